@@ -1,7 +1,7 @@
-//! Each stage of an identification by itself, on a virtual DualV: four runs of ten seconds at 5 kHz.
+//! Benchmarks of each stage of an identification: a virtual DualV, four runs of 10 s at 5 kHz.
 //!
-//! The robot is the hand-written one of the tests, so these times are those of the identification, not
-//! of a generated or interpreted model.
+//! The robot is the hand-written one of the tests, so the times exclude generated or interpreted
+//! models.
 
 #[path = "../tests/common/dualv.rs"]
 mod dualv;
@@ -30,7 +30,7 @@ fn settings(robot: &DualV) -> Settings {
     .trimmed(5000.0)
 }
 
-/// The four runs, and one of them as a file.
+/// The runs, one of them written to a file.
 fn data(robot: &DualV, folder: &Path) -> Vec<Log> {
     let mut experiment = experiment(robot, 1.0, 1);
     experiment.sampling_hz = 5000.0;

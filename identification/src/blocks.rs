@@ -3,11 +3,12 @@
 use overact::{Function, Input, Model, SampleError};
 use rayon::prelude::*;
 
-/// Samples that are evaluated at once: enough to fill vector units, few enough for the cache.
+/// Samples per evaluation: enough for vector units, few enough for the cache.
 pub(crate) const BLOCK: usize = 128;
 
-/// Evaluates `function` at all samples. `inputs` hold one row per sample, except
-/// [`Input::Parameters`] and [`Input::BaseParameters`].
+/// Evaluates `function` at all samples.
+///
+/// `inputs` have one row per sample, except [`Input::Parameters`] and [`Input::BaseParameters`].
 pub(crate) fn evaluate(
     model: &dyn Model,
     function: Function,
@@ -46,7 +47,7 @@ pub(crate) fn evaluate(
     Ok(output)
 }
 
-/// The rows of `count` samples from sample `first` on; empty where there are none.
+/// The rows of `count` samples from sample `first` on; empty if out of range.
 pub(crate) fn slice(values: &[f64], width: usize, first: usize, count: usize) -> &[f64] {
     values
         .get(first * width..(first + count) * width)

@@ -1,7 +1,8 @@
-//! How actuators and joints are called in a sentence.
+//! Names of actuators and joints in sentences.
 
-/// The name of an actuator in a sentence: between marks, and with a word before it where it is but a number, as
-/// joints of a serial robot without names have.
+/// Name of an actuator in a sentence: in backticks, or `joint 1` for a bare number.
+///
+/// Unnamed joints of serial robots are numbers.
 #[must_use]
 pub fn called(name: &str) -> String {
     let is_number = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
@@ -11,20 +12,20 @@ pub fn called(name: &str) -> String {
     }
 }
 
-/// The name of an actuator as a heading.
+/// Name of an actuator as a heading.
 #[must_use]
 pub fn titled(name: &str) -> String {
     called(name).replace('`', "")
 }
 
-/// A sentence in which names that are but numbers have a word before them.
+/// Replaces bare numbers in backticks by `joint` and the number.
 pub(crate) fn with_joints(words: &str) -> String {
     let marks = words.matches('`').count();
     let mut text = String::new();
     for (number, piece) in words.split('`').enumerate() {
         match number % 2 {
             0 => text.push_str(piece),
-            // A mark without another one behind it.
+            // An unpaired backtick.
             _ if number == marks => text.extend(["`", piece]),
             _ => text.push_str(&called(piece)),
         }

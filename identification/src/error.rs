@@ -1,37 +1,39 @@
-//! What can be wrong with logs, settings and their fit to a robot: every problem says where it is
-//! and, where there is one, the way out. Problems that can be found together are reported together.
+//! Problems of logs, settings and their fit to a robot.
+//!
+//! Every problem has a location and, if there is one, a remedy. Problems that can be found together
+//! are reported together.
 
 use std::fmt;
 
 use overact::Code;
 use serde::{Serialize, Serializer};
 
-/// A code as its text.
+/// Serialises a code as its text.
 fn as_text<S: Serializer>(code: &Code, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(code)
 }
 
-/// One thing that is wrong.
+/// One problem.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Problem {
-    /// What kind of problem it is, under which it is explained.
+    /// Code of the problem, under which it is explained.
     #[serde(serialize_with = "as_text")]
     pub code: Code,
-    /// What is wrong, in one sentence.
+    /// Message, in one sentence.
     pub message: String,
-    /// The file, or the name of the run, where it is wrong.
+    /// File, or name of the run.
     pub file: Option<String>,
     /// Line of the file, counted from 1 (the header of a CSV file is line 1).
     pub line: Option<usize>,
     /// Name of the column or variable.
     pub column: Option<String>,
-    /// A way out.
+    /// Remedy.
     pub help: Option<String>,
 }
 
 impl Problem {
-    /// A problem without a place.
+    /// A problem without a location.
     #[must_use]
     pub fn new(code: Code, message: impl Into<String>) -> Self {
         Self {
@@ -44,28 +46,28 @@ impl Problem {
         }
     }
 
-    /// Says in which file, or run, the problem is.
+    /// Sets the file or run.
     #[must_use]
     pub fn file(mut self, file: impl Into<String>) -> Self {
         self.file = Some(file.into());
         self
     }
 
-    /// Says on which line the problem is.
+    /// Sets the line.
     #[must_use]
     pub fn line(mut self, line: usize) -> Self {
         self.line = Some(line);
         self
     }
 
-    /// Says in which column or variable the problem is.
+    /// Sets the column or variable.
     #[must_use]
     pub fn column(mut self, column: impl Into<String>) -> Self {
         self.column = Some(column.into());
         self
     }
 
-    /// Adds a way out.
+    /// Sets the remedy.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
@@ -90,17 +92,17 @@ impl fmt::Display for Problem {
     }
 }
 
-/// One problem or several that were found together.
+/// One or more problems found together.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Error {
-    /// The problems, in the order in which they were found; at least one.
+    /// Problems in the order in which they were found; at least one.
     #[serde(rename = "errors")]
     pub problems: Vec<Problem>,
 }
 
 impl Error {
-    /// `Ok` when there is no problem.
+    /// `Ok` if there is no problem.
     pub(crate) fn check(problems: Vec<Problem>) -> Result<(), Self> {
         if problems.is_empty() {
             Ok(())
@@ -132,7 +134,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// The nearest of `candidates` to `name`, when it is near enough to be a slip of the pen.
+/// The `candidates` entry nearest to `name`, if it is near enough for a typing error.
 pub(crate) fn suggestion<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -145,7 +147,7 @@ pub(crate) fn suggestion<'a>(
         .map(|(_, candidate)| candidate)
 }
 
-/// Levenshtein distance, blind to upper and lower case.
+/// Levenshtein distance, ignoring case.
 fn edit_distance(a: &str, b: &str) -> usize {
     strsim::levenshtein(&a.to_lowercase(), &b.to_lowercase())
 }

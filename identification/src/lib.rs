@@ -1,30 +1,30 @@
-//! Identification of the dynamic parameters of a parallel robot, overactuated or not, from measured
-//! motion and torque: sections 3.2, 4 and 5.3 of Briot, Krut, Gautier 2015.
+//! Identification of dynamic parameters of robots from measured motion and torque.
 //!
-//! [`identify()`] is all of it; [`study()`] compares case 2 for every choice of kept actuators. Robots are
-//! seen through [`overact::Model`] only, so compiled and interpreted ones are served alike.
+//! It implements sections 3.2, 4 and 5.3 of Briot, Krut, Gautier 2015 for parallel robots,
+//! overactuated or not, and for serial robots. [`identify()`] is the complete procedure.
+//! [`study()`] compares the actuator projection for all partitions. Robots are accessed through
+//! [`overact::Model`] only, so compiled and interpreted models are equivalent.
 //!
-//! Folders, from the bottom up; each imports from those above it in this table only, and a test holds
-//! the order:
+//! Each folder imports only from those above it in this table, and a test checks the order:
 //!
-//! | folder | what |
+//! | folder | content |
 //! |---|---|
-//! | `error`, `significant`, `widest`, `blocks` | problems with a place and a way out; numbers in sentences; work with wide vectors; a model evaluated in blocks |
-//! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series that are plotted |
-//! | [`data`] | a run is read from text or MATLAB and checked; a mapping names its columns and units |
+//! | `error`, `significant`, `widest`, `blocks` | problems with location and remedy; numbers in sentences; vectorisation; evaluation of a model in blocks |
+//! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series for plots |
+//! | [`data`] | runs from files, with checks; mappings of columns and units |
 //! | [`filters`] | zero-phase filtering, decimation, differences |
-//! | `prior`, `settings` | what is believed of the standard parameters, and what else an identification is told beside the data |
-//! | `monitor` | what raw numbers tell by themselves while they are gone through |
+//! | `prior`, `settings` | prior values of standard parameters; settings of an identification |
+//! | `monitor` | statistics and plausibility of raw numbers |
 //! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
-//! | `regression` | columns of the model, and the decimated system (39)-(41) of case 1, case 2 or all joints, as R factors |
+//! | `regression` | columns of the model; decimated systems (39)-(41) of all projections, as R factors |
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
 //! | `calibration` | encoder offsets and lengths from the closure of redundant loops |
-//! | `gains` | gains of the drives, from parameters whose values are known |
-//! | `gravity` | the direction of gravity, together with the parameters |
-//! | `validation` | prediction against measurement, on any run |
-//! | `result` | what is told of estimates and runs |
-//! | `consistent` | standard parameters that a robot can have, the nearest to a prior that the data allow |
-//! | `assessment` | checks of data, model, fit and extrapolation, and the verdict that follows from them alone |
+//! | `gains` | gains of the drives, from known parameters |
+//! | `gravity` | direction of gravity, together with the parameters |
+//! | `validation` | prediction and measurement on any run |
+//! | `result` | results on estimates and runs |
+//! | `consistent` | physically consistent standard parameters |
+//! | `assessment` | checks of data, model, fit and extrapolation, and the verdict |
 //! | `identify` | the procedure and its result |
 //! | [`factors`] | runs as factor files, merged and identified without their logs |
 

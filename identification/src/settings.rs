@@ -1,9 +1,8 @@
-//! Settings of an identification and the usual rules for them (Gautier 1997, the paper's
-//! Ref. \[27\]).
+//! Settings of an identification, and usual rules for them (Gautier 1997, the paper's Ref. \[27\]).
 //!
-//! Let f_dyn be the bandwidth of the robot's dynamics, the fastest motion that the run excites.
-//! The low-pass on the positions must not bend the signals inside of it: cutoff >= 10 f_dyn. The
-//! decimation removes all above the model's band: 0.8 f_m/(2 n_d) about 2 to 5 times f_dyn.
+//! Let f_dyn be the bandwidth of the robot's dynamics, the fastest motion of the run. The low-pass
+//! of the positions must not distort signals within it: cutoff >= 10 f_dyn. The decimation removes
+//! frequencies above the model's band: 0.8 f_m/(2 n_d) is about 2 to 5 times f_dyn.
 
 use overact::Code;
 use std::collections::BTreeMap;
@@ -17,35 +16,35 @@ use crate::{
     prior::Prior,
 };
 
-/// Decimation keeps frequencies up to this many times f_dyn.
+/// Largest frequency after decimation, in multiples of f_dyn.
 const DECIMATION_BAND: f64 = 4.0;
 
-/// The position low-pass stays below this fraction of the Nyquist frequency.
+/// Largest cutoff of the position low-pass, by the Nyquist frequency.
 const LARGEST_CUTOFF: f64 = 0.8;
 
-/// Part of the position filter's transient at the ends of a run that is left in the samples used.
+/// Relative size of the position filter's transient in the samples used.
 const TRANSIENT: f64 = 1e-5;
 
-/// How σ_ρ of eq. (46) is computed from the residual.
+/// Rule for σ_ρ of eq. (46).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Normalisation {
     /// σ² = ||ρ||²/(r_c - n_b), the unbiased estimate (46).
     #[default]
     Unbiased,
-    /// σ² = Σ(ρ - mean)²/(N - 1), the sample variance (MATLAB's `std`), as published EMPS
-    /// results use it.
+    /// σ² = Σ(ρ - mean)²/(N - 1), the sample variance (MATLAB's `std`), as in published EMPS
+    /// results.
     SampleVariance,
 }
 
-/// Where the instruments come from, by which errors of the regressor are found and cured.
+/// Source of instruments, which detect and correct errors of the regressor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Instruments {
     /// The other periods of a periodic motion.
     #[default]
     Periods,
-    /// The motion of the simulated robot, which stands beside each run
+    /// Motion of the simulated robot, supplied with each run
     /// ([`Log::with_instruments`](crate::Log::with_instruments)).
     Simulated,
     /// No instruments.
@@ -64,90 +63,102 @@ impl Instruments {
     }
 }
 
-/// What an identification can be told.
+/// Settings of an identification.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Order of the Butterworth low-pass on the positions, run forwards and backwards.
     pub filter_order: usize,
-    /// Its cutoff frequency, Hz.
+    /// Cutoff frequency of this low-pass, Hz.
     pub filter_cutoff_hz: f64,
-    /// Order of the error of the central differences by which positions and velocities are differentiated, 2
-    /// or 4: (ωT)²/6 or (ωT)⁴/30 of a velocity of frequency ω at a sampling period T.
+    /// Order of the error of central differences, 2 or 4.
+    ///
+    /// The relative error of a velocity of frequency ω at a sampling period T is (ωT)²/6 or
+    /// (ωT)⁴/30.
     #[serde(default = "finest_differences")]
     pub difference_order: usize,
-    /// n_d: one sample in so many is kept after the parallel decimation; 1 keeps all, unfiltered.
+    /// Decimation factor n_d; 1 keeps all samples, unfiltered.
     pub decimation: usize,
-    /// Samples dropped from the start of each run after differentiation.
+    /// Samples excluded at the start of each run after differentiation.
     pub skip_start: usize,
-    /// Samples dropped from the end of each run after differentiation.
+    /// Samples excluded at the end of each run after differentiation.
     pub skip_end: usize,
-    /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero: around
-    /// standstill the sign of a measured velocity is noise. 0 is no dead band.
+    /// Joint velocity (rad/s or m/s) below which Coulomb friction counts as zero; 0 for no dead
+    /// band.
+    ///
+    /// Near standstill the sign of a measured velocity is noise.
     pub velocity_dead_band: f64,
-    /// Velocities of the actuators' joints (rad/s or m/s), one for each, below which the decimated equation of
-    /// this joint is left out: there its friction is none that has a coefficient. Empty leaves none out. For
-    /// robots without redundancy, whose equations are those of their joints.
+    /// Velocity of each actuator's joint (rad/s or m/s) below which its equations are excluded.
+    ///
+    /// Friction has no constant coefficient there. Empty excludes nothing. Only for robots without
+    /// redundancy, whose equations are those of their joints.
     #[serde(default)]
     pub standstill_velocity: Vec<f64>,
-    /// Whether the torques pass the low-pass of the positions, too. The columns do not: where torques are not
-    /// decimated, published work does this.
+    /// Whether the torques pass the low-pass of the positions, too.
+    ///
+    /// The columns do not. Published work does this if torques are not decimated.
     #[serde(default)]
     pub filter_torques: bool,
-    /// Whether both sides of the equations pass the low-pass of the positions before they are decimated: what
-    /// it does to the torques it does to the columns then, to steps of dry friction above all.
+    /// Whether both sides of the equations pass the low-pass of the positions before decimation.
+    ///
+    /// Torques and columns are then filtered alike, in particular steps of dry friction.
     #[serde(default)]
     pub filter_equations: bool,
-    /// Of a held-out run so many of the decimated samples, from the first on, count in the errors; all of
-    /// them if absent.
+    /// Number of decimated samples of a validation run that count in the errors.
+    ///
+    /// Counted from the first one; `None` for all.
     #[serde(default)]
     pub validation_samples: Option<usize>,
-    /// Whether Coulomb columns take the mean sign of the joint's velocity over a sampling interval, not
-    /// the sign at the sample: then the time of a reversal counts to a fraction of the interval.
+    /// Whether Coulomb columns use the mean sign of the velocity over a sampling interval.
+    ///
+    /// Reversals are then resolved to a fraction of the interval.
     pub averaged_reversals: bool,
-    /// r_σ: the elimination of parameters ends when the largest relative standard deviation is
-    /// less than this many times the smallest one.
+    /// r_σ: elimination ends if the largest relative standard deviation is below r_σ times the
+    /// smallest.
     pub r_sigma: f64,
-    /// Ends the elimination, too, before it would cancel a parameter that the data speak for
-    /// (|χ| > 5 σ). Off is the paper's rule, which only the warnings temper.
+    /// Whether elimination also ends at a significant parameter (|χ| > 5 σ).
+    ///
+    /// Without it, the paper's rule applies, with warnings.
     pub keep_significant: bool,
-    /// How σ_ρ is computed.
+    /// Rule for σ_ρ.
     pub normalisation: Normalisation,
-    /// Friction with separate coefficients for the two directions of motion of each joint.
+    /// Whether friction has separate coefficients for both directions of each joint.
     pub asymmetric_friction: bool,
-    /// Weighted least squares (48); ordinary least squares otherwise.
+    /// Whether to use weighted least squares (48).
     pub weighted: bool,
-    /// Where the instruments come from.
+    /// Source of the instruments.
     pub instruments: Instruments,
-    /// Period of the motion, s, for instruments from other periods; found from each run if absent.
+    /// Period of the motion, s, for instruments from other periods; `None` to find it in each run.
     pub period_s: Option<f64>,
-    /// What is believed of the standard parameters before the data speak, for the consistent estimate.
+    /// Prior of the standard parameters, for the consistent estimate.
     #[serde(default)]
     pub prior: Prior,
-    /// Standard parameters whose values are known exactly (SI units), by name: they fix the scale when the
-    /// gains of the drives are identified, and serve nothing else.
+    /// Exactly known values of standard parameters (SI units), by name.
+    ///
+    /// They only serve to fix the scale in the identification of drive gains.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub known: BTreeMap<String, f64>,
-    /// Kept actuators of case 2, indices among the actuators; r of them.
+    /// Kept actuators of the actuator projection, r indices among the actuators.
     pub kept_actuators: Vec<usize>,
-    /// Seed of the random states from which the base parameters are found.
+    /// Seed of the random states for the base parameters.
     pub seed: u64,
 }
 
-/// The order of differences where none is asked for.
+/// Default order of differences.
 const fn finest_differences() -> usize {
     4
 }
 
 impl Settings {
-    /// The usual rules for a robot of bandwidth `dynamics_hz` (f_dyn) sampled at
-    /// `sampling_frequency` (f_m, Hz): order 4, cutoff 10 f_dyn, decimation to 4 f_dyn.
-    /// `kept_actuators` is the description's choice. No samples are dropped, see
+    /// Usual settings for a robot of bandwidth `dynamics_hz` (f_dyn).
+    ///
+    /// With `sampling_frequency` (f_m, Hz): order 4, cutoff 10 f_dyn, decimation to 4 f_dyn.
+    /// `kept_actuators` is the description's choice. No samples are excluded, see
     /// [`Settings::trimmed`].
     #[must_use]
     pub fn for_bandwidth(dynamics_hz: f64, sampling_frequency: f64, info: &Info<'_>) -> Self {
         let nyquist = sampling_frequency / 2.0;
-        // A bandwidth of zero has no decimation; its cutoff is found by the check.
+        // Without a bandwidth there is no decimation; the check rejects the cutoff.
         let decimation = if dynamics_hz > 0.0 {
             (0.8 * nyquist / (DECIMATION_BAND * dynamics_hz)).floor()
         } else {
@@ -157,7 +168,7 @@ impl Settings {
             filter_order: 4,
             filter_cutoff_hz: (10.0 * dynamics_hz).min(LARGEST_CUTOFF * nyquist),
             difference_order: finest_differences(),
-            // A cast from a float saturates, and `max` takes care of NaN.
+            // The cast saturates, and `max` handles NaN.
             decimation: decimation.max(1.0) as usize,
             skip_start: 0,
             skip_end: 0,
@@ -181,21 +192,23 @@ impl Settings {
         }
     }
 
-    /// [`Settings::for_bandwidth`] where the bandwidth is not known: f_dyn = f_m/100, since
-    /// controllers run about a hundred times faster than the robot moves (cutoff f_m/10,
-    /// decimation by 10).
+    /// [`Settings::for_bandwidth`] with f_dyn = f_m/100, for an unknown bandwidth.
+    ///
+    /// Controllers typically run a hundred times faster than the robot moves. The cutoff is f_m/10,
+    /// and the decimation factor 10.
     #[must_use]
     pub fn for_sampling_frequency(sampling_frequency: f64, info: &Info<'_>) -> Self {
         Self::for_bandwidth(sampling_frequency / 100.0, sampling_frequency, info)
     }
 
-    /// The same settings with as many samples dropped at both ends of a run as the transient of the
-    /// position filter lasts. The filter extends a run by its odd reflection, whose acceleration has
-    /// the wrong sign; how long that is felt is a property of the filter. (The decimation needs no
-    /// such care: it treats both sides of the equations alike.)
+    /// Excludes the transient of the position filter at both ends of a run.
+    ///
+    /// The filter extends a run by its odd reflection, whose acceleration has the wrong sign. Its
+    /// duration is a property of the filter. Decimation needs no exclusion, since it filters both
+    /// sides of the equations alike.
     #[must_use]
     pub fn trimmed(mut self, sampling_frequency: f64) -> Self {
-        // Impossible filters are found by the checks.
+        // The checks reject impossible filters.
         let cutoff = 2.0 * self.filter_cutoff_hz / sampling_frequency;
         if let Ok(filter) = butterworth(self.filter_order, cutoff) {
             self.skip_start = settling(&filter, TRANSIENT);
@@ -204,7 +217,7 @@ impl Settings {
         self
     }
 
-    /// Number of samples that a run must have for these settings.
+    /// Number of samples that a run needs for these settings.
     #[must_use]
     pub fn samples_needed(&self) -> usize {
         let filter = self.filter_order.saturating_mul(3).saturating_add(1);
@@ -219,7 +232,7 @@ impl Settings {
         filter.max(skipped.saturating_add(used))
     }
 
-    /// What makes equations of rows that are sampled at a `frequency` (Hz) and of which one in `factor` is kept.
+    /// Decimator for equations sampled at `frequency` (Hz), with this `factor`.
     pub(crate) fn decimator(&self, factor: usize, frequency: f64) -> Result<Decimator, Error> {
         let decimator = Decimator::new(factor)?;
         if !self.filter_equations {
@@ -232,7 +245,7 @@ impl Settings {
     /// Checks the settings against the robot; those that concern a run are checked with it.
     ///
     /// # Errors
-    /// Every setting that is not possible.
+    /// Every invalid setting.
     pub fn check(&self, info: &Info<'_>) -> Result<(), Error> {
         let mut problems = Vec::new();
         if !(self.filter_cutoff_hz.is_finite() && self.filter_cutoff_hz > 0.0) {
@@ -299,7 +312,7 @@ impl Settings {
         Error::check(problems)
     }
 
-    /// What is wrong with the velocities of standstill.
+    /// The problem of invalid standstill velocities.
     fn check_standstill(&self, info: &Info<'_>) -> Option<Problem> {
         let (limits, actuators) = (&self.standstill_velocity, info.sizes.actuators);
         if limits.is_empty() {
@@ -330,7 +343,7 @@ impl Settings {
     }
 }
 
-/// Checks a set of kept actuators of case 2: r different ones.
+/// The problem of invalid kept actuators, which must be r different ones.
 pub(crate) fn check_partition(kept: &[usize], info: &Info<'_>) -> Option<Problem> {
     let (dof, actuators) = (info.sizes.dof, info.sizes.actuators);
     let mut sorted = kept.to_vec();

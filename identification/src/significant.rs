@@ -1,7 +1,8 @@
-//! Numbers as sentences and tables show them: with a few significant digits.
+//! Formats numbers with a few significant digits.
 
-/// A number with so many significant digits, as a decimal where that is short, without trailing
-/// zeros; scientific for very small and very large ones.
+/// A number with `digits` significant digits, without trailing zeros.
+///
+/// Decimal if that is short; scientific for very small and very large numbers.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
@@ -16,7 +17,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
     let digits = digits.max(1);
     let scientific = format!("{value:.*e}", digits - 1);
-    // Rounding may carry into another power of ten, so the exponent is that of the rounded number.
+    // Rounding may change the power of ten, so use the exponent of the rounded number.
     let exponent: i32 = scientific
         .split_once('e')
         .and_then(|(_, exponent)| exponent.parse().ok())

@@ -1,21 +1,23 @@
-//! The thresholds of the elimination's second opinion and of the conditioning.
+//! Thresholds of the elimination's tests and of the conditioning.
 
 use serde::Serialize;
 
-/// The thresholds that verdicts and warnings use.
+/// Thresholds of verdicts and warnings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Thresholds {
-    /// A partition whose condition exceeds this spoils case 2.
+    /// Condition number of a partition above which the actuator projection is unreliable.
     pub partition_condition: f64,
     /// |χ|/σ above which a parameter is significant.
     pub significance: f64,
-    /// Growth of the held-out error, in percent of the measured inputs' norm, above which a
-    /// significant parameter is not cancelled: the root of the difference of the squares before and
-    /// after, the part of the inputs that the parameter alone explains, whatever the noise.
+    /// Growth of the cross-validation error, in percent of the norm of the inputs.
+    ///
+    /// Above it, a significant parameter is not removed. The growth is √(after² - before²), the
+    /// part of the inputs that the parameter alone explains, independent of the noise.
     pub held_out_growth_percent: f64,
-    /// Move of another parameter, percent of its value, above which a significant parameter is not
-    /// cancelled, provided that the move's part of the inputs exceeds
-    /// [`held_out_growth_percent`](Self::held_out_growth_percent).
+    /// Drift of another parameter, in percent of its value.
+    ///
+    /// Above it, a significant parameter is not removed, if the drift's effect on the inputs also
+    /// exceeds [`held_out_growth_percent`](Self::held_out_growth_percent).
     pub drift_percent: f64,
 }
 

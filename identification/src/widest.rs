@@ -1,9 +1,10 @@
-//! Work compiled once more for the wide vectors of newer processors, and run so where there are some.
+//! Runs code compiled for wide vectors, if the processor has them.
 
 use pulp::NullaryFnOnce;
 
-/// Runs `work`, whose `call` is inlined, with the instructions of the processor. Products and sums stay apart, so
-/// that the numbers are those of any other processor.
+/// Runs `work`, whose `call` is inlined, with the processor's vector instructions.
+///
+/// Products and sums are not fused, so the results equal those of other processors.
 #[inline]
 pub(crate) fn widest<W: NullaryFnOnce>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]

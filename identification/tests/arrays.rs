@@ -1,5 +1,6 @@
-//! Logs as arrays: MATLAB's `.mat` and NumPy's files, written here byte by byte as these programs write them,
-//! and by NumPy itself where Python has it.
+//! Logs as arrays: MATLAB's `.mat` and NumPy's files.
+//!
+//! They are written here byte by byte, and by NumPy itself if Python has it.
 
 mod common;
 
@@ -19,7 +20,7 @@ fn mapping(position: &str, torque: &str) -> Mapping {
     }
 }
 
-/// Reads a file of this name and content.
+/// Reads a file with this name and content.
 fn log(name: &str, content: &[u8], mapping: &Mapping) -> Result<Log, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
@@ -42,7 +43,7 @@ fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// What an array of a `.mat` file starts with.
+/// Header of an array of a `.mat` file.
 fn start(class: u8, name: &str, (rows, columns): (i32, i32)) -> Vec<u8> {
     let flags = [u32::from(class).to_le_bytes(), [0; 4]].concat();
     let size = [rows.to_le_bytes(), columns.to_le_bytes()].concat();
@@ -54,7 +55,7 @@ fn start(class: u8, name: &str, (rows, columns): (i32, i32)) -> Vec<u8> {
     .concat()
 }
 
-/// A matrix of a `.mat` file, its values down the columns.
+/// A matrix of a `.mat` file, with column-major values.
 fn matrix(name: &str, size: (i32, i32), values: &[f64]) -> Vec<u8> {
     let values: Vec<u8> = values
         .iter()
@@ -66,7 +67,7 @@ fn matrix(name: &str, size: (i32, i32), values: &[f64]) -> Vec<u8> {
 /// A structure of a `.mat` file.
 fn structure(name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let mut data = start(2, name, (1, 1));
-    // The length of a field's name is a small element.
+    // The length of field names is a small element.
     data.extend([5, 0, 4, 0, 8, 0, 0, 0]);
     let mut names = Vec::new();
     for (field, _) in fields {
@@ -106,7 +107,7 @@ fn doubles(values: &[f64]) -> Vec<u8> {
         .collect()
 }
 
-/// A zip archive of members that are not packed.
+/// A zip archive of stored members.
 fn zip(members: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let (mut file, mut list) = (Vec::new(), Vec::new());
     for (name, content) in members {
@@ -169,7 +170,7 @@ fn matrices_and_structures_of_matlab() {
         "a.mat: there are no variables `q`, `run.j`; the file has `q`, `wide`, `gain`, `run.i`, `run.arm.q`\n  \
          help: of a matrix name the columns one by one, `q(:,1)` is the first"
     );
-    // Cut off anywhere it is refused or lacks what is asked for.
+    // A truncated file is refused, or lacks the requested columns.
     for length in (0..file.len()).step_by(7) {
         assert!(
             log(
@@ -268,7 +269,7 @@ fn arrays_that_are_none_are_named() {
     );
 }
 
-/// Files that NumPy itself writes, packed and not.
+/// Files that NumPy writes, compressed or not.
 const SCRIPT: &str = "
 import numpy, sys
 t = numpy.arange(1000) / 10
@@ -326,7 +327,7 @@ fn arrays_without_numbers_are_read_whatever_their_other_size() {
 fn members_of_an_archive_are_limited_together() {
     let member = npy("<f8", "False", "(131072,)", &doubles(&[0.0; 131_072]));
     let one = zip(&[("t.npy", member)]);
-    // The list of members names the same bytes 300 times.
+    // The archive lists the same bytes 300 times.
     let start = one
         .windows(4)
         .rposition(|bytes| bytes == b"PK\x01\x02")

@@ -1,4 +1,4 @@
-//! Runs of arrays in memory are read as those of files: by names, in units, at uniform times.
+//! Runs of arrays in memory are read like those of files: names, units, resampling.
 
 use overact_identification::{
     Gain, Mapping, Time,

@@ -1,4 +1,4 @@
-//! What is said of input that can't be used: where it is wrong and what to do.
+//! Messages for unusable input: location and remedy.
 
 mod common;
 
@@ -10,7 +10,7 @@ use overact_identification::{
     Dataset, Error, Gain, Log, Mapping, Settings, Time, data::read, identify, motion,
 };
 
-/// The text of an error, with the folder of the test taken off.
+/// Text of an error, without the test's folder.
 fn text<T: std::fmt::Debug>(result: Result<T, Error>, folder: &Path) -> String {
     result
         .expect_err("an error")
@@ -112,7 +112,7 @@ fn lines_with_more_cells_than_others_are_errors() {
         "log.csv:3: the line has 4 columns, but the header names 3, here and in one line further down\n  help: if \
          decimals stand behind commas, separate the columns by semicolons or tabs; else name every column"
     );
-    // A separator at the end of lines is no column.
+    // A separator at line ends is no column.
     let (log, _folder) = csv("time,q_1,tau_1\n0,0,0,\n0.1,1,0,\n0.2,2,1,\n");
     assert_eq!(log.expect("a log").samples(), 3);
     let (log, folder) = csv("# time q_1 tau_1\n0 0 0\n0.1 1 0\n0.2 2 1 7\n");
@@ -340,7 +340,7 @@ fn experiments_are_checked() {
         variants: &[],
         scales: None,
     };
-    // At rest only the offset has a column, and it explains torques of zero.
+    // At rest only the offset has a column, and it explains zero torques.
     let result = identify(&PAIR, &dataset, &settings(), &|_| {}).expect("an estimate");
     assert!(result.warnings.iter().any(|warning| warning
         == "case 1: `m_platformR` is not identifiable: its column is zero on these data"));

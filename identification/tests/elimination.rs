@@ -1,4 +1,4 @@
-//! The second opinion stops before the collapse that r_σ alone walks into.
+//! The elimination's tests stop before important parameters are removed, unlike r_σ alone.
 
 mod common;
 #[path = "common/dualv.rs"]
@@ -21,7 +21,7 @@ fn identified(robot: &DualV, rotation: f64) -> Identification {
     identify(robot, &dataset, &settings(robot), &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The essential estimates of both cases.
+/// Essential estimates of both projections.
 fn essential(result: &Identification) -> impl Iterator<Item = &Estimate> {
     let estimates = result.estimates.iter();
     estimates.filter(|estimate| estimate.stage == Stage::Essential)
@@ -42,7 +42,7 @@ const NINE: [&str; 9] = [
 #[test]
 fn the_nine_parameters_of_table_2_are_left_whatever_the_rotation() {
     let robot = DualV::new();
-    // Errors grow as the rotation gets weaker; with r_sigma alone they would be above 50 %.
+    // Errors grow with weaker rotation; with r_sigma alone they would exceed 50 %.
     let [weak, full] = [(0.15, 6.0), (1.0, 2.0)];
     for &(rotation, largest) in by_tier([&[weak][..], &[full, weak]]) {
         let result = identified(&robot, rotation);
@@ -68,7 +68,7 @@ fn the_nine_parameters_of_table_2_are_left_whatever_the_rotation() {
                 assert!(stop.contains("less than r_σ = 10"), "{stop}");
             }
         }
-        // Case 2 with weak rotation is where r_sigma alone walks on.
+        // With weak rotation, r_sigma alone continues in the actuator projection.
         let case_2 = essential(&result).last().expect("case 2");
         if rotation < 1.0 {
             let refused = case_2

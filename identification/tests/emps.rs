@@ -1,4 +1,4 @@
-//! The published identification of the EMPS benchmark, to every printed digit.
+//! Reproduces the published identification of the EMPS benchmark to every printed digit.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn log(file: &str) -> Option<Log> {
     Some(read(&path, &mapping, false).unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// The settings of the published recipe.
+/// Settings of the published procedure.
 fn settings() -> Settings {
     use overact::Model;
     let mut settings = Settings::for_bandwidth(10.0, 1000.0, &EMPS.info());
@@ -42,7 +42,7 @@ fn settings() -> Settings {
     settings
 }
 
-/// Identifies from the benchmark's run and cross-validates on its pulses.
+/// Identifies the benchmark's run and cross-validates on its pulses.
 fn identified(settings: &Settings) -> Option<Identification> {
     let runs = [log("DATA_EMPS.mat")?];
     let validation = [log("DATA_EMPS_PULSES.mat")?];
@@ -96,11 +96,11 @@ fn symmetric_friction_is_the_published_table() {
         printed(pulses.relative_error_percent, "5.9824");
         // One motor: the torque is the line.
         assert!((pulses.torques[0].residual_norm - pulses.residual_norm).abs() < 1e-9);
-        // The period is found in the run, and errors of the encoder are harmless.
+        // The period is found in the run, and encoder errors are harmless.
         let told = &result.errors_in_regressor[0];
         assert_eq!(told.runs[0].period_s, 6.24);
         assert!(told.parameters.iter().all(|parameter| !parameter.spoiled));
-        // Friction differs by direction, as the asymmetric model says.
+        // Friction depends on the direction, as the asymmetric model shows.
         let known = |warning: &String| {
             warning.contains("cancelled") || warning.contains("friction that differs by direction")
         };

@@ -1,4 +1,4 @@
-//! What happens at the ends of a run, and where a robot stands still.
+//! Ends of a run, and standstill.
 
 mod common;
 
@@ -12,7 +12,7 @@ use overact_identification::{Dataset, Error, Identification, Log, Settings, iden
 const TRUTH: [f64; 4] = [90.0, 200.0, 20.0, -3.0];
 const FREQUENCY: f64 = 1000.0;
 
-/// A run of positions and forces at a time.
+/// A run with positions and forces as functions of time.
 fn run(seconds: f64, of: impl Fn(f64) -> (f64, f64)) -> Log {
     let samples = (seconds * FREQUENCY) as usize;
     let (positions, torques) = (0..samples).map(|k| of(k as f64 / FREQUENCY)).unzip();
@@ -53,7 +53,7 @@ fn force(v: f64, a: f64) -> f64 {
 
 #[test]
 fn the_filters_transient_is_cut_off_by_default() {
-    // Both ends lie where the acceleration is large, which the filter does not continue.
+    // Both ends have large accelerations, which the filter does not continue.
     let log = run(4.0, |t| {
         let (w, u) = (TAU * 0.6, TAU * 1.7);
         let x = 0.1 * (w * t + 1.0).cos() + 0.03 * (u * t).cos();
@@ -78,7 +78,7 @@ fn the_filters_transient_is_cut_off_by_default() {
 
 #[test]
 fn standstill_does_not_spoil_coulomb_friction_with_a_dead_band() {
-    // Strokes with rests between them, in which the axis creeps by a micrometre under no force.
+    // Strokes with rests in between, in which the axis creeps by a micrometre without force.
     let log = run(12.0, |t| {
         let (stroke, at) = ((t / 2.0).floor(), t.rem_euclid(2.0));
         let way = if stroke % 2.0 == 0.0 { 0.1 } else { -0.1 };

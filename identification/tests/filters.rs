@@ -1,4 +1,4 @@
-//! Filters against reference vectors of MATLAB's semantics and of scipy's designs.
+//! Filters compared with reference vectors of MATLAB and scipy.
 
 mod common;
 
@@ -17,7 +17,7 @@ fn numbers(value: &Value) -> Vec<f64> {
         .collect()
 }
 
-/// Fails when two vectors differ by more than `tolerance`.
+/// Fails if two vectors differ by more than `tolerance`.
 fn close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     assert_eq!(found.len(), expected.len(), "{what}: length");
     let worst = found
@@ -70,7 +70,7 @@ fn filters_agree_with_the_reference() {
         1e-7,
         "decimate",
     );
-    // Sections against sections: the last sample of 203 is kept, so the first one is number 2.
+    // Sections compared with sections: the last of 203 samples is kept, so the first is number 2.
     let kept: Vec<f64> = numbers(&reference["sosfiltfilt_padlen24"])
         .into_iter()
         .skip(2)
@@ -112,7 +112,7 @@ fn butterworth_agrees_with_the_reference() {
 
 #[test]
 fn responses_are_those_of_the_definitions() {
-    // |H|² of a section cascade at a fraction of the Nyquist frequency.
+    // |H|² of cascaded sections at a fraction of the Nyquist frequency.
     let magnitude = |filter: &overact_identification::filters::LowPass, fraction: f64| -> f64 {
         let w = std::f64::consts::PI * fraction;
         let norm = |p: [f64; 3]| {
@@ -181,7 +181,7 @@ fn signal(samples: usize, shift: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Pushes rows in blocks; the length of what had come before the last block.
+/// Pushes rows in blocks; also returns the output length before the last block.
 fn pushed(
     rows: &[f64],
     block: usize,
@@ -212,7 +212,7 @@ fn blocks_give_what_the_whole_signal_gives() {
         let whole = signals
             .each_ref()
             .map(|signal| filtfilt(&filter, signal).expect("long enough"));
-        // Blocks of all sizes, from single samples on.
+        // Blocks of all sizes, down to single samples.
         for block in [1, 7, 5_000, SAMPLES] {
             let mut stream = ZeroPhase::new(&filter, 2, SAMPLES).expect("long enough");
             let (found, early) = pushed(&rows, 2 * block, |rows, found| stream.push(rows, found));
@@ -251,7 +251,7 @@ fn blocks_give_what_the_whole_signal_gives() {
             }
         }
     }
-    // As short as can be.
+    // The shortest possible signals.
     for samples in 25..40 {
         let signal = signal(samples, 1.0);
         let filter = chebyshev1(8, 0.05, 0.8 / 10.0).expect("a design");

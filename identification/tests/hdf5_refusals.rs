@@ -1,4 +1,4 @@
-//! HDF5 files that are unusual, wrong or broken: read, or refused with a place and a way out.
+//! Unusual, wrong or broken HDF5 files are read, or refused with location and remedy.
 #![cfg(feature = "hdf5")]
 
 mod common;
@@ -54,7 +54,7 @@ fn what_is_no_vector_of_numbers_is_named() {
         let told = log(name, "run/tau(:,2)").expect_err(name);
         assert!(told.contains(what), "{told}");
     }
-    // True and false count as numbers.
+    // Booleans count as numbers.
     let flags = log("flags", "run.tau(:,1)").unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(flags.load().expect("numbers").0[100..103], [0.0, 1.0, 1.0]);
     let told = read(
@@ -69,7 +69,7 @@ fn what_is_no_vector_of_numbers_is_named() {
     );
 }
 
-/// Numbers that are the same each time.
+/// A reproducible random generator.
 struct Random(u64);
 
 impl Random {

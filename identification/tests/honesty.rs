@@ -1,4 +1,4 @@
-//! Standard deviations are honest: over many virtual experiments the truth lies within three of them.
+//! Coverage of standard deviations: the truth is within three of them in virtual experiments.
 
 mod common;
 #[path = "common/dualv.rs"]
@@ -20,7 +20,7 @@ fn identified(robot: &DualV, runs: &[Log], settings: &Settings) -> Identificatio
     identify(robot, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Root mean square, and part within 3.
+/// Root mean square, and fraction within 3.
 fn spread(misses: &[f64]) -> (f64, f64) {
     let count = misses.len() as f64;
     let squares: f64 = misses.iter().map(|miss| miss * miss).sum();
@@ -32,8 +32,8 @@ fn spread(misses: &[f64]) -> (f64, f64) {
 fn the_truth_is_within_three_correlated_deviations() {
     let robot = DualV::new();
     let (mut white, mut correlated) = (Vec::new(), Vec::new());
-    // Drives that fight a torque which returns with every tooth of the motor; before these, in the full tier,
-    // noise alone.
+    // Drives with a cogging torque that repeats with every tooth of the motor. In the full tier,
+    // first only noise.
     let seeds: &[(f64, u64)] =
         by_tier([&[(0.3, 3)][..], &[(0.0, 1), (0.0, 2), (0.3, 3), (0.3, 4)]]);
     for &(cogging, seed) in seeds {
@@ -75,6 +75,6 @@ fn the_truth_is_within_three_correlated_deviations() {
         correlated.1 >= 0.95 && (0.5..1.5).contains(&correlated.0),
         "{correlated:?}"
     );
-    // White deviations are too small then.
+    // Standard deviations for white residuals are too small then.
     assert!(white.0 > 1.5, "{white:?}");
 }

@@ -1,4 +1,4 @@
-//! Files of one run with clocks of their own: one is interpolated onto the times of the other.
+//! Files of one run with separate clocks: one is interpolated to the times of the other.
 
 mod common;
 #[path = "common/drive.rs"]
@@ -15,7 +15,7 @@ fn text(name: &str, rows: impl Iterator<Item = (f64, f64)>) -> String {
     format!("t,{name}\n{}", rows.collect::<String>())
 }
 
-/// Fails unless torques are 3 t - 1 where positions are the times.
+/// Fails unless torques are 3 t - 1, with the times as positions.
 fn is_line(log: &Log) {
     let (times, torques) = loaded(log);
     for (time, torque) in times.iter().zip(&torques) {
@@ -32,7 +32,7 @@ fn a_slower_file_is_interpolated_onto_the_times_of_the_first() {
         "q",
         (0..1001).map(|k| (f64::from(k) / 1000.0, f64::from(k) / 1000.0)),
     );
-    // 240 Hz from 0.0105 s on, up to 0.9605 s.
+    // 240 Hz from 0.0105 s to 0.9605 s.
     let times = (0..229).map(|k| 0.0105 + f64::from(k) / 240.0);
     let torques = text("tau", times.clone().map(|t| (t, 3.0 * t - 1.0)));
     let log = joined(
@@ -144,7 +144,7 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
 
 #[test]
 fn the_result_says_what_was_interpolated() {
-    // A mass of 2 kg with viscous friction of 3 N s/m that is moved by two sines.
+    // A mass of 2 kg with viscous friction of 3 N s/m, moved by two sines.
     let motion = |t: f64| {
         let sines = [(0.1, 3.0), (0.05, 7.0)].map(|(size, rate)| {
             let (sine, cosine) = f64::sin_cos(rate * t);

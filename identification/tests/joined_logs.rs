@@ -1,4 +1,4 @@
-//! Runs whose columns stand in several files, and columns that are expressions of columns.
+//! Runs with columns in several files, and columns that are expressions of columns.
 
 mod common;
 #[path = "common/drive.rs"]
@@ -12,7 +12,7 @@ use overact_identification::{
     data::{parts, read},
 };
 
-/// Reads the run `name` of these files, by their names and contents.
+/// Reads the run `name` of these files, by names and contents.
 fn run(name: &str, files: &[(&str, &str)], mapping: &Mapping) -> Result<Log, String> {
     let files = files.iter().map(|&(name, text)| (name, text.as_bytes()));
     drive::run(name, &files.collect::<Vec<_>>(), mapping)
@@ -121,13 +121,13 @@ fn columns_of_joined_files_are_called_by_their_file() {
         text.contains("write `* pi/180` behind the column"),
         "{text}"
     );
-    // One file in the place of two.
+    // One file instead of two.
     let text = told(&[POSITIONS, POSITIONS], "file2.b");
     assert!(
         text.starts_with("pos.csv: the file is given twice in one run"),
         "{text}"
     );
-    // A line too many in one file is told alone, not with what follows from it.
+    // An additional line in one file is reported alone, without its consequences.
     let text = told(
         &[POSITIONS, ("units.csv", "a;c\nrad;Nm\n1;7\n2;8\n3;9\n")],
         "file2.c",

@@ -1,4 +1,4 @@
-//! Logs larger than what is kept in memory, as Parquet and as MCAP: an allocator counts what is allocated at a time.
+//! Memory for large Parquet and MCAP logs, measured by a counting allocator.
 //!
 //! `OVERACT_LOG_MB=1000 cargo test --release -p overact-identification --features mcap --test large_logs -- --nocapture`
 //! reads files of a gigabyte.
@@ -24,10 +24,10 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 /// Six joints.
 const JOINTS: usize = 6;
 
-/// Samples that are written at a time.
+/// Samples written at a time.
 const BLOCK: usize = 50_000;
 
-/// The numbers of a sample: twelve that differ from sample to sample.
+/// Values of a sample: twelve that differ between samples.
 fn sample(k: usize) -> [[f64; JOINTS]; 2] {
     let at = |joint: usize, scale: f64| ((k * (joint + 3)) % 100_003) as f64 / scale;
     [
@@ -36,14 +36,14 @@ fn sample(k: usize) -> [[f64; JOINTS]; 2] {
     ]
 }
 
-/// Megabytes of the files.
+/// Size of the files in megabytes.
 fn size() -> u64 {
     let wanted = std::env::var("OVERACT_LOG_MB");
     let wanted = wanted.ok().and_then(|size| size.parse().ok());
     wanted.unwrap_or(by_tier([12, 60]))
 }
 
-/// Writes Parquet until it has so many megabytes, and tells how many samples it has.
+/// Writes a Parquet file of the wanted size, and returns its number of samples.
 fn write_parquet(path: &Path) -> usize {
     let names =
         (0..JOINTS).map(|joint| format!("required double q{joint}; required double tau{joint};"));
@@ -82,7 +82,7 @@ fn write_parquet(path: &Path) -> usize {
     count
 }
 
-/// Writes MCAP packed by LZ4 until it has so many megabytes, and tells how many samples it has.
+/// Writes an MCAP file with LZ4 compression of the wanted size, and returns its samples.
 #[cfg(feature = "mcap")]
 fn write_mcap(path: &Path) -> usize {
     use std::io::Write;
@@ -138,7 +138,7 @@ fn mapping(time: &str, resample: Option<f64>, name: impl Fn(usize) -> [String; 2
     }
 }
 
-/// Goes twice through a log, looking at all numbers, and tells what it took.
+/// Reads a log twice, checks all numbers, and prints the memory used.
 fn measured(path: &Path, mapping: &Mapping, count: usize) {
     ALLOCATOR.reset_peak_usage();
     let before = ALLOCATOR.current_usage_as_mb();
@@ -179,7 +179,7 @@ fn measured(path: &Path, mapping: &Mapping, count: usize) {
     if mapping.resample.is_none() {
         assert_eq!(k, count);
     }
-    // Eight megabytes is what a run may have before it stays on the disk.
+    // Eight megabytes is the limit for runs in memory.
     assert!(most < 26.0, "{most} MB");
 }
 

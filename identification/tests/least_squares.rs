@@ -10,13 +10,13 @@ use overact_identification::{
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Relative tolerance against the dense formulas, which square the condition number.
+/// Relative tolerance to the dense formulas, which square the condition number.
 const TOLERANCE: f64 = 1e-10;
 
 const LINES: [(usize, f64); 3] = [(400, 0.05), (300, 2.0), (350, 0.3)];
 const TRUTH: [f64; 4] = [3.0, -2.0, 0.5, 0.004];
 
-/// Dense [W Y] of each line, with noise of a deviation of its own. Column 0 is missing in line 2.
+/// Dense [W Y] of each line, with its own noise level. Column 0 is missing in line 2.
 fn dense() -> Vec<(DMatrix<f64>, DVector<f64>)> {
     let mut generator = Pcg64::seed_from_u64(7);
     LINES
@@ -28,7 +28,7 @@ fn dense() -> Vec<(DMatrix<f64>, DVector<f64>)> {
                 if line == 2 && column == 0 { 0.0 } else { value }
             });
             let noise = DVector::from_fn(rows, |_, _| {
-                // Uniform with the deviation of the line.
+                // Uniform with the standard deviation of the line.
                 generator.random_range(-1.0..1.0) * deviation * 3.0_f64.sqrt()
             });
             let y = &w * DVector::from_row_slice(&TRUTH) + noise;
@@ -37,7 +37,7 @@ fn dense() -> Vec<(DMatrix<f64>, DVector<f64>)> {
         .collect()
 }
 
-/// The system of those lines, pushed in unequal pieces.
+/// The system of these lines, pushed in unequal pieces.
 fn system(lines: &[(DMatrix<f64>, DVector<f64>)]) -> System {
     let factors = lines.iter().map(|(w, y)| {
         let mut rows = w.clone().insert_column(TRUTH.len(), 0.0);
@@ -63,7 +63,7 @@ fn settings(weighted: bool) -> Settings {
     }
 }
 
-/// Stacks the lines, each divided by a deviation.
+/// Stacks the lines, each divided by a standard deviation.
 fn stack(
     lines: &[(DMatrix<f64>, DVector<f64>)],
     deviations: &[f64],
@@ -83,7 +83,7 @@ fn stack(
     all
 }
 
-/// χ = (WᵀW)^-1 WᵀY and its deviations by the normal equations.
+/// χ = (WᵀW)^-1 WᵀY and its standard deviations by the normal equations.
 fn textbook(w: &DMatrix<f64>, y: &DVector<f64>) -> (DVector<f64>, DVector<f64>, f64) {
     let inverse = (w.transpose() * w).try_inverse().expect("regular");
     let x = &inverse * w.transpose() * y;
@@ -118,7 +118,7 @@ fn ordinary_least_squares_are_the_textbook_ones() {
     assert!((found.condition_number - condition).abs() < TOLERANCE * condition);
     assert_eq!(found.equations, 1050);
     assert_eq!(found.lines[1].equations, 300);
-    // The sample variance takes the mean off and divides by N - 1.
+    // The sample variance subtracts the mean and divides by N - 1.
     let sample = Settings {
         normalisation: Normalisation::SampleVariance,
         ..settings(false)
@@ -131,7 +131,7 @@ fn ordinary_least_squares_are_the_textbook_ones() {
 #[test]
 fn weighted_least_squares_are_the_textbook_ones() {
     let lines = dense();
-    // Each line by itself; the third one has no column 0, so three parameters only.
+    // Each line separately; the third one has no column 0, so three parameters only.
     let own: Vec<f64> = lines
         .iter()
         .enumerate()
@@ -169,21 +169,21 @@ fn elimination_removes_the_worst_and_says_so() {
     let names: Vec<String> = ["a", "b", "c", "d"].map(String::from).to_vec();
     let start = estimate(&system, &[0, 1, 2, 3], &settings(true)).expect("an estimate");
     let found = essential(&system, &[0, 1, 2, 3], &names, &start, &settings(true)).expect("a set");
-    // 0.004 drowns in a noise of 0.05.
+    // 0.004 is hidden in a noise of 0.05.
     assert_eq!(found.removals[0].name, "d");
     assert!(!found.removals[0].significant);
     assert_eq!(found.selected, [0, 1, 2]);
     assert!(found.estimation.deviation_ratio() < 10.0);
     let before = found.removals[0].relative_error_before_percent;
     assert!((before - start.relative_error_percent).abs() < 1e-12);
-    // A stricter ratio walks on and cancels a parameter that is well determined ...
+    // A stricter ratio continues and removes a well-determined parameter ...
     let strict = Settings {
         r_sigma: 1.5,
         ..settings(true)
     };
     let found = essential(&system, &[0, 1, 2, 3], &names, &start, &strict).expect("a set");
     assert!(found.removals.iter().any(|removal| removal.significant));
-    // ... unless the second opinion counts.
+    // ... unless the significance test counts.
     let careful = Settings {
         keep_significant: true,
         ..strict

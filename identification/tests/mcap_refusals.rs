@@ -1,4 +1,4 @@
-//! MCAP files that are unusual, wrong or broken: read, or refused with a place and a way out.
+//! Unusual, wrong or broken MCAP files are read, or refused with location and remedy.
 #![cfg(feature = "mcap")]
 
 mod common;
@@ -36,7 +36,7 @@ fn refused(bytes: &[u8]) -> String {
     log(bytes).expect_err("an error")
 }
 
-/// Messages of one joint on one topic, each made by `state`.
+/// Messages of one joint on one topic, each created by `state`.
 fn messages(state: impl Fn(u64) -> Vec<u8>) -> Vec<Vec<u8>> {
     let mut records = vec![topic(1, "/joint_states", CDR)];
     records.extend((0..50).map(|k| message(1, k * STEP, &state(k))));
@@ -54,7 +54,8 @@ fn files_of_any_make_have_the_same_numbers() {
     assert_eq!(expected.0, (0..50).map(f64::from).collect::<Vec<_>>());
     assert_eq!(expected.1[7], -14.0);
     assert!((expected.2 - 100.0).abs() < 1e-6);
-    // Chunks with and without a checksum, records of unknown kinds, a summary, other topics with long messages.
+    // Chunks with and without checksum, unknown records, a summary, other topics with long
+    // messages.
     let mut other = vec![topic(2, "/camera", ("sensor_msgs/msg/Image", "cdr"))];
     other.push(record(200, &[7; 100]));
     other.push(message(2, 0, &vec![1; 5_000_000]));
@@ -132,7 +133,7 @@ fn topics_with_clocks_of_their_own_are_joined_by_time() {
         note.contains("/slow of ") && note.contains("interpolated onto the times of /fast of "),
         "{note}"
     );
-    // Beside a text whose times count from the same second.
+    // Joined with a text whose times count from the same second.
     let text = "time,tau\n".to_owned()
         + &(0..400)
             .map(|k| format!("{},{k}\n", f64::from(k) / 100.0))
@@ -202,7 +203,7 @@ fn messages_that_do_not_fit_are_located() {
     };
     let (_, _, frequency) = numbers(run("a.mcap", &[("a.mcap", &unstamped)], &recorded));
     assert!((frequency - 100.0).abs() < 1e-6);
-    // Drives' clocks jitter: refused, and resampled on request.
+    // Drive clocks jitter: refused, and resampled on request.
     let jitter = |k: u64| {
         state(
             k * STEP + k % 3 * 1_000_000,
@@ -245,7 +246,7 @@ fn files_without_states_of_joints_say_what_they_have() {
     );
     let told = refused(&file(&[]));
     assert!(told.contains("it has no topic"), "{told}");
-    // A topic on which no message came.
+    // A topic without messages.
     let told = refused(&file(&[topic(1, "/joint_states", CDR)]));
     assert!(
         told.contains("it has /joint_states (sensor_msgs/msg/JointState, cdr)"),
@@ -294,7 +295,7 @@ fn files_that_are_cut_off_or_broken_are_located() {
     broken("zstd", &all, (size, 0), "it can't be unpacked");
     broken("lz4", &all, (size, 0), "it can't be unpacked");
     broken("", &all, (u64::MAX, 0), "it has fewer bytes than it says");
-    // Lengths that no file has.
+    // Impossible lengths.
     for length in [u64::MAX, 1 << 40, 1 << 63] {
         let mut record = record(5, &[0; 30]);
         record[1..9].copy_from_slice(&length.to_le_bytes());
@@ -311,7 +312,7 @@ fn files_that_are_cut_off_or_broken_are_located() {
     );
 }
 
-/// Numbers that are the same each time.
+/// A reproducible random generator.
 struct Random(u64);
 
 impl Random {
@@ -343,7 +344,7 @@ fn files_with_any_wrong_byte_are_read_or_refused() {
             let mut bytes = bytes.clone();
             match k % 4 {
                 0 => bytes.truncate(random.below(bytes.len())),
-                // Its end as it was: what is missing is in the middle.
+                // The end is intact: a piece in the middle is missing.
                 1 => {
                     let start = random.below(bytes.len() - 50);
                     let count = 1 + random.below(40);

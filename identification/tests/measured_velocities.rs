@@ -1,4 +1,4 @@
-//! Velocities that were measured, in place of differences of the positions.
+//! Measured velocities instead of differences of the positions.
 
 mod common;
 
@@ -10,8 +10,9 @@ use overact_identification::{Log, Mapping, Settings, Time, data::read, motion};
 
 const FREQUENCY: f64 = 500.0;
 
-/// Position (deg), velocity (deg/s) and force at a sample. The velocity is not that of the position, so that
-/// it is seen which one is used.
+/// Position (deg), velocity (deg/s) and force at a sample.
+///
+/// The velocity is not that of the position, to show which one is used.
 fn sample(k: usize) -> [f64; 3] {
     let t = k as f64 / FREQUENCY;
     [t.sin(), 3.0 * (2.0 * t).cos(), t]
@@ -28,7 +29,7 @@ fn mapping(velocities: &[&str]) -> Mapping {
     }
 }
 
-/// A log of so many samples.
+/// A log of this number of samples.
 fn log(samples: usize, velocities: &[&str]) -> (Log, tempfile::TempDir) {
     let mut text = String::new();
     for k in 0..samples {

@@ -1,7 +1,7 @@
-//! Memory does not grow with the log: more samples take hardly more.
+//! Memory is nearly independent of the log's length.
 //!
-//! The test is alone in its file, and so in its process, whose allocator counts what is allocated at a time.
-//! The process's resident size would say less: what the allocator keeps depends on threads and chance.
+//! The test is alone in its file and process, whose allocator counts allocations. The process's
+//! resident size is less exact: it depends on threads and chance.
 
 mod common;
 #[path = "common/dualv.rs"]
@@ -48,8 +48,9 @@ fn write(path: &Path, record: &Record, times: usize) {
     }
 }
 
-/// Identifies from a log that repeats the record; progress is told all the way. Returns the most memory that
-/// was allocated at a time, MB.
+/// Identifies from a log that repeats the record, and returns the peak of allocated memory, MB.
+///
+/// It also checks that progress is reported throughout.
 fn identified(
     robot: &DualV,
     folder: &Path,
@@ -62,7 +63,7 @@ fn identified(
     let log = read(&path, &Mapping::for_robot(&robot.info()), false).expect("a log");
     assert!(times < 27 || !log.in_memory());
     let settings = Settings {
-        // Few equations, so that what is kept of them to judge their residuals is small beside the log.
+        // Few equations, so that stored ones are small compared with the log.
         decimation: 400,
         instruments,
         ..settings(robot)
@@ -92,9 +93,10 @@ fn identified(
     f64::from(ALLOCATOR.peak_usage_as_mb())
 }
 
-/// Repetitions of the record, how many more, instruments, and by how much more memory (MB) these may take. The
-/// decimation's windows are full after about half a million samples only, with instruments after some more:
-/// until then some memory is taken for them.
+/// Repetitions of the record, additional ones, instruments, and allowed additional memory (MB).
+///
+/// The decimation's buffers are full only after about half a million samples, or more with
+/// instruments. Until then they grow.
 type Case = (usize, usize, Instruments, f64);
 
 const QUICK: &[Case] = &[(27, 8, Instruments::None, 2.0)];
@@ -114,10 +116,10 @@ fn more_samples_take_hardly_more_memory() {
     let folder = tempfile::tempdir().expect("a folder");
     for &(times, more, instruments, allowed) in by_tier([QUICK, THOROUGH]) {
         let most = |times| identified(&robot, folder.path(), &record, (times, instruments));
-        // The first time, threads are started and tables made that stay.
+        // The first call starts threads and creates tables that stay.
         most(1);
         let (short, long) = (most(times), most(times + more));
-        // The numbers of twenty additional records alone would take 6.4 MB, those of eight 2.6.
+        // The samples of twenty additional records alone would take 6.4 MB, those of eight 2.6.
         println!("{instruments:?}: at most {short:.1} MB at a time, then {long:.1} MB");
         assert!(long < short + allowed, "{short} MB, then {long} MB");
     }

@@ -44,7 +44,7 @@ fn a_parquet_file_is_interpolated_as_a_text_is() {
     let positions = (0..1001).map(|k| f64::from(k) / 1000.0);
     let positions: String = positions.map(|t| row(t, t)).collect();
     let positions = format!("t,q\n{positions}");
-    // 240 Hz from 0.0105 s on, up to 0.9605 s.
+    // 240 Hz from 0.0105 s to 0.9605 s.
     let time: Vec<f64> = (0..229).map(|k| 0.0105 + f64::from(k) / 240.0).collect();
     let torque: Vec<f64> = time.iter().map(|t| 3.0 * t - 1.0).collect();
     let text: String = time
@@ -66,7 +66,7 @@ fn a_parquet_file_is_interpolated_as_a_text_is() {
 
 #[test]
 fn instants_of_two_files_count_from_the_same_second() {
-    // The second file begins in another second, 20 ms later.
+    // The second file starts in another second, 20 ms later.
     let start = 1_700_000_000_990_000_i64;
     let first: Vec<i64> = (0..100).map(|k| start + 1000 * k).collect();
     let second: Vec<i64> = (0..100).map(|k| start + 20_000 + 500 * k).collect();
@@ -88,7 +88,7 @@ fn instants_of_two_files_count_from_the_same_second() {
         ("i.parquet", &file("tau", &second)),
     );
     let (positions, torques) = loaded(&log.unwrap_or_else(|error| panic!("{error}")));
-    // From 20 ms to 69 ms, without the 13 samples at either end that the low-pass takes.
+    // From 20 ms to 69 ms, without 13 samples at either end for the low-pass filter.
     assert_eq!((positions[0], positions.len()), (33_000.0, 24));
     let differs = |(q, tau): (&f64, &f64)| (q - tau).abs() > 1e-6;
     assert!(!positions.iter().zip(&torques).any(differs));

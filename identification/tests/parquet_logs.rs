@@ -1,5 +1,7 @@
-//! Logs as Parquet: written here with the library that reads them, kept as PyArrow, Polars and DuckDB wrote them
-//! (`written/write.py`), and by PyArrow and Polars themselves where Python has them. The same numbers come from a Parquet file as from a text.
+//! Logs as Parquet give the same numbers as text.
+//!
+//! They are written here with the library that reads them, stored from PyArrow, Polars and DuckDB
+//! (`written/write.py`), and written by PyArrow and Polars if Python has them.
 
 mod common;
 #[path = "common/drive.rs"]
@@ -62,7 +64,7 @@ fn the_same_numbers_as_from_a_text() {
             }
         }
     }
-    // The name says nothing.
+    // The file name has no effect.
     let file = written(SCHEMA, &columns);
     let misnamed = run("a.csv", &[("a.csv", &file)], &mapping);
     assert_eq!(numbers(misnamed), expected);
@@ -143,7 +145,7 @@ fn numbers_of_every_kind() {
 
 #[test]
 fn times_are_read_in_seconds() {
-    // 2023-11-14 22:13:20 and 5 kHz from 0.9 s later on, in which doubles of seconds since 1970 are too coarse.
+    // 2023-11-14 22:13:20.9 and 5 kHz, where doubles of seconds since 1970 are too coarse.
     let start = 1_700_000_000_900_000_000_i64;
     let steps: Vec<i64> = (0..6000).map(|k| 200_000 * k).collect();
     let at = |unit: i64| -> Vec<i64> { steps.iter().map(|step| (start + step) / unit).collect() };
@@ -169,15 +171,17 @@ fn times_are_read_in_seconds() {
         };
         let (offset, _, frequency) = numbers(log(&file, &mapping));
         assert!((frequency - 5000.0).abs() < 1e-6, "{name}: {frequency}");
-        // Instants count from the whole second in which the file begins.
+        // Instants count from the whole second in which the file starts.
         let expected = if name == "day" { 0.0 } else { 0.9 };
         let differs = |offset: &f64| (offset - expected).abs() > 1e-12;
         assert!(!offset.iter().any(differs), "{name}: {}", offset[0]);
     }
 }
 
-/// What PyArrow 26 adds to a file with the columns `t` (duration in ns), `q_1`, `ts` (timestamp), `d` (duration in
-/// µs), `l` (a list) and `s` (a structure with a duration's name in it).
+/// Arrow schema that PyArrow 26 adds to a file with these columns.
+///
+/// `t` (duration in ns), `q_1`, `ts` (timestamp), `d` (duration in µs), `l` (a list) and `s` (a
+/// structure with a duration's name in it).
 const PYARROW: &str = "/////+ABAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAYAAACEAQAASAEAABwBAADwAAAAlAAAAAQ\
     AAACk/v//AAABDRgAAAAcAAAABAAAAAIAAABAAAAAEAAAAAEAAABzAAAAeP///9D+//8AAAECEAAAABQAAAAEAAAAAAAAAAEAAABkAAAA1P///wAAAAFAAAAA/P\
     7//wAAAQIQAAAAHAAAAAQAAAAAAAAAAQAAAHgAAAAIAAwACAAHAAgAAAAAAAABQAAAADD///8AAAEMFAAAABwAAAAEAAAAAQAAABQAAAABAAAAbAAAAAQABAAEA\
@@ -185,7 +189,7 @@ const PYARROW: &str = "/////+ABAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAAB
     AQoQAAAAFAAAAAQAAAAAAAAAAgAAAHRzAACi////AAADANj///8AAAEDEAAAABQAAAAEAAAAAAAAAAMAAABxXzEAyv///wAAAgAQABQACAAGAAcADAAAABAAEAA\
     AAAAAARIQAAAAGAAAAAQAAAAAAAAAAQAAAHQABgAIAAYABgAAAAAAAwA=";
 
-/// What Polars 2 adds to a file with the columns `t` (duration in µs), `q_1` and `ts` (timestamp).
+/// Arrow schema that Polars 2 adds for `t` (duration in µs), `q_1` and `ts` (timestamp).
 const POLARS: &str = "/////8YAAAAEAAAA8v///xQAAAAEAAEAAAAKAAsACAAKAAQA+P///wwAAAAIAAgAAAAEAAMAAABcAAAAMAAAAAQAAACc////HAAAABAA\
     AAAIAAAAAQoAAAAAAACa////AgAAAAIAAAB0cwAAxP///xwAAAAQAAAACAAAAAEDAAAAAAAAwv///wIAAAADAAAAcV8xAOz///8wAAAAIAAAABgAAAABEgAAE\
     AASAAQAEAARAAgAAAAMAAAAAAD6////AgAGAAYABAABAAAAdAA=";
@@ -211,7 +215,7 @@ fn durations_are_told_from_the_schema_of_arrow() {
     assert_eq!((of_d, frequency), (vec![1e-6, 2e-6, 3e-6], 500.0));
     let (_, of_d, frequency) = read_as(POLARS);
     assert_eq!((of_d, frequency), (vec![1.0, 2.0, 3.0], 0.5));
-    // Whole numbers without a unit are numbers, and a broken schema says nothing.
+    // Integers without a unit are numbers, and a broken schema is ignored.
     for arrow in [
         "",
         "////",
@@ -224,7 +228,7 @@ fn durations_are_told_from_the_schema_of_arrow() {
     }
 }
 
-/// Files that PyArrow and Polars themselves write, and what both refuse to be.
+/// Files that PyArrow and Polars write themselves, and a format that both refuse.
 const SCRIPT: &str = "
 import sys, datetime, numpy, pyarrow, pyarrow.parquet as pq
 f = sys.argv[1] + '/'

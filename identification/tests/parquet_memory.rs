@@ -1,4 +1,4 @@
-//! Parquet files larger than what is kept in memory: an allocator counts what is allocated at a time.
+//! Memory for large Parquet files, measured by a counting allocator.
 
 #[path = "common/parquet.rs"]
 mod parquet_file;
@@ -35,7 +35,7 @@ fn a_large_file_stays_on_the_disk() {
         ];
         let output = File::create(&path).expect("a file");
         let properties = WriterProperties::builder().set_dictionary_enabled(false);
-        // All rows are in one group, as writers make it of a million rows and less.
+        // All rows are in one group, as writers do for up to a million rows.
         write_into(output, properties.build(), schema, &columns, usize::MAX);
     }
     let mapping = Mapping {
@@ -54,7 +54,7 @@ fn a_large_file_stays_on_the_disk() {
     assert!(!log.in_memory());
     ALLOCATOR.reset_peak_usage();
     let before = ALLOCATOR.current_usage_as_mb();
-    // Again and again, as filters and checks go through a run.
+    // Repeatedly, as filters and checks read a run.
     for _ in 0..by_tier([1, 3]) {
         let mut reader = log.reader().expect("a reader");
         let mut sample = 0_u32;
@@ -69,6 +69,6 @@ fn a_large_file_stays_on_the_disk() {
     }
     let most = ALLOCATOR.peak_usage_as_mb() - before;
     println!("at most {most:.1} MB more than before were in memory at a time");
-    // All numbers of the file take 14 MB.
+    // All values of the file take 14 MB.
     assert!(most < 4.0, "{most} MB");
 }

@@ -1,4 +1,4 @@
-//! Parquet files that are no logs, or broken: each is named with a way out, whichever byte of it is wrong.
+//! Parquet files that are no logs, or broken in any byte, are refused with a remedy.
 
 mod common;
 #[path = "common/drive.rs"]
@@ -18,7 +18,7 @@ use parquet::{
 use parquet_drive::{SCHEMA, log, samples};
 use parquet_file::{Cells, written, written_with};
 
-/// A message can stand in a terminal.
+/// Checks that a message suits a terminal.
 fn assert_legible(told: &str) {
     let is_control = |c: char| c.is_control() && c != '\n';
     assert!(!told.contains(is_control), "{told:?}");
@@ -41,7 +41,7 @@ fn cells_without_numbers_are_located() {
          a.parquet: `q`: sample 2 is not a finite number\n\
          a.parquet: `tau`: sample 3 is not a finite number"
     );
-    // A file without any value in a column, of which only the first cells are told.
+    // A column without any value, of which only the first cells are reported.
     let nothing = vec![None; 5000];
     let file = written(
         "message log { optional double q; }",
@@ -68,7 +68,7 @@ fn columns_that_are_no_numbers_are_named() {
             Cells::Double(&[3.0, 4.0]),
         ],
     );
-    // They may stand beside the columns that are read, and count.
+    // They may occur with requested columns, and count.
     assert_eq!(numbers(log(&file, &untimed("q", "tau"))).1, [3.0, 4.0]);
     assert_eq!(numbers(log(&file, &untimed("q", "$6"))).1, [3.0, 4.0]);
     let way_out = "help: write a column of numbers (float64) for each signal and each actuator";
@@ -137,7 +137,7 @@ fn files_that_are_cut_off_or_empty_are_refused() {
         );
         assert_legible(&told);
     }
-    // A middle that is lost: the pages are somewhere else than the file says.
+    // The middle is missing: the pages are not where the file says.
     let half = [&file[..4], &file[file.len() / 2..]].concat();
     assert!(log(&half, &mapping).is_err());
     assert_eq!(

@@ -1,5 +1,6 @@
-//! Case 1 and all partitions of case 2 on a robot of two coordinates and three actuators whose
-//! Jacobian depends on the pose.
+//! Platform projection and all actuator projections of a robot with r = 2 and n = 3.
+//!
+//! Its Jacobian depends on the pose.
 
 mod common;
 #[path = "common/point.rs"]
@@ -30,8 +31,9 @@ fn settings() -> Settings {
     settings
 }
 
-/// A run; the torques are those of the true parameters on the filtered motion, with a preload in
-/// the null space of Jᵀ and noise of the deviation `noise` (N).
+/// A run with torques of the true parameters on the filtered motion.
+///
+/// It has a preload in the null space of Jᵀ, and noise of size `noise` (N).
 fn run(name: &str, seed: f64, noise: f64) -> Log {
     let (frequency, samples) = (500.0, 5000);
     let wave = |t: f64, phase: f64| -> f64 {
@@ -58,7 +60,7 @@ fn run(name: &str, seed: f64, noise: f64) -> Log {
         ..settings()
     };
     let motion = motion(&Point, &idle, &whole, &|_, _| {}).expect("a motion");
-    // The filter treats each leg alone, and its ends are reflections, so the loops close nearly.
+    // The filter acts on each leg separately, and reflects its ends, so the loops nearly close.
     println!("{name}: closure residual {:.1e} m", motion.closure_residual);
     assert!(motion.closure_residual < 1e-3);
     let mut generator = Pcg64::seed_from_u64(seed as u64);
@@ -131,7 +133,7 @@ fn every_partition_recovers_the_truth() {
         for parameter in &outcome.base.parameters {
             let known = parameter.true_value.expect("known");
             let error = (parameter.value - known).abs();
-            // Case 2 multiplies before the decimation filter, so it stays exact, too.
+            // The actuator projection multiplies before the decimation filter, so it is exact, too.
             assert!(
                 error < 1e-8 * known.abs(),
                 "{projection:?} {}: {error:e}",
@@ -146,8 +148,7 @@ fn every_partition_recovers_the_truth() {
     }
 }
 
-/// The largest condition number of the kept rows, sample by sample, with the columns of J_p^inv divided
-/// by their norms at home.
+/// Largest condition number of the kept rows, with columns of J_p^inv scaled by norms at home.
 fn worst_condition(motions: &[Motion], projection: &Projection) -> f64 {
     let Projection::Actuators(kept) = projection else {
         return 1.0;
@@ -198,7 +199,7 @@ fn noise_is_covered_by_the_standard_deviations() {
     {
         for parameter in &estimate.parameters {
             let error = parameter.value - parameter.true_value.expect("known");
-            // Five deviations: the decimation filter colours the noise a little.
+            // Five standard deviations: the decimation filter colours the noise a little.
             assert!(
                 error.abs() < 5.0 * parameter.standard_deviation,
                 "{}: {error} against {}",
@@ -209,7 +210,7 @@ fn noise_is_covered_by_the_standard_deviations() {
         let mass = &estimate.parameters[0];
         assert!(mass.relative_standard_deviation_percent < 0.1);
     }
-    // The cross-validation has the size of the noise, like the run identified from.
+    // The cross-validation error has the size of the noise, like that of the training run.
     let estimated = result.cross_validation.iter();
     for cross in estimated.filter(|one| one.stage != Stage::Consistent) {
         let own = result
@@ -222,8 +223,7 @@ fn noise_is_covered_by_the_standard_deviations() {
     }
 }
 
-/// ||Y - W χ|| and ||Y|| of a run on the platform's equations, χ being the base parameters of another
-/// run.
+/// ||Y - W χ|| and ||Y|| of a run for the platform's equations, with χ from another run.
 fn predicted(run: &Log, from: &Log) -> (f64, f64) {
     let dataset = Dataset {
         runs: std::slice::from_ref(from),
@@ -260,14 +260,14 @@ fn choices_are_judged_by_runs_that_were_held_out() {
     let choices = [vec![0, 1], vec![0, 2], vec![1, 2]];
     let study = study(&Point, &dataset, &choices, &settings(), &|_| {}).expect("a study");
     let platform = study.platform.held_out_percent.expect("folds");
-    // The weights of the lines come from both runs, those of `predicted` from one.
+    // The line weights come from both runs, those of `predicted` from one.
     assert!(
         (platform / expected - 1.0).abs() < 0.01,
         "{platform} {expected}"
     );
     assert_eq!(study.partitions.len(), 3);
     for choice in &study.partitions {
-        // Judged on the platform, where case 1 predicts best, if only just.
+        // Tested on the platform, where its own projection predicts best, if only just.
         let held_out = choice.held_out_percent.expect("folds");
         assert!(
             held_out > 0.99 * platform && held_out < 1.5 * platform,

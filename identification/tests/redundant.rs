@@ -1,5 +1,4 @@
-//! A redundant robot with synthetic data: both cases, both partitions and the payload recover the
-//! truth.
+//! Both projections, both partitions and the payload recover the truth from synthetic data.
 
 mod common;
 
@@ -15,7 +14,7 @@ use overact_identification::{
 /// Values of the robot's parameters and the payload's, in column order.
 const TRUTH: [f64; 10] = [0.4, 3.0, 0.8, 0.3, 0.1, 0.5, 0.2, -0.1, 5.0, 2.5];
 
-/// Relative tolerance for data without noise: decimation and least squares leave rounding only.
+/// Relative tolerance without noise, for rounding of decimation and least squares.
 const EXACT: f64 = 1e-9;
 
 fn settings() -> Settings {
@@ -26,7 +25,7 @@ fn settings() -> Settings {
     settings
 }
 
-/// The position of the mass at a time, s; `seed` varies the trajectory.
+/// Position of the mass at a time, s; `seed` varies the trajectory.
 fn trajectory(t: f64, seed: f64) -> f64 {
     (1..=4)
         .map(|k| {
@@ -78,7 +77,7 @@ fn run(name: &str, seed: f64, payload: bool, asymmetry: f64) -> Log {
     Log::new(name, frequency, 2, positions, torques, payload).expect("a run")
 }
 
-/// The truth by name.
+/// True values by name.
 fn truth() -> BTreeMap<String, f64> {
     let info = PAIR.info();
     info.parameters
@@ -181,7 +180,7 @@ fn times_count_from_the_start_of_the_log() {
     assert_eq!(moved.time(0), 20.0 / 500.0);
     let last = moved.samples - 1;
     assert_eq!(moved.time(last), (4000 - 30 - 1) as f64 / 500.0);
-    // So many samples that plots show every second one.
+    // The number of samples makes plots show every second one.
     let settings = Settings {
         decimation: 2,
         ..settings()
@@ -270,7 +269,7 @@ fn friction_splits_by_the_direction_of_each_joint() {
     assert_eq!(positive.name, "fv_pos_1_leg1R");
     assert_eq!(positive.regrouping.len(), 1);
     assert_eq!(positive.regrouping[0].parameter, "fv_neg_1_leg2");
-    // Where the mass moves backwards, motor 2 moves forwards: fv_pos_2 + fv_neg_1/4, and with the
+    // If the mass moves backwards, motor 2 moves forwards: fv_pos_2 + fv_neg_1/4, and with the
     // offsets fs_pos_2 + fs_neg_1/2.
     let expected = [5.8, 5.7, 1.25, 1.7, 0.35];
     for (parameter, expected) in result.estimates[0].parameters.iter().zip(expected) {
@@ -282,7 +281,7 @@ fn friction_splits_by_the_direction_of_each_joint() {
             parameter.value
         );
     }
-    // The offset of the truth stands in the two Coulomb coefficients.
+    // The two Coulomb coefficients contain the true offset.
     let coulomb = &result.estimates[0].parameters[3];
     assert_eq!(coulomb.name, "fs_pos_1_leg1R");
     assert!((coulomb.true_value.expect("known") - 1.7).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Runs whose time is not uniform, resampled at uniform times on request.
+//! Runs with non-uniform time, resampled at uniform times on request.
 
 mod common;
 #[path = "common/drive.rs"]
@@ -9,13 +9,13 @@ use std::f64::consts::TAU;
 use drive::{loaded, run, timed};
 use overact_identification::{Log, Mapping, Time};
 
-/// A text of times and two values at each of them.
+/// A text of times with two values each.
 fn text(rows: impl Iterator<Item = (f64, [f64; 2])>) -> String {
     let rows = rows.map(|(time, [q, tau])| format!("{time},{q},{tau}\n"));
     format!("t,q,tau\n{}", rows.collect::<String>())
 }
 
-/// Times at a rate with an error of up to `part` of a step, which is the same each time.
+/// Times at a rate with reproducible errors of up to `part` of a step.
 fn jitter(count: u32, rate: f64, part: f64) -> impl Iterator<Item = f64> {
     let off = |k: u32| f64::from(k.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 23) - 1.0;
     (0..count).map(move |k| (f64::from(k) + part * off(k)) / rate)
@@ -36,7 +36,7 @@ fn log(rate: f64, rows: impl Iterator<Item = (f64, [f64; 2])>) -> Log {
     resampled(rate, rows).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The largest error of the positions, which should be `expected` of the times, which are the torques.
+/// Largest error of the positions from `expected` of the times, which are the torques.
 fn error(log: &Log, expected: impl Fn(f64) -> f64) -> f64 {
     let (positions, times) = loaded(log);
     let errors = positions
@@ -56,7 +56,7 @@ fn the_error_of_interpolation_is_what_is_stated() {
         );
         assert_eq!(log.sampling_frequency(), 100.0);
         assert!(log.samples() >= 498, "{}", log.samples());
-        // Its last digits differ, as those of a polynomial do.
+        // The last digits differ, as polynomials have rounding errors.
         let (_, times) = loaded(&log);
         let first = times[0];
         for (k, time) in times.iter().enumerate() {
@@ -65,7 +65,7 @@ fn the_error_of_interpolation_is_what_is_stated() {
                 "{k}: {time}"
             );
         }
-        // Steps are (1 + 2 part) hundredths of a second at most; at the ends the bound is larger.
+        // Steps are at most (1 + 2 part) hundredths of a second; the bound is larger at the ends.
         let derivative = (TAU * frequency * (1.0 + 2.0 * part) / 100.0).powi(6);
         let own = error(&log, motion);
         assert!(
@@ -118,7 +118,7 @@ fn nothing_is_folded_when_the_rate_is_lowered() {
     let worst = error(&own, slow);
     println!("{worst:.2e} of a sine of 180 Hz is left at 100 Hz");
     assert!(worst < 1e-3, "{worst}");
-    // The kernel's length is left out at both ends, 0.13 s each.
+    // The kernel's length is excluded at both ends, 0.13 s each.
     assert!((373..=375).contains(&own.samples()), "{}", own.samples());
     let note = own.note().expect("a note");
     assert!(
@@ -135,7 +135,7 @@ fn nothing_is_folded_when_the_rate_is_lowered() {
 
 #[test]
 fn samples_at_nearly_the_same_time_do_not_make_noise_grow() {
-    // Each second sample comes a microsecond after the other one, with noise of 1.
+    // Every second sample is a microsecond after the previous one, with noise of size 1.
     let rows = (0..2000_u32).map(|k| {
         let time = f64::from(k / 2) / 100.0 + f64::from(k % 2) * 1e-6 + f64::from(k / 2 % 3) * 1e-3;
         (time, [if k % 2 == 0 { 1.0 } else { -1.0 }, time])
@@ -178,7 +178,7 @@ fn times_may_be_expressions_and_stand_in_several_files() {
         note.contains("b.csv was resampled at 100 Hz onto common times"),
         "{note}"
     );
-    // Times on which nobody agrees.
+    // Times without overlap.
     let late = torques.replace("\n", "\n1");
     let files = [("a.csv", positions.as_bytes()), ("b.csv", late.as_bytes())];
     let told = run("a.csv+b.csv", &files, &at(100.0)).expect_err("apart");

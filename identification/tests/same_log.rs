@@ -1,5 +1,7 @@
-//! The same log in every format gives the same numbers: as NumPy, SciPy, PyArrow, h5py, mcap and rosbags wrote it
-//! (`written/same_log.py`), kept here, and written anew by them where Python has them.
+//! The same log in every format gives the same numbers.
+//!
+//! The files were written by NumPy, SciPy, PyArrow, h5py, mcap and rosbags (`written/same_log.py`),
+//! and are written again if Python has these libraries.
 
 mod common;
 #[path = "common/drive.rs"]
@@ -37,7 +39,7 @@ fn matrices(prefix: &str) -> Mapping {
     mapping(&format!("{prefix}t"), names)
 }
 
-/// The files of every format that this build reads, each with what its columns are called.
+/// The files of every supported format, with the names of their columns.
 fn files() -> Vec<(&'static str, Mapping)> {
     let flat = [["q1", "q2"], ["dq1", "dq2"], ["tau1", "tau2"]];
     let numbered = [["$2", "$3"], ["$4", "$5"], ["$6", "$7"]];
@@ -118,7 +120,7 @@ fn all_are_the_log(folder: &Path) {
     }
 }
 
-/// What is estimated of a drive that moves as the second joint under the torque of the first, and what is left.
+/// Estimates and residual of a drive with the second joint's motion and the first one's torque.
 fn estimated(path: &Path, mapping: &Mapping) -> Vec<f64> {
     let own = Mapping {
         positions: mapping.positions[1..].to_vec(),

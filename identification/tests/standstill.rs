@@ -1,4 +1,4 @@
-//! Equations that are left out while a joint stands still.
+//! Exclusion of equations while a joint is at standstill.
 
 mod common;
 
@@ -13,7 +13,7 @@ const SAMPLES: usize = 20_000;
 /// Velocity below which the drive of these tests sticks, m/s.
 const STICKS: f64 = 0.05;
 
-/// A drive of 95 kg with friction that needs 40 N more while it sticks.
+/// A drive of 95 kg with 40 N of additional friction while it sticks.
 fn log() -> Log {
     let omega = PI;
     let (positions, torques) = (0..SAMPLES)
@@ -60,7 +60,7 @@ fn equations_at_standstill_are_left_out_and_counted() {
         moving.estimates[0].equations + left_out,
         all.estimates[0].equations
     );
-    // The part of the time in which this motion is slower than the limit.
+    // Fraction of the time in which this motion is slower than the limit.
     let part = left_out as f64 / all.estimates[0].equations as f64;
     assert!((0.1..0.25).contains(&part), "{part}");
     let offset = |result: &Identification| {
@@ -74,7 +74,7 @@ fn equations_at_standstill_are_left_out_and_counted() {
     assert!(offset(&moving) < 0.5, "{}", offset(&moving));
     let errors = [&all, &moving].map(|result| result.estimates[0].relative_error_percent);
     assert!(errors[1] < 0.3 * errors[0], "{errors:?}");
-    // Zero leaves nothing out.
+    // Zero excludes nothing.
     let none = identified(vec![0.0]);
     assert_eq!(none.runs[0].standstill_equations, [0]);
     let pairs = none.estimates[0]
@@ -127,7 +127,7 @@ fn limits_that_leave_little_are_told() {
     );
 }
 
-/// What a check says of friction of 20 N whose part that is there at a speed is told.
+/// Words of a check for friction of 20 N times `friction` of the speed.
 fn said_of(friction: impl Fn(f64) -> f64) -> String {
     let mut log = log();
     let (positions, _) = log.load().expect("numbers");

@@ -1,4 +1,4 @@
-//! Logs that stay in their files: the same numbers as in memory.
+//! Logs that stay in their files have the same numbers as in memory.
 
 mod common;
 
@@ -12,7 +12,7 @@ use overact_tier::is_full;
 const SAMPLES: usize = 530_000;
 const FREQUENCY: f64 = 1000.0;
 
-/// Position and force at a sample, rounded as they are written.
+/// Position and force at a sample, rounded as written.
 fn sample(k: usize) -> (f64, f64) {
     let t = k as f64 / FREQUENCY;
     let position = 0.1 * (2.0 * t).sin() + 0.02 * (7.3 * t + 1.0).sin();
@@ -76,13 +76,13 @@ fn a_long_file_is_identified_block_by_block() {
         assert_eq!(a.parameters, b.parameters);
         assert_eq!(a.relative_error_percent, b.relative_error_percent);
     }
-    // The run is its own cross-validation, by way of predictions.
+    // The run is its own validation run.
     let (own, other) = (&streamed.estimates[0], &streamed.cross_validation[0]);
     assert!((own.residual_norm / other.residual_norm - 1.0).abs() < 1e-9);
     let series = &streamed.figures.predictions[0].lines[0];
     assert!(series.time.len() <= 1000 && series.time.len() > 500);
 
-    // Cut after it was read: its numbers stay.
+    // Truncated after it was read: its numbers are cached.
     let before = log.load().expect("numbers");
     fs::write(&path, &text[..text.len() / 2]).expect("written");
     assert!(log.load().expect("numbers") == before);

@@ -1,4 +1,4 @@
-//! Text as controllers, spreadsheets and scripts write it: the same numbers from each.
+//! Text written by controllers, spreadsheets and scripts gives the same numbers.
 
 mod common;
 
@@ -8,7 +8,7 @@ use common::EMPS;
 use overact::Model;
 use overact_identification::{Error, Log, Mapping, Time, data::read};
 
-/// The columns of the robot with one drive by their names.
+/// Columns of the one-drive robot by their names.
 fn named() -> Mapping {
     Mapping::for_robot(&EMPS.info())
 }
@@ -30,14 +30,14 @@ fn log(content: &[u8], mapping: &Mapping) -> Result<Log, Error> {
     read(&path, mapping, false)
 }
 
-/// What is said of a text, without the folder.
+/// Message for a refused text, without the folder.
 fn refused(content: &[u8], mapping: &Mapping) -> String {
     let text = log(content, mapping).expect_err("an error").to_string();
     let place = text.find("log.txt").expect("the file");
     text[place..].to_owned()
 }
 
-/// Fails unless a text has the three samples that all texts of these tests have, at 10 Hz.
+/// Fails unless a text has the three common samples of these tests, at 10 Hz.
 fn same(content: &str, mapping: &Mapping) {
     let log = log(content.as_bytes(), mapping).unwrap_or_else(|error| panic!("{content}: {error}"));
     let (positions, torques) = log.load().expect("numbers");
@@ -91,7 +91,7 @@ fn columns_without_names_have_numbers() {
 
 #[test]
 fn names_may_stand_in_a_comment() {
-    // As `numpy.savetxt` writes a header, behind a title.
+    // As `numpy.savetxt` writes a header, after a title.
     let numbers = "0 1.5 3\n0.1 -2 4.25\n0.2 0.025 1000.5\n";
     same(
         &format!("# run of today\n# time q_1 tau_1\n{numbers}"),

@@ -1,4 +1,4 @@
-//! What every result rests on, since no data can show it.
+//! Assumptions that the data of a run cannot test, and detection limits of the checks.
 
 use overact::Model;
 
@@ -15,17 +15,18 @@ use crate::{
     significant,
 };
 
-/// What was identified before everything else, so that it is no assumption.
+/// Quantities estimated before the parameters, which are therefore no assumptions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Found {
-    /// Gains of the drives.
+    /// Whether the gains of the drives were estimated.
     pub gains: bool,
-    /// The direction of gravity.
+    /// Whether the direction of gravity was estimated.
     pub gravity: bool,
 }
 
-/// What no data of these runs can show to be wrong: faults whose effect on the data is that of other
-/// parameters.
+/// Assumptions that these runs cannot test, one sentence each.
+///
+/// Their violation has the same effect on the data as other parameter values.
 pub(crate) fn assumptions(
     model: &dyn Model,
     columns: &ColumnSet,
@@ -83,13 +84,13 @@ pub(crate) fn assumptions(
     all
 }
 
-/// Whether nothing tells the lengths of the loops: no more drives than degrees of freedom.
+/// Whether no closure constrains the loop lengths: a closed chain with n = r.
 fn lengths_are_untold(model: &dyn Model) -> bool {
     let sizes = model.info().sizes;
     sizes.actuators == sizes.dof && couples(model)
 }
 
-/// The assumptions that are most often wrong, in a sentence for the verdict itself.
+/// The assumptions that are violated most often, as a sentence for the verdict.
 pub(crate) fn rests_on(model: &dyn Model, before: Found) -> Option<String> {
     let what = match (lengths_are_untold(model), before.gains) {
         (true, false) => {
@@ -104,14 +105,16 @@ pub(crate) fn rests_on(model: &dyn Model, before: Found) -> Option<String> {
     Some(format!("This takes for granted that {what}."))
 }
 
-/// A kind of faults: the check that looks for it, whether its size is a part of one, and what it is called.
+/// A kind of fault whose detection limit is reported.
+///
+/// `check` looks for the fault. `is_part` says that its size is relative, with 1 as 100 %.
 struct Kind {
     check: CheckKind,
     is_part: bool,
     name: &'static str,
 }
 
-/// A kind of faults.
+/// Constructs a kind of faults.
 const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
     Kind {
         check,
@@ -120,7 +123,7 @@ const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
     }
 }
 
-/// All kinds of faults whose sizes are told.
+/// All kinds of faults whose detection limits are reported.
 const KINDS: [Kind; 8] = [
     kind(CheckKind::EncoderOffset, false, "zero of an encoder"),
     kind(CheckKind::EncoderOffset, true, "scale of an encoder"),
@@ -136,15 +139,16 @@ const KINDS: [Kind; 8] = [
     kind(CheckKind::Clock, true, "sampling frequency"),
 ];
 
-/// An error of a part of one by as much as this is as good as any.
+/// Relative sizes above 100 % are reported as 100 %.
 const WHOLE: f64 = 1.0;
 
-/// What the checks would have missed though it spoils parameters: of each kind the fault that does most harm at the
-/// size that would just have been seen.
+/// Detection limits: for each kind of fault the most harmful one that passes its check.
+///
+/// The harm is the parameter shift at the smallest detectable size.
 pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
     let worst_of = |kind: &Kind| {
         let own = checks.iter().filter(|one| one.passed);
-        // Offsets and lengths are told by one check, whichever is found.
+        // One check tests offsets and lengths; it is filed under the kind that it found.
         let geometry = [CheckKind::EncoderOffset, CheckKind::Length];
         let own = own.filter(|one| {
             one.kind == kind.check || geometry.contains(&one.kind) && geometry.contains(&kind.check)
@@ -166,7 +170,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             ("", _) => String::new(),
             (name, _) => format!(" of `{name}`"),
         };
-        // Of a part of one more than the whole means nothing.
+        // A relative size above 100 % has no meaning.
         let most = if kind.is_part { WHOLE } else { f64::INFINITY };
         let moves = worst.moves * (most / worst.size).min(1.0);
         let size = match worst.unit {
@@ -186,7 +190,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
     told.collect()
 }
 
-/// The drives of which these data would show no wrong gain, or none that is not far beyond the first order, in words.
+/// Names the drives whose gain error these data cannot detect, or only beyond 100 %.
 fn never(checks: &[Check], kind: &Kind) -> Option<String> {
     let own = checks
         .iter()

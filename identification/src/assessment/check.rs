@@ -1,86 +1,87 @@
-//! One result of one check: what was measured, what it was held against, what it means.
+//! Result of one check: statistic, threshold and consequence.
 
 use serde::Serialize;
 
 use super::evidence::Evidence;
 use crate::{called::titled, regression::projection::ModelKind, result::Stage};
 
-/// One result of one check. A check that found nothing wrong is a result, too: it allows
-/// [`Grade::Use`], and its words say what was seen.
+/// Result of one check.
+///
+/// A passed check is a result, too: it allows [`Grade::Use`], and `words` states the finding.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
-    /// What was checked.
+    /// Kind of the check.
     pub kind: CheckKind,
-    /// What the check is about.
+    /// Subject of the check.
     pub about: About,
-    /// Name of the run, unless it concerns all.
+    /// Name of the run; `None` for all runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run: Option<String>,
-    /// Name of the actuator, where it is one's.
+    /// Name of the actuator, if the check concerns one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub actuator: Option<String>,
-    /// The models that it concerns; empty for all.
+    /// Models that the check concerns; empty for all.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub models: Vec<ModelKind>,
-    /// The stages that it concerns; empty for all.
+    /// Stages that the check concerns; empty for all.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Stage>,
-    /// What was measured.
+    /// Test statistic.
     pub statistic: f64,
-    /// Unit of the statistic and its threshold; empty for a number.
+    /// Unit of the statistic and its threshold; empty for a plain number.
     pub unit: &'static str,
-    /// What the statistic was held against.
+    /// Threshold of the statistic.
     pub threshold: f64,
-    /// Where the threshold comes from: a false-alarm rate, a resolution, a published rule.
+    /// Origin of the threshold: a false-alarm rate, a resolution or a published rule.
     pub origin: String,
-    /// Whether nothing was found. What was found may be harmless: then the check allows use all the same.
+    /// Whether the check passed. A failed check can be harmless and still allow [`Grade::Use`].
     pub passed: bool,
-    /// What this check alone allows.
+    /// Best grade that this check allows.
     pub grade: Grade,
-    /// What was seen, what it means, what to do: sentences.
+    /// Finding, meaning and remedy, in sentences.
     pub words: String,
-    /// The signal that may be in another unit: `time`, `positions` or `torques`.
+    /// Signal that may be in a wrong unit: `time`, `positions` or `torques`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub signal: Option<&'static str>,
-    /// Its numbers by those in the unit of SI.
+    /// Logged numbers divided by those in the SI unit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub factor: Option<f64>,
-    /// The part of the residual's square that it would explain, of a fault that was looked for and found.
+    /// Fraction of the squared residual that the detected fault explains.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explained: Option<f64>,
-    /// Parameters that are not to be used, where only some are not.
+    /// Unusable parameters, if only some are unusable.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub spoiled: Vec<String>,
-    /// What these data would have shown of each fault that was looked for.
+    /// Detection limit of each fault that was tested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub detectable: Vec<Detectable>,
-    /// The series that shows it.
+    /// Series that shows the result.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<Evidence>,
 }
 
-/// How well these data tell the size of a fault that was looked for, be it there or not.
+/// Detection limit of one fault, present or not.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Detectable {
-    /// The actuator or the length; empty for what concerns all.
+    /// Name of the actuator or length; empty for a fault of the whole robot.
     pub name: String,
-    /// Unit of its size: `rad`, `m`, `s`, of a smoothing `s²`; empty for a part of one.
+    /// Unit of the size: `rad`, `m`, `s`, or `s²` for smoothing; empty for a relative size.
     pub unit: &'static str,
-    /// Whether it is a length of the description.
+    /// Whether the fault is an error of a described length.
     #[serde(skip)]
     pub is_length: bool,
-    /// Standard deviation of its size.
+    /// Standard deviation of the size.
     pub deviation: f64,
-    /// The size that nine of ten such data would have shown, were it there; infinite where they would show none.
+    /// Size that is detected with 90 % probability; infinite if no size is detectable.
     pub size: f64,
-    /// The parameter that a fault of this size moves most, of those that are estimated.
+    /// Estimated parameter that a fault of this size shifts most.
     pub parameter: String,
-    /// By how many of the parameter's standard deviations it moves it: what may be hidden in data that show nothing.
+    /// Shift of that parameter by an undetected fault, in standard deviations.
     pub moves: f64,
 }
 
 impl Detectable {
-    /// A part of one of an actuator's that no size of which these data would show.
+    /// An actuator's fault of relative size that these data cannot detect at any size.
     pub(crate) fn never(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -94,17 +95,17 @@ impl Detectable {
     }
 }
 
-/// What a check is about.
+/// Subject of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum About {
-    /// The numbers of the logs by themselves.
+    /// Raw numbers of the logs.
     Data,
-    /// What the estimates leave unexplained.
+    /// Residuals of the estimates.
     Fit,
-    /// Geometry, drives, labels and the columns of the model.
+    /// Geometry, drives, labels and columns of the model.
     Model,
-    /// Data that the estimates were not made from, and motion that the data lack.
+    /// Validation data, and motion that the runs lack.
     Extrapolation,
 }
 
@@ -121,23 +122,23 @@ impl About {
     }
 }
 
-/// What may be done with a result. A worse grade is greater.
+/// How far a result may be used, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize)]
 pub enum Grade {
-    /// Use it.
+    /// Usable.
     #[default]
     #[serde(rename = "use")]
     Use,
-    /// Use it for what is listed.
+    /// Usable for the listed parameters only.
     #[serde(rename = "partly")]
     UseListed,
-    /// Do not use it.
+    /// Not usable.
     #[serde(rename = "no")]
     DoNotUse,
 }
 
 impl Grade {
-    /// The grade as an order.
+    /// The grade as an instruction.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -148,7 +149,7 @@ impl Grade {
     }
 }
 
-/// What was checked.
+/// Kind of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -157,68 +158,68 @@ pub enum CheckKind {
     ClippedTorque,
     /// A position does not change while the robot moves.
     StuckEncoder,
-    /// A position jumps, or repeats while the others go on: samples are lost.
+    /// A position jumps, or repeats while others change: samples are lost.
     DroppedSamples,
     /// The robot hardly moves.
     Standstill,
-    /// Positions look like degrees, not radians, or like those of motors before their gears.
+    /// Positions look like degrees instead of radians, or like motor-side angles.
     Degrees,
-    /// Samples of one run stand in another one, too.
+    /// Samples of one run are also in another one.
     RepeatedSamples,
-    /// Two columns of a log are one.
+    /// Two columns of a log are equal.
     DuplicateColumns,
     /// A torque is zero throughout.
     ZeroTorque,
-    /// The positions contradict the closure of the loops.
+    /// The positions violate the loop closure.
     Closure,
-    /// Two columns are swapped, as the closure or the torques tell.
+    /// Two columns are swapped, according to the closure or the torques.
     SwappedColumns,
-    /// A drive's torque or an encoder goes the wrong way.
+    /// A torque or an encoder has the wrong sign.
     WrongSign,
-    /// A drive's torque is far from its prediction by a factor.
+    /// A drive's torque is wrong by a factor.
     WrongGain,
-    /// The payload contradicts how the runs are labelled.
+    /// The payload contradicts the label of a run.
     PayloadLabel,
-    /// Torques and motion are not of the same time.
+    /// Torques and motion are shifted in time.
     Delay,
     /// The sampling frequency contradicts gravity and friction.
     Clock,
-    /// The torques speak of an offset or a play of an encoder.
+    /// The torques indicate an offset, scale, eccentricity or play of an encoder.
     EncoderOffset,
-    /// The torques speak of another length than the described one.
+    /// The torques indicate a length other than the described one.
     Length,
-    /// Time, positions or torques are in another unit than that of SI.
+    /// Time, positions or torques are not in SI units.
     Unit,
     /// No bodies with positive masses explain the data.
     Consistency,
-    /// A few instants leave most unexplained.
+    /// A few samples hold most of the squared residual.
     Outliers,
-    /// The robot moves through too few periods.
+    /// The motion covers too few periods.
     ShortMotion,
-    /// The filters do not suit the motion.
+    /// The filters distort the motion.
     Filters,
-    /// Dry friction around reversals.
+    /// Dry friction around reversals differs from the model.
     Reversals,
-    /// The residual holds something that the model lacks.
+    /// The residual contains an effect that the model lacks.
     MissingParameter,
-    /// A parameter that can't be negative is.
+    /// A parameter that cannot be negative is estimated negative.
     NegativeParameter,
-    /// The kept actuators of case 2 come too close to a singularity of their choice.
+    /// The kept actuators of the actuator projection approach a singularity.
     Partition,
-    /// How much of the inputs the estimate leaves unexplained.
+    /// Relative residual of an estimate.
     RelativeError,
-    /// Residuals of the actuators hang together.
+    /// Residuals of two actuators are correlated.
     ResidualCorrelation,
-    /// How well data are predicted that were held out.
+    /// Prediction error on validation data.
     HeldOut,
-    /// Noise of the positions in the columns.
+    /// Position noise in the regressor biases the estimate.
     RegressorErrors,
-    /// The runs do not tell columns apart: a coordinate hardly moves.
+    /// The runs do not separate parameters, because a coordinate hardly moves.
     Excitation,
 }
 
 impl CheckKind {
-    /// The name of the kind, as it is serialised, in words.
+    /// Name of the kind in words, as serialised.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -258,7 +259,7 @@ impl CheckKind {
 }
 
 impl CheckKind {
-    /// Whether the data tell it beyond doubt when they do, whatever the model.
+    /// Whether a failure of this check is certain, whatever the model.
     pub(crate) const fn is_certain(self) -> bool {
         matches!(
             self,
@@ -274,7 +275,7 @@ impl CheckKind {
 }
 
 impl Check {
-    /// A check that was passed, with `words` on what was seen.
+    /// A passed check with its finding in `words`.
     #[must_use]
     pub fn new(kind: CheckKind, about: About, words: impl Into<String>) -> Self {
         Self {
@@ -300,21 +301,21 @@ impl Check {
         }
     }
 
-    /// With what was measured, in a unit.
+    /// Sets the statistic and its unit.
     #[must_use]
     pub fn measured(mut self, statistic: f64, unit: &'static str) -> Self {
         (self.statistic, self.unit) = (statistic, unit);
         self
     }
 
-    /// With what the statistic was held against, and where that comes from.
+    /// Sets the threshold and its origin.
     #[must_use]
     pub fn against(mut self, threshold: f64, origin: impl Into<String>) -> Self {
         (self.threshold, self.origin) = (threshold, origin.into());
         self
     }
 
-    /// With the grade that it allows. Any but the best means that something was found.
+    /// Sets the grade. Any grade below [`Grade::Use`] marks the check as failed.
     #[must_use]
     pub fn allowing(mut self, grade: Grade) -> Self {
         self.grade = grade;
@@ -322,42 +323,42 @@ impl Check {
         self
     }
 
-    /// With something found that is worth a word, whatever the grade.
+    /// Marks the check as failed without changing the grade.
     #[must_use]
     pub fn found(mut self) -> Self {
         self.passed = false;
         self
     }
 
-    /// Of one run.
+    /// Restricts the check to one run.
     #[must_use]
     pub fn in_run(mut self, run: &str) -> Self {
         self.run = Some(run.to_owned());
         self
     }
 
-    /// Of one actuator.
+    /// Restricts the check to one actuator.
     #[must_use]
     pub fn of_actuator(mut self, actuator: &str) -> Self {
         self.actuator = Some(actuator.to_owned());
         self
     }
 
-    /// Of one model.
+    /// Restricts the check to one model.
     #[must_use]
     pub fn of_model(mut self, model: ModelKind) -> Self {
         self.models = vec![model];
         self
     }
 
-    /// Of one stage.
+    /// Restricts the check to one stage.
     #[must_use]
     pub fn of_stage(mut self, stage: Stage) -> Self {
         self.stages = vec![stage];
         self
     }
 
-    /// With the signal that may be in another unit, and its numbers by those in the unit of SI.
+    /// Sets the signal in a wrong unit, and its numbers divided by those in the SI unit.
     #[must_use]
     pub const fn in_unit(mut self, signal: &'static str, factor: f64) -> Self {
         self.signal = Some(signal);
@@ -365,39 +366,39 @@ impl Check {
         self
     }
 
-    /// With the parameters that are not to be used.
+    /// Sets the unusable parameters.
     #[must_use]
     pub fn spoiling(mut self, parameters: Vec<String>) -> Self {
         self.spoiled = parameters;
         self
     }
 
-    /// With what these data would have shown.
+    /// Sets the detection limits.
     #[must_use]
     pub fn detecting(mut self, detectable: Vec<Detectable>) -> Self {
         self.detectable = detectable;
         self
     }
 
-    /// With the series that shows it.
+    /// Sets the series that shows the result.
     #[must_use]
     pub fn shown_by(mut self, evidence: Evidence) -> Self {
         self.evidence = Some(evidence);
         self
     }
 
-    /// Whether it concerns an estimate.
+    /// Whether the check concerns the estimate of a model and stage.
     #[must_use]
     pub fn concerns(&self, model: ModelKind, stage: Stage) -> bool {
         (self.models.is_empty() || self.models.contains(&model))
             && (self.stages.is_empty() || self.stages.contains(&stage))
     }
 
-    /// Its words behind the run and the actuator that they are about.
+    /// The words, prefixed by the run and the actuator.
     #[must_use]
     pub fn located(&self) -> String {
         let actuator = self.actuator.iter().map(|name| titled(name));
-        // A joint that is but a number is called a joint, once.
+        // Skip the actuator's name if the words mention it, unless it has a space (`joint 1`).
         let actuator = actuator.filter(|name| !self.words.contains(name) || !name.contains(' '));
         let place = self.run.iter().cloned().chain(actuator);
         let mut text: String = place.map(|part| format!("{part}: ")).collect();

@@ -1,44 +1,44 @@
-//! The series behind a check, enough to plot it.
+//! Series behind a check, sufficient to plot it.
 
 use serde::Serialize;
 
-/// Most points of one curve of an evidence.
+/// Largest number of points of a curve.
 pub(crate) const LARGEST_CURVE: usize = 200;
 
-/// What shows the result of a check.
+/// Plot that shows the result of a check.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Evidence {
-    /// What is shown.
+    /// Title.
     pub title: String,
-    /// The horizontal axis.
+    /// Horizontal axis.
     pub x: Axis,
-    /// The vertical axis.
+    /// Vertical axis.
     pub y: Axis,
-    /// Curves that are drawn as lines.
+    /// Curves drawn as lines.
     pub lines: Vec<Curve>,
-    /// Curves that are drawn as points.
+    /// Curves drawn as points.
     pub points: Vec<Curve>,
     /// Values of y beyond which the check fails.
     pub limits: Vec<f64>,
 }
 
-/// What is shown along an axis.
+/// Label and unit of an axis.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct Axis {
-    /// What it is.
+    /// Label.
     pub label: String,
-    /// Its unit; empty for a number.
+    /// Unit; empty for a plain number.
     pub unit: String,
 }
 
 /// A named curve.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Curve {
-    /// What it is; empty where there is but one.
+    /// Name; empty if there is only one curve.
     pub name: String,
-    /// Along the horizontal axis.
+    /// Horizontal coordinates.
     pub x: Vec<f64>,
-    /// Along the vertical axis.
+    /// Vertical coordinates.
     pub y: Vec<f64>,
 }
 
@@ -54,7 +54,7 @@ impl Axis {
 }
 
 impl Curve {
-    /// A curve of so many points at most: where there are more, one in so many is kept.
+    /// A curve, thinned evenly to at most `LARGEST_CURVE` points.
     #[must_use]
     pub fn new(name: &str, x: &[f64], y: &[f64]) -> Self {
         let stride = x.len().div_ceil(LARGEST_CURVE).max(1);

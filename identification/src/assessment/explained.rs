@@ -1,4 +1,4 @@
-//! What may have led to an error of a run: hints that its raw numbers give.
+//! Hints at the cause of an error, from the raw numbers of a run.
 
 use overact::Model;
 
@@ -8,10 +8,10 @@ use super::{
 };
 use crate::{data::Log, error::Error, monitor::Monitor};
 
-/// Loops that close to this are closed by a change of the positions (m, rad).
+/// Tolerance of the loop closure (m, rad) after a hypothetical correction of positions.
 const CLOSED: f64 = 0.01;
 
-/// An error of a run together with what is suspicious in its numbers: each is a way out.
+/// Adds hints from the raw numbers of a run to its error.
 pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
     let mut hints: Vec<String> = Vec::new();
     hints.extend(
@@ -35,7 +35,7 @@ pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
     Error { problems }
 }
 
-/// The raw numbers of a whole run; none of a file that can't be read.
+/// Statistics of a whole run; `None` if the file cannot be read.
 fn watched(log: &Log) -> Option<Monitor> {
     let mut monitor = Monitor::new(log.actuators(), log.sampling_frequency());
     let mut reader = log.reader().ok()?;

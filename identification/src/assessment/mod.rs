@@ -1,16 +1,15 @@
-//! Whether an identification may be believed: checks, each with what was measured and what it was held
-//! against, and the verdict that follows from them alone.
+//! Assessment of an identification: checks, and the verdict that follows from them alone.
 //!
-//! - `check`: one result of one check, and the grades;
+//! - `check`: result of one check, and the grades;
 //! - `evidence`: the series that shows it;
-//! - `checks`: all checks, a file for each;
-//! - `verdict`: what may be done with the estimates of a model;
-//! - `assumptions`: what no data can show;
-//! - `positions`: positions that contradict the loops, and what would make them close;
-//! - `rotation`: angles of many turns, of joints that rotate on or in degrees;
-//! - `torques`: torques that contradict the model, and which fault would explain them; `whole`: faults of whole runs;
-//! - `suspects`: what the model may lack, held against what it leaves unexplained;
-//! - `explained`: what may have led to an error.
+//! - `checks`: all checks, one per file;
+//! - `verdict`: whether the estimates of a model may be used;
+//! - `assumptions`: what no data can test;
+//! - `positions`: positions that violate the closure, and corrections that restore it;
+//! - `torques`: torques that contradict the model, and the fault that explains them;
+//! - `whole`: faults of whole runs or of the model;
+//! - `suspects`: fault hypotheses tested on the residual;
+//! - `explained`: hints at the cause of an error.
 
 pub(crate) mod assumptions;
 pub(crate) mod check;

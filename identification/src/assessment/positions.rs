@@ -1,5 +1,4 @@
-//! Positions that contradict the loops, and what would make them close: degrees, two columns that are
-//! swapped, one of the wrong sign.
+//! Corrections of positions that violate the loop closure: units, swapped columns, signs.
 
 use std::f64::consts::PI;
 
@@ -13,31 +12,31 @@ use crate::{
     units::{SLIPS, Signal, Slip},
 };
 
-/// Rows of a run that are looked at, and their distance in time (s).
+/// Number of rows of a run that are tested, and their distance in time (s).
 const ROWS: usize = 200;
 const INTERVAL: f64 = 0.01;
 
-/// Distance of the rows of a whole run, s: several of them in a period of what a filter takes away.
+/// Distance of rows for a whole run, s: several in a period of what the filter removes.
 const OFTEN: f64 = 0.002;
 
-/// A change that explains the positions leaves this part of the miss, at most.
+/// Largest fraction of the closure residual that may remain after a correction.
 const EXPLAINED: f64 = 0.1;
 
-/// What may have happened to positions.
+/// Possible faults of positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Fault {
     /// Angles are in degrees.
     Degrees,
-    /// Two actuators are exchanged.
+    /// Two actuators are swapped.
     Swapped(usize, usize),
-    /// An actuator counts backwards.
+    /// An actuator has the opposite sign.
     Reversed(usize),
-    /// Positions of all actuators that turn, or slide, or of one of them, are in another unit.
+    /// Positions of one or all revolute (or prismatic) actuators are in another unit.
     Unit(&'static Slip, Option<usize>),
 }
 
 impl Fault {
-    /// All faults of a robot.
+    /// All faults of a robot, without units other than degrees.
     pub(crate) fn all(model: &dyn Model) -> Vec<Self> {
         let info = model.info();
         let n = info.sizes.actuators;
@@ -50,7 +49,7 @@ impl Fault {
         faults
     }
 
-    /// All faults, and positions in other units than degrees. Each is tried on a few rows only.
+    /// All faults, including units. Each is tested on a few rows only.
     fn with_units(model: &dyn Model) -> Vec<Self> {
         let info = model.info();
         let mut faults = Self::all(model);
@@ -71,9 +70,10 @@ impl Fault {
         faults
     }
 
-    /// How much it changes the positions, for an order among faults that close the loops: a change of unit that
-    /// makes positions small closes the loops of many robots near their home, so the smallest one counts, and that
-    /// of one drive before that of all.
+    /// Size of the correction, to rank faults that restore the closure.
+    ///
+    /// Corrections that shrink positions close the loops of many robots near their home pose. The
+    /// smallest correction is therefore preferred, and one drive before all drives.
     fn change(self) -> f64 {
         const ALL: f64 = 0.1;
         match self {
@@ -84,7 +84,7 @@ impl Fault {
         }
     }
 
-    /// Takes the fault back in rows of positions.
+    /// Corrects the fault in rows of positions.
     pub(crate) fn repair(self, model: &dyn Model, positions: &mut [f64]) {
         let info = model.info();
         for row in positions.chunks_exact_mut(info.sizes.actuators) {
@@ -109,7 +109,7 @@ impl Fault {
         }
     }
 
-    /// What is told of it in a run; `so` says what speaks for it.
+    /// The failed check of this fault in a run; `so` is the reason.
     pub(crate) fn check(self, model: &dyn Model, run: &str, so: &str) -> Check {
         let info = model.info();
         let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
@@ -162,11 +162,10 @@ impl Fault {
     }
 }
 
-/// What would make the loops close to a `tolerance` (m, rad) in a run that contradicts them, if one
-/// change does.
+/// The correction that closes the loops of a run to a `tolerance` (m, rad), if there is one.
 ///
 /// # Errors
-/// A file that can't be read any more.
+/// A file cannot be read any more.
 pub(crate) fn explanation(
     model: &dyn Model,
     log: &Log,
@@ -203,13 +202,15 @@ pub(crate) fn explanation(
     }))
 }
 
-/// Whether a change that leaves `left` of a miss explains it: the loops close, and they did not nearly do
-/// so before. Where there was no pose before, that they close is enough.
+/// Whether a correction that leaves the residual `left` explains the positions.
+///
+/// The loops must close, and must not have nearly closed before. If there was no pose before,
+/// closing is enough.
 fn explains(left: f64, miss: Option<f64>, tolerance: f64) -> bool {
     left <= tolerance && miss.is_none_or(|miss| left <= EXPLAINED * miss)
 }
 
-/// Positions at the beginning of a run, samples x n.
+/// Positions at the start of a run, samples × n.
 fn rows(log: &Log) -> Result<Vec<f64>, Error> {
     let n = log.actuators();
     let stride = ((INTERVAL * log.sampling_frequency()) as usize).max(1);
@@ -231,18 +232,18 @@ fn rows(log: &Log) -> Result<Vec<f64>, Error> {
     Ok(rows)
 }
 
-/// The largest distance of positions from those that their poses ask for, or `None` where one has no
-/// pose.
+/// Largest difference between positions and those of their poses; `None` without a pose.
 fn miss(model: &dyn Model, rows: &[f64]) -> Option<f64> {
     let mut misses = Misses::new(model);
     misses.take(rows).then_some(misses.largest)
 }
 
-/// The largest distance of a run's positions, as they were logged, from those that their poses ask for, or `None`
-/// where one has no pose.
+/// Largest difference between the unfiltered positions of a run and those of their poses.
+///
+/// `None` if a row has no pose.
 ///
 /// # Errors
-/// A file that can't be read any more.
+/// A file cannot be read any more.
 pub(crate) fn unfiltered_miss(model: &dyn Model, log: &Log) -> Result<Option<f64>, Error> {
     let n = log.actuators();
     let stride = ((OFTEN * log.sampling_frequency()) as usize).max(1);
@@ -260,10 +261,10 @@ pub(crate) fn unfiltered_miss(model: &dyn Model, log: &Log) -> Result<Option<f64
     Ok(Some(misses.largest))
 }
 
-/// By how much positions miss the closure of the loops, row by row.
+/// Closure residual of positions, row by row.
 struct Misses<'a> {
     model: &'a dyn Model,
-    /// The pose of the row before; none before the first one.
+    /// Pose of the previous row; `None` before the first one.
     pose: Option<Vec<f64>>,
     reached: Vec<f64>,
     largest: f64,
@@ -279,13 +280,13 @@ impl<'a> Misses<'a> {
         }
     }
 
-    /// Takes rows that follow; false where one has no pose.
+    /// Adds successive rows; false if one has no pose.
     fn take(&mut self, rows: &[f64]) -> bool {
         let n = self.reached.len();
         rows.chunks_exact(n).all(|row| self.one(row).is_some())
     }
 
-    /// Takes a row.
+    /// Adds one row; `None` if it has no pose.
     fn one(&mut self, row: &[f64]) -> Option<()> {
         let (model, info) = (self.model, self.model.info());
         let pose = self.pose.get_or_insert_with(|| {
@@ -316,10 +317,10 @@ mod tests {
     fn a_change_explains_a_miss_of_which_it_leaves_little() {
         let tolerance = 1e-3;
         assert!(explains(1e-4, Some(0.5), tolerance));
-        // The loops stay open, however much smaller the miss is.
+        // The loops stay open, although the residual is much smaller.
         assert!(!explains(2e-3, Some(0.5), tolerance));
         assert!(!explains(2e-3, None, tolerance));
-        // The loops close within a tolerance that they missed by little.
+        // The loops close within a tolerance that was only just exceeded before.
         assert!(explains(5e-4, Some(6e-3), tolerance));
         assert!(!explains(5e-4, Some(4e-3), tolerance));
         assert!(explains(5e-4, None, tolerance));

@@ -1,4 +1,4 @@
-//! What may be done with the estimates of a model, from the checks alone.
+//! Verdict on the estimates of a model, from the checks alone.
 
 use serde::Serialize;
 
@@ -8,45 +8,46 @@ use crate::{
     result::{Estimate, Estimator, Stage},
 };
 
-/// The verdict on a model: that on its recommended parameters, and on the other stages beside it.
+/// Verdict on a model: on its recommended parameters, and on its other stages.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
-    /// What is judged: `case 1`, `case 2`, `joint model`.
+    /// Subject in words: `case 1`, `case 2`, `joint model`.
     pub subject: String,
-    /// The model.
+    /// Model.
     pub model: ModelKind,
-    /// The stage that the grade is about: recommended parameters, where they are estimated.
+    /// Stage of the grade: the recommended parameters, if they are estimated.
     pub stage: Stage,
-    /// What may be done with them.
+    /// Grade of its parameters.
     pub grade: Grade,
-    /// Whether they may be used without restriction.
+    /// Whether the parameters may be used without restriction.
     pub trusted: bool,
-    /// The parameters that may be used, where not all may.
+    /// Usable parameters, if not all are usable.
     pub listed: Vec<String>,
-    /// Why, in sentences: what speaks against it, most serious first; else what was checked.
+    /// Reasons in sentences: failed checks, most serious first; else the passed ones.
     pub reasons: Vec<String>,
-    /// What of the description and the logs a result that may be used takes for right though nothing in the data of
-    /// this robot tells it, in a sentence; none where there is nothing of the kind.
+    /// Assumptions of a usable result that these data cannot test, as a sentence.
+    ///
+    /// `None` if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rests_on: Option<String>,
-    /// The verdicts on all stages.
+    /// Verdicts on all stages.
     pub stages: Vec<StageVerdict>,
 }
 
-/// The verdict on one estimate.
+/// Verdict on one estimate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StageVerdict {
-    /// The stage.
+    /// Stage.
     pub stage: Stage,
-    /// What may be done with its parameters.
+    /// Grade of its parameters.
     pub grade: Grade,
-    /// The parameters that may be used, where not all may.
+    /// Usable parameters, if not all are usable.
     pub listed: Vec<String>,
-    /// Why, in sentences.
+    /// Reasons, in sentences.
     pub reasons: Vec<String>,
 }
 
-/// The verdicts on all models, in the order of their estimates; `rests_on` is what results of this robot take for right.
+/// Verdicts on all models, in the order of their estimates; `rests_on` states assumptions.
 pub(crate) fn verdicts(
     estimates: &[Estimate],
     checks: &[Check],
@@ -80,7 +81,7 @@ pub(crate) fn verdicts(
     models.into_iter().filter_map(of_model).collect()
 }
 
-/// The verdict on one estimate.
+/// Verdict on one estimate.
 fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
     let concerning = || {
         checks
@@ -94,7 +95,7 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
     let listed: Vec<String> = names.filter(|name| !is_spoiled(name)).cloned().collect();
     let worst = failed.iter().map(|check| check.grade).max();
     let worst = worst.unwrap_or_default();
-    // What may be used for nothing may not be used.
+    // Without a usable parameter the result is not usable.
     let grade = if worst == Grade::UseListed && listed.is_empty() {
         Grade::DoNotUse
     } else {
@@ -116,22 +117,24 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
     }
 }
 
-/// Of the most that a suspect explains, what another one has to explain to be told beside it.
+/// A failed check is reported in full if it explains this fraction of the largest one's part.
 const WORTH_TELLING: f64 = 0.5;
 
-/// What speaks against an estimate.
+/// Failed checks of an estimate.
 #[derive(Debug, Clone)]
 pub struct Objections<'a> {
-    /// The checks that are to be told, most serious first and then by what they explain, with their numbers
-    /// among all checks.
+    /// Checks to report in full, with their indices among all checks.
+    ///
+    /// Most serious first, then by the explained fraction.
     pub told: Vec<(usize, &'a Check)>,
-    /// What else was found. What a fault does to the torques looks in part like other faults, too: suspects that
-    /// explain far less than another one are only named, and so are all where the data themselves are wrong
-    /// beyond doubt.
+    /// Names of the other failed checks.
+    ///
+    /// One fault resembles others in the torques. Checks that explain much less than another one
+    /// are only named. All such checks are only named if the data are certainly wrong.
     pub beside: Vec<&'static str>,
 }
 
-/// What speaks against the estimate of a model and stage.
+/// Failed checks of the estimate of a model and stage.
 #[must_use]
 pub fn objections(checks: &[Check], model: ModelKind, stage: Stage) -> Objections<'_> {
     let found = checks.iter().enumerate();
@@ -146,7 +149,7 @@ pub fn objections(checks: &[Check], model: ModelKind, stage: Stage) -> Objection
         }
     };
     let explained = |check: &Check| check.explained.unwrap_or(f64::INFINITY);
-    // A stable sort: checks of one grade and weight stay in their order.
+    // A stable sort keeps the order of checks of equal grade and explained fraction.
     found.sort_by(|(_, a), (_, b)| {
         let grade = b.grade.cmp(&a.grade);
         grade.then(explained(b).total_cmp(&explained(a)))
@@ -160,7 +163,7 @@ pub fn objections(checks: &[Check], model: ModelKind, stage: Stage) -> Objection
 }
 
 impl Objections<'_> {
-    /// What was only named, in a sentence; none where all is told.
+    /// A sentence that names the other failed checks; `None` if there are none.
     #[must_use]
     pub fn rest(&self) -> Option<String> {
         (!self.beside.is_empty()).then(|| {
@@ -171,7 +174,7 @@ impl Objections<'_> {
         })
     }
 
-    /// All of it in sentences.
+    /// All failed checks in sentences.
     fn sentences(&self) -> Vec<String> {
         let told = self.told.iter().map(|(_, check)| check.located());
         told.chain(self.rest()).collect()

@@ -1,5 +1,6 @@
-//! Faults of a whole run or of the model, each of which needs a pass of its own: what happened to positions, two
-//! actuators that are exchanged, gravity that points the other way.
+//! Faults of a whole run or of the model, each tested with its own pass over the data.
+//!
+//! They are faults of all positions, two swapped actuators, and wrong or absent gravity.
 
 use overact::Model;
 
@@ -9,29 +10,32 @@ use super::{
 };
 use crate::{data::Log, error::Error, kinematics::conditioning::couples};
 
-/// The part of the error that gravity of the other sign, or none, leaves, at most: it has no size that could be fitted
-/// to something else.
+/// Largest fraction of the error that may remain after a correction of gravity.
+///
+/// The correction has no free size, so it cannot fit anything else.
 const EXPLAINED_BY_GRAVITY: f64 = 0.75;
 
-/// The part of the error that exchanged actuators leave, at most, where loops couple them: the wrong motion passes
-/// singular poses, where the generalised forces are so large that little of them is left in any case.
+/// Largest fraction of the error that may remain with swapped actuators in closed loops.
+///
+/// The wrong motion passes singular poses with large generalised forces, which makes the relative
+/// residual small in any case.
 const EXPLAINED_BEHIND_LOOPS: f64 = 0.1;
 
-/// What may have happened to positions in all runs, or to the model.
+/// Possible faults of positions in all runs, or of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Whole {
     /// Positions alone.
     Positions(positions::Fault),
-    /// Two actuators are exchanged, positions and torques.
+    /// Two actuators are swapped, positions and torques.
     Exchanged(usize, usize),
-    /// Gravity points the other way.
+    /// Gravity has the opposite sign.
     Gravity,
-    /// The torques are without those of gravity.
+    /// The torques do not contain gravity.
     Weightless,
 }
 
 impl Whole {
-    /// All of a robot's.
+    /// All such faults of a robot.
     pub(super) fn all(model: &dyn Model) -> Vec<Self> {
         let n = model.info().sizes.actuators;
         let mut all: Vec<Self> = { positions::Fault::all(model).into_iter() }
@@ -42,18 +46,18 @@ impl Whole {
         all
     }
 
-    /// The part of the error that it may leave, `of_one` where it is a fault of columns.
+    /// Largest fraction of the error that may remain; `of_one` is that for faults of columns.
     pub(super) fn explained(self, model: &dyn Model, of_one: f64) -> f64 {
         match self {
             Self::Exchanged(..) if couples(model) => EXPLAINED_BEHIND_LOOPS,
-            // A robot with a symmetry is nearly the same when actuators are exchanged: anything else that is wrong
-            // may then be a little smaller.
+            // In a symmetric robot, swapping actuators changes little. Another fault may then
+            // become slightly smaller.
             Self::Positions(_) | Self::Exchanged(..) => of_one,
             Self::Gravity | Self::Weightless => EXPLAINED_BY_GRAVITY,
         }
     }
 
-    /// A run without it.
+    /// The run with this fault corrected.
     pub(super) fn repaired(self, model: &dyn Model, log: &Log) -> Result<Log, Error> {
         let n = model.info().sizes.actuators;
         let (mut positions, mut torques) = log.load()?;
@@ -70,7 +74,7 @@ impl Whole {
         Log::new(name, frequency, n, positions, torques, log.payload())
     }
 
-    /// What is told of it; `so` says what speaks for it.
+    /// The failed check of this fault; `so` is the reason.
     pub(super) fn check(self, model: &dyn Model, so: &str) -> Check {
         let names = model.info().actuators;
         let name = |index: usize| names.get(index).copied().unwrap_or_default();

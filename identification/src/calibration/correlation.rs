@@ -1,30 +1,33 @@
-//! How the noise of the sensors hangs together over time.
+//! Autocorrelation of the sensor noise.
 //!
-//! What a sample's loops contradict is e'_t = J'_t δp + noise. The noise is taken as autoregressive,
-//! Σ_i a_i ε_(t-i) white of variance σ² with a_0 = 1, which comes as close as one wants to any noise that is
-//! alike all the time (Berk, *Annals of Statistics* 2, 1974). Residuals alone tell too little of it: a fit
-//! takes away what moves like the parameters' effects, and correlated noise does. So its autocovariances are
-//! those of restricted maximum likelihood (Patterson and Thompson, *Biometrika* 58, 1971), by expectation and
-//! maximisation: under the noise found so far, δp has the covariance V, and the expected lagged products of
-//! the noise are those of its residuals and Σ_t tr(V J'_tᵀ J'_(t+k)) more; from them follow the coefficients by
-//! Levinson's recursion. All of that is made of the lagged products
+//! The closure equations of sample t are e'_t = J'_t δp + noise. The noise ε is autoregressive: Σ_i
+//! a_i ε_(t-i) is white with variance σ², and a_0 = 1. This approximates any stationary noise
+//! (Berk, *Annals of Statistics* 2, 1974).
+//!
+//! Residuals underestimate the noise, since the fit removes correlated noise that resembles effects
+//! of parameters. The autocovariances are therefore estimated by restricted maximum likelihood
+//! (Patterson and Thompson, *Biometrika* 58, 1971), with expectation maximisation. With the current
+//! noise, δp has the covariance V. The expected lagged products of the noise are those of its
+//! residuals plus Σ_t tr(V J'_tᵀ J'_(t+k)). Levinson's recursion gives the coefficients. All terms
+//! follow from the lagged products
 //!
 //! ```text
 //! W_k = Σ_t [J'_t e'_t]ᵀ [J'_(t+k) e'_(t+k)],   k = 0 … p,
 //! ```
 //!
-//! summed run by run. Schwarz's criterion chooses the order p; for white noise it is zero.
+//! summed over the runs. Schwarz's criterion chooses the order p; it is zero for white noise.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::elimination::Eliminated;
 
-/// Steps of expectation and maximisation, at most, and the relative change of σ² below which they end.
+/// Largest number of expectation-maximisation steps, and relative change of σ² at their end.
 const STEPS: usize = 300;
 const SETTLED: f64 = 1e-6;
 
-/// The order is at most this many times the decimal logarithm of the samples of a run, and so many equations
-/// must be there for each coefficient.
+/// Largest order, by the decimal logarithm of the samples of a run.
+///
+/// Each coefficient also needs a number of equations.
 const ORDERS_PER_DECADE: f64 = 8.0;
 const EQUATIONS_PER_ORDER: usize = 10;
 
@@ -38,8 +41,9 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// The noise that explains what is left of samples of runs, fitted by the parameters `selected`; `equations`
-    /// is their number without the poses.
+    /// Noise of the residual of samples, fitted by the parameters `selected`.
+    ///
+    /// `equations` is their number without those of the poses.
     pub(super) fn new(
         samples: &[Eliminated],
         of_runs: &[usize],
@@ -74,7 +78,7 @@ impl Noise {
         )
     }
 
-    /// Its autocovariances of the lags 0 … `count` - 1; not finite where the noise grows for ever.
+    /// Autocovariances of the lags 0 … `count` - 1; not finite for unstable noise.
     pub(super) fn autocovariances(&self, count: usize) -> Vec<f64> {
         let mut all = first_autocovariances(&self.coefficients, self.variance);
         all.truncate(count);
@@ -86,8 +90,9 @@ impl Noise {
         all
     }
 
-    /// The covariance of the estimated coefficients from so many equations, σ² C^-1 with C the matrix of the
-    /// first p autocovariances, over the equations.
+    /// Covariance of the estimated coefficients, σ² C^-1/`equations`.
+    ///
+    /// C is the matrix of the first p autocovariances.
     pub(super) fn uncertainty(&self, equations: f64) -> Option<DMatrix<f64>> {
         let order = self.coefficients.len();
         let first = self.autocovariances(order);
@@ -97,7 +102,7 @@ impl Noise {
     }
 }
 
-/// The lagged products W_k of the columns of parameters and of the residual.
+/// Lagged products W_k of the columns of parameters and of the residual.
 fn products(
     samples: &[Eliminated],
     of_runs: &[usize],
@@ -105,7 +110,7 @@ fn products(
     orders: usize,
 ) -> Vec<DMatrix<f64>> {
     let size = selected.len() + 1;
-    // Columns of length one, so that units do not matter.
+    // Columns of unit length, to be independent of units.
     let mut lengths = vec![0.0; selected.len()];
     for sample in samples {
         for (length, &place) in lengths.iter_mut().zip(selected) {
@@ -135,15 +140,14 @@ fn products(
     products
 }
 
-/// The restricted likelihood of noise of any order.
+/// Restricted likelihood of noise of any order.
 struct Likelihood<'a> {
     products: &'a [DMatrix<f64>],
     equations: f64,
 }
 
 impl Likelihood<'_> {
-    /// The noise of an order that is most likely, and -2 times the logarithm of its restricted likelihood, but
-    /// for what all orders share.
+    /// Most likely noise of an order, and -2 log of its restricted likelihood up to a constant.
     fn maximised(&self, order: usize) -> Option<(Noise, f64)> {
         let mut noise = Noise {
             coefficients: vec![0.0; order],
@@ -168,7 +172,7 @@ impl Likelihood<'_> {
         Some((noise, badness))
     }
 
-    /// The sum of squares of the residual.
+    /// Sum of squares of the residual.
     fn square(&self) -> f64 {
         let whole = &self.products[0];
         whole[(whole.nrows() - 1, whole.nrows() - 1)]
@@ -189,7 +193,7 @@ impl Likelihood<'_> {
         Some(self.products.iter().map(of_lag).collect())
     }
 
-    /// Σ_t of products of the filtered columns and residuals.
+    /// Products of the filtered columns and residuals, summed over t.
     fn filtered_products(&self, noise: &Noise) -> DMatrix<f64> {
         let filter: Vec<f64> = std::iter::once(1.0)
             .chain(noise.coefficients.iter().copied())
@@ -207,7 +211,7 @@ impl Likelihood<'_> {
         sum
     }
 
-    /// The normal matrix of the filtered equations, and their solution δp.
+    /// Normal matrix of the filtered equations, and their solution δp.
     fn filtered(&self, noise: &Noise) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let all = self.filtered_products(noise);
         let m = all.nrows() - 1;
@@ -217,21 +221,21 @@ impl Likelihood<'_> {
         Some((normal, change))
     }
 
-    /// The sum of squares of what is left of the filtered equations.
+    /// Sum of squares of the residual of the filtered equations.
     fn filtered_square(&self, noise: &Noise, change: &DVector<f64>) -> f64 {
         let direction = direction(change);
         direction.dot(&(self.filtered_products(noise) * &direction))
     }
 }
 
-/// [-δp, 1]: what it makes of [J' e'] is the residual after a change δp.
+/// [-δp, 1], which converts [J' e'] to the residual after a change δp.
 fn direction(change: &DVector<f64>) -> DVector<f64> {
     let mut direction = -change.clone().insert_row(change.len(), 0.0);
     direction[change.len()] = 1.0;
     direction
 }
 
-/// The autoregressive noise with the autocovariances c_0 … c_p, by Levinson's recursion.
+/// Autoregressive noise with the autocovariances c_0 … c_p, by Levinson's recursion.
 fn levinson(autocovariances: &[f64]) -> Option<Noise> {
     let mut coefficients: Vec<f64> = Vec::new();
     let mut variance = *autocovariances.first()?;
@@ -239,7 +243,7 @@ fn levinson(autocovariances: &[f64]) -> Option<Noise> {
         let earlier = autocovariances[1..lag].iter().rev();
         let sum: f64 = coefficients.iter().zip(earlier).map(|(a, c)| a * c).sum();
         let reflection = -(autocovariances[lag] + sum) / variance;
-        // Written so that what is not a number is refused, too.
+        // Also false for NaN.
         let stable = variance > 0.0 && reflection.abs() < 1.0;
         if !stable {
             return None;
@@ -257,15 +261,16 @@ fn levinson(autocovariances: &[f64]) -> Option<Noise> {
     })
 }
 
-/// The autocovariances c_0 … c_p of autoregressive noise: Levinson's recursion backwards to the reflection
-/// coefficients, then forwards.
+/// Autocovariances c_0 … c_p of autoregressive noise.
+///
+/// Levinson's recursion backwards gives the reflection coefficients, then forwards the result.
 fn first_autocovariances(coefficients: &[f64], variance: f64) -> Vec<f64> {
     let mut orders = vec![coefficients.to_vec()];
     let mut power = variance;
     while let Some(last) = orders.last().filter(|last| !last.is_empty()) {
         let (reflection, rest) = (last[last.len() - 1], &last[..last.len() - 1]);
         let scale = 1.0 - reflection * reflection;
-        // Without an end to the growth there is no variance.
+        // Unstable noise has no finite variance.
         power = if scale > 0.0 {
             power / scale
         } else {
@@ -278,7 +283,7 @@ fn first_autocovariances(coefficients: &[f64], variance: f64) -> Vec<f64> {
     }
     let mut all = vec![power];
     for order in orders.iter().rev().skip(1) {
-        // The last equation of Yule and Walker of this order gives the next autocovariance.
+        // The last Yule-Walker equation of this order gives the next autocovariance.
         let before = all.iter().rev();
         let next: f64 = order.iter().zip(before).map(|(a, c)| a * c).sum();
         all.push(-next);

@@ -1,17 +1,18 @@
-//! Standard deviations of fitted parameters.
+//! Standard deviations of calibrated parameters.
 //!
-//! An estimate is off by Σ_t u_tᵀ ε_t, with u_t = J'_t N^-1 the influence of sample t, the noise ε in the units
-//! of the sensors. With autocovariances c_k of the noise, alike for all sensors, its variance is
+//! The error of an estimate is Σ_t u_tᵀ ε_t, with the influence u_t = J'_t N^-1 of sample t and the
+//! noise ε in units of the sensors. With autocovariances c_k of the noise, equal for all sensors,
+//! its variance is
 //!
 //! ```text
 //! v_i = c_0 l_i0 + 2 Σ_k c_k l_ik,   l_ik = Σ_t u_ti · u_(t+k)i,
 //! ```
 //!
-//! σ² (N^-1)_ii if the noise is white. What encoders leave is not always white (electronics average, slow
-//! motions stay within one step for many samples), and what the geometry does not explain never is. The
-//! autocovariances are those of `correlation`; the larger of this deviation and the one under white noise is
-//! told. The degrees of freedom of a variance are 2 v²/var(v), with var(v) what the uncertainty of the
-//! coefficients of the noise makes of it.
+//! which is σ² (N^-1)_ii for white noise. Encoder noise is not always white: electronics average,
+//! and slow motion stays within one step for many samples. Errors of the geometry are never white.
+//! The autocovariances come from `correlation`. The result is at least the standard deviation for
+//! white noise. The degrees of freedom are 2 v²/var(v), with var(v) from the uncertainty of the
+//! noise coefficients.
 
 use nalgebra::DVector;
 
@@ -22,20 +23,20 @@ use super::{
 };
 use crate::estimation::intervals::distributions::student_quantile;
 
-/// Part of its deviation by which a coefficient of the noise is changed to see what that does.
+/// Step of a noise coefficient for numerical derivatives, in standard deviations.
 const TRIED: f64 = 1e-3;
 
-/// What is known of the uncertainty of fitted parameters.
+/// Uncertainty of fitted parameters.
 #[derive(Debug, Clone)]
 pub(super) struct Deviations {
-    /// Standard deviation of each.
+    /// Standard deviation of each parameter.
     pub(super) each: Vec<f64>,
     /// Degrees of freedom of each variance.
     pub(super) freedoms: Vec<f64>,
 }
 
 impl Deviations {
-    /// Those of a fit to samples of runs, or `None` where it determines a parameter not at all.
+    /// Uncertainty of a fit to samples of runs; `None` if it does not determine a parameter.
     pub(super) fn new(fit: &Fit, of_runs: &[usize], redundancy: usize) -> Option<Self> {
         let selected = &fit.selected;
         let inverse = inverted(&restricted(&fit.normal.matrix, selected))?;
@@ -59,13 +60,13 @@ impl Deviations {
         Some(Self { each, freedoms })
     }
 
-    /// Half the interval that contains a parameter's true value but for a probability.
+    /// Half width of a parameter's interval that misses the true value with probability `misses`.
     pub(super) fn half(&self, place: usize, misses: f64) -> f64 {
         student_quantile(misses, self.freedoms[place]) * self.each[place]
     }
 }
 
-/// The mean square of the residual of equations from which so many parameters were fitted.
+/// Mean square residual of equations from which `parameters` were fitted.
 pub(super) fn variance(square: f64, equations: usize, parameters: usize) -> f64 {
     square / equations.saturating_sub(parameters).max(1) as f64
 }
@@ -74,7 +75,7 @@ pub(super) fn variance(square: f64, equations: usize, parameters: usize) -> f64 
 struct Influence(Vec<f64>);
 
 impl Influence {
-    /// That of the parameter for which `weights` is the column of N^-1.
+    /// l of the parameter with the column `weights` of N^-1.
     fn new(
         samples: &[Eliminated],
         of_runs: &[usize],
@@ -97,7 +98,7 @@ impl Influence {
         Self(products)
     }
 
-    /// v of the parameter under a noise.
+    /// v of the parameter for a noise.
     fn variance(&self, noise: &Noise) -> f64 {
         let covariances = noise.autocovariances(self.0.len());
         let terms = covariances.iter().zip(&self.0).enumerate();
@@ -107,7 +108,7 @@ impl Influence {
         sum.max(0.0)
     }
 
-    /// The degrees of freedom of v, where so many equations are free to tell the noise.
+    /// Degrees of freedom of v, where `free` equations determine the noise.
     fn freedom(&self, noise: &Noise, variance: f64, free: f64) -> f64 {
         let Some(uncertainty) = noise.uncertainty(free) else {
             return 1.0;
@@ -120,7 +121,7 @@ impl Influence {
         };
         let slopes = DVector::from_fn(noise.coefficients.len(), |place, _| slope(place));
         let of_coefficients = slopes.dot(&(uncertainty * &slopes));
-        // That of ln σ² is 2 over the free equations.
+        // The variance of ln σ² is 2/`free`.
         let freedom = 2.0 / (2.0 / free + of_coefficients);
         if freedom.is_finite() {
             freedom.clamp(1.0, free)

@@ -1,9 +1,9 @@
-//! The equations of all samples, each freed of its pose.
+//! Calibration equations of all samples, with the poses eliminated.
 //!
-//! Sample t has n equations e_t = J_x δx_t + J_p δp, everything divided by the noise of the sensors:
-//! e_t is what the sensors show beyond what pose and parameters ask for, J_x the columns of its r
-//! coordinates, J_p those of the parameters. With J_x = Q R, the projection I - Q Qᵀ takes the pose out:
-//! n - r equations for the parameters are left of each sample, however many samples there are.
+//! Sample t has n equations e_t = J_x δx_t + J_p δp, divided by the noise of the sensors. e_t is
+//! the difference between the sensors and the prediction from pose and parameters. J_x are the
+//! columns of the r coordinates, J_p those of the parameters. With J_x = Q R, the projection I - Q
+//! Qᵀ eliminates the pose. Each sample keeps n - r independent equations for the parameters.
 
 use nalgebra::{DMatrix, DVector};
 use overact::Model;
@@ -14,7 +14,7 @@ use super::{
     samples::{Samples, difference},
 };
 
-/// The robot, its runs and what may be changed in it.
+/// Robot, samples and calibrated geometry.
 #[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     pub(super) model: &'a dyn Model,
@@ -22,37 +22,37 @@ pub(super) struct Problem<'a> {
     pub(super) samples: &'a Samples,
 }
 
-/// What a calibration looks for: the parameters, and the pose of each sample.
+/// Unknowns of a calibration: the parameters, and the pose of each sample.
 #[derive(Debug, Clone)]
 pub(super) struct State {
-    /// What is added to the parameters: n encoder offsets, then the geometry's.
+    /// Changes of the parameters: n encoder offsets, then those of the geometry.
     pub(super) changes: Vec<f64>,
     /// Pose of each sample.
     pub(super) poses: Vec<f64>,
-    /// What the geometry remembers of each sample.
+    /// Memory of the geometry for each sample.
     pub(super) memory: Vec<f64>,
 }
 
-/// The equations of a sample.
+/// Equations of a sample.
 #[derive(Debug, Clone)]
 pub(super) struct Eliminated {
     /// (I - Q Qᵀ) e.
     pub(super) residual: DVector<f64>,
     /// (I - Q Qᵀ) J_p, n x m.
     pub(super) columns: DMatrix<f64>,
-    /// e and J_p as they are.
+    /// e and J_p before the projection.
     whole: (DVector<f64>, DMatrix<f64>),
     /// Q and R of J_x.
     pose: (DMatrix<f64>, DMatrix<f64>),
 }
 
 impl Problem<'_> {
-    /// m, number of parameters.
+    /// Number of parameters, m.
     pub(super) fn parameters(&self) -> usize {
         self.samples.sensors + self.geometry.parameters().len()
     }
 
-    /// The described robot at the poses that the samples were found at.
+    /// The described robot at the poses of the samples.
     pub(super) fn start(&self) -> Result<State, overact::Error> {
         let (size, kept) = (self.model.info().sizes.pose, self.geometry.memory());
         let mut memory = vec![0.0; self.samples.count() * kept];
@@ -69,7 +69,7 @@ impl Problem<'_> {
         })
     }
 
-    /// The equations of all samples in a state, whose memory follows its poses.
+    /// Equations of all samples in a state; updates the memory to its poses.
     pub(super) fn eliminated(&self, state: &mut State) -> Result<Vec<Eliminated>, overact::Error> {
         let (size, n) = (self.model.info().sizes.pose, self.samples.sensors);
         let kept = self.geometry.memory();
@@ -91,7 +91,7 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// The equations of a sample.
+    /// Equations of a sample.
     fn sample(
         &self,
         measured: &[f64],
@@ -124,7 +124,7 @@ impl Problem<'_> {
         })
     }
 
-    /// The state after a step of the parameters, every pose following it.
+    /// State after a step of the parameters, with the poses updated.
     pub(super) fn moved(
         &self,
         state: &State,
@@ -141,7 +141,7 @@ impl Problem<'_> {
             let (residual, columns) = &sample.whole;
             let (q, triangle) = &sample.pose;
             let right = q.tr_mul(&(residual - columns * step));
-            // R is regular, or there would be no equations.
+            // R is regular, since the equations exist.
             if let Some(step) = triangle.solve_upper_triangular(&right) {
                 self.model.displace(pose, step.as_slice());
             }
@@ -150,8 +150,9 @@ impl Problem<'_> {
     }
 }
 
-/// Makes columns orthonormal by the modified Gram-Schmidt process, twice for columns that are nearly
-/// dependent, and gives R.
+/// Orthonormalises columns by the modified Gram-Schmidt process, and returns R.
+///
+/// Each column is projected twice, for nearly dependent columns.
 fn orthonormalised(columns: &mut DMatrix<f64>) -> Result<DMatrix<f64>, overact::Error> {
     let r = columns.ncols();
     let mut triangle = DMatrix::zeros(r, r);
@@ -166,7 +167,7 @@ fn orthonormalised(columns: &mut DMatrix<f64>) -> Result<DMatrix<f64>, overact::
             }
         }
         let left = own.norm();
-        // Written so that a column that is not finite is refused, too.
+        // Also false for columns that are not finite.
         let regular = left > SINGULAR * size;
         if !regular {
             return Err(overact::Error::SingularPlatform {
@@ -180,10 +181,10 @@ fn orthonormalised(columns: &mut DMatrix<f64>) -> Result<DMatrix<f64>, overact::
     Ok(triangle)
 }
 
-/// Part of a column of J_x outside of the others below which the pose is not determined.
+/// Smallest independent fraction of a column of J_x; below it the pose is undetermined.
 const SINGULAR: f64 = 1e-10;
 
-/// The normal equations of all parameters, N δp = g, and the sum of squares of the residual.
+/// Normal equations of all parameters, N δp = g, and the sum of squared residuals.
 #[derive(Debug, Clone)]
 pub(super) struct Normal {
     pub(super) matrix: DMatrix<f64>,
@@ -192,14 +193,14 @@ pub(super) struct Normal {
 }
 
 impl Normal {
-    /// Those of the equations of all samples.
+    /// Normal equations of all samples.
     pub(super) fn new(equations: &[Eliminated], parameters: usize) -> Self {
         let zero = || Self {
             matrix: DMatrix::zeros(parameters, parameters),
             right: DVector::zeros(parameters),
             square: 0.0,
         };
-        // Chunks of fixed length in their order: the same sums on every machine.
+        // Chunks of fixed length and order give equal sums on every machine.
         let parts: Vec<Self> = equations
             .par_chunks(CHUNK)
             .map(|samples| Self::of_chunk(samples, parameters))
@@ -212,8 +213,9 @@ impl Normal {
         })
     }
 
-    /// Those of some samples, whose equations stand side by side: one product of two large matrices is faster
-    /// than many of small ones.
+    /// Normal equations of some samples.
+    ///
+    /// Their equations are concatenated: one large matrix product is faster than many small ones.
     fn of_chunk(samples: &[Eliminated], parameters: usize) -> Self {
         let count = samples.iter().map(|one| one.residual.len()).sum();
         let mut transposed = DMatrix::zeros(parameters, count);
@@ -233,5 +235,5 @@ impl Normal {
     }
 }
 
-/// Samples that are summed at once.
+/// Samples per product.
 const CHUNK: usize = 128;

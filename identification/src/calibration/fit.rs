@@ -1,43 +1,41 @@
-//! The fit of some of the parameters: the method of Levenberg and Marquardt on the equations that are
-//! free of poses.
+//! Fit of selected parameters by the Levenberg-Marquardt method, with poses eliminated.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::elimination::{Eliminated, Normal, Problem, State};
 
-/// Steps, at most; a fit that converges takes fewer than ten.
+/// Largest number of steps; a convergent fit needs fewer than ten.
 const STEPS: usize = 60;
 
-/// A fit has ended when a step is below this part of the deviations of all parameters under the
-/// sensors' noise.
+/// Step length at convergence, in standard deviations for the sensors' noise.
 const SMALL_STEP: f64 = 1e-3;
 
-/// Damping at the start, its change after a good and a bad step, and where it gives up.
+/// Initial damping, its factors after a good and a bad step, and its limit.
 const DAMPING: f64 = 1e-6;
 const DAMPING_LESS: f64 = 0.1;
 const DAMPING_MORE: f64 = 10.0;
 const DAMPING_LARGEST: f64 = 1e8;
 
-/// A fit of some parameters; the others are as described.
+/// Fit of selected parameters; the others stay as described.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
-    /// The parameters that were fitted, in ascending order.
+    /// Fitted parameters, in ascending order.
     pub(super) selected: Vec<usize>,
-    /// Where it ended.
+    /// Final state.
     pub(super) state: State,
-    /// The equations there.
+    /// Equations of the final state.
     pub(super) equations: Vec<Eliminated>,
     /// Their normal equations, in all parameters.
     pub(super) normal: Normal,
-    /// Whether the steps became small, and not merely too many.
+    /// Whether the steps became small before their number was exhausted.
     pub(super) converged: bool,
 }
 
 impl Fit {
-    /// Fits the parameters `selected` from a state on; all others keep the changes that the state has.
+    /// Fits the parameters `selected` from a state; all others keep their changes.
     ///
     /// # Errors
-    /// A start that the robot does not reach.
+    /// The robot cannot reach the start.
     pub(super) fn new(
         problem: &Problem<'_>,
         mut state: State,
@@ -61,7 +59,7 @@ impl Fit {
             let tried = problem.eliminated(&mut state);
             let tried = tried.map(|all| (Normal::new(&all, problem.parameters()), all));
             match tried {
-                // The poses may need a last step where the parameters are settled.
+                // The poses may need a last step after the parameters have converged.
                 Ok((normal, equations))
                     if normal.square <= fit.normal.square || size < SMALL_STEP =>
                 {
@@ -74,7 +72,7 @@ impl Fit {
                     }
                     damping *= DAMPING_LESS;
                 }
-                // A step out of the workspace is too long as well.
+                // A step that leaves the workspace is too long, too.
                 _ => damping *= DAMPING_MORE,
             }
             if damping > DAMPING_LARGEST {
@@ -84,7 +82,7 @@ impl Fit {
         Ok(fit)
     }
 
-    /// The damped step of all parameters, zero for those that are not fitted.
+    /// Damped step of all parameters; zero for those that are not fitted.
     fn step(&self, damping: f64) -> Option<DVector<f64>> {
         let mut step = DVector::zeros(self.normal.right.len());
         if self.selected.is_empty() {
@@ -102,19 +100,19 @@ impl Fit {
         Some(step)
     }
 
-    /// The length of a step in units of the deviations: √(δpᵀ N δp).
+    /// Length of a step in standard deviations: √(δpᵀ N δp).
     fn size(&self, step: &DVector<f64>) -> f64 {
         step.dot(&(&self.normal.matrix * step)).max(0.0).sqrt()
     }
 
-    /// The changes of the fitted parameters.
+    /// Changes of the fitted parameters.
     pub(super) fn values(&self) -> Vec<f64> {
         let changes = &self.state.changes;
         self.selected.iter().map(|&place| changes[place]).collect()
     }
 }
 
-/// Rows and columns of a matrix.
+/// Selected rows and columns of a matrix.
 pub(super) fn restricted(matrix: &DMatrix<f64>, places: &[usize]) -> DMatrix<f64> {
     matrix.select_rows(places).select_columns(places)
 }
@@ -125,7 +123,7 @@ pub(super) fn solved(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVec
     Some(inverse * right)
 }
 
-/// The inverse of a positive definite matrix whose rows may have different units.
+/// Inverse of a positive definite matrix whose rows may have different units.
 pub(super) fn inverted(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scales = matrix.diagonal().map(|entry| 1.0 / entry.sqrt());
     let scale = DMatrix::from_diagonal(&scales);

@@ -1,5 +1,4 @@
-//! What calibration asks of a robot: the positions of its actuators for a pose and for a geometry that
-//! may differ from the described one.
+//! Interface of a robot to calibration: actuator positions for a pose and a changed geometry.
 
 use nalgebra::DMatrix;
 use overact::{Function, Model};
@@ -8,38 +7,39 @@ use serde::Serialize;
 /// A length that calibration may change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeometryParameter {
-    /// Its name, for instance `d_2_leg1`.
+    /// Name, for instance `d_2_leg1`.
     pub name: String,
-    /// What it is.
+    /// Kind.
     pub kind: ParameterKind,
-    /// Its value in the description, m.
+    /// Value in the description, m.
     pub described: f64,
 }
 
-/// What a calibrated parameter is. Where the data leave a choice of what to hold as described, what
-/// comes later in this list is held first.
+/// Kind of a calibrated parameter.
+///
+/// If the data leave a choice which parameter to hold as described, later kinds are held first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ParameterKind {
-    /// What an encoder shows too much (rad, m).
+    /// Encoder reading minus true position (rad, m).
     EncoderOffset,
     /// A length of a leg's chain: b, d or r of a joint's step (m).
     Length,
-    /// A coordinate of the point where a leg is attached to the platform, in the platform frame (m).
+    /// A coordinate of a leg's attachment point, in the platform frame (m).
     PlatformPoint,
-    /// A coordinate of the point where a leg stands, in the base frame (m).
+    /// A coordinate of a leg's base point, in the base frame (m).
     BasePoint,
 }
 
-/// What a geometry says of a place.
+/// Actuator positions at a pose, with derivatives.
 #[derive(Debug, Clone, Default)]
 pub struct Reached {
     /// Positions of the n actuators (rad, m).
     pub positions: Vec<f64>,
-    /// J_p^inv, n x r: their derivatives along the twist coordinates.
+    /// J_p^inv, n × r: derivatives with respect to the twist coordinates.
     pub by_pose: DMatrix<f64>,
-    /// Their derivatives by the parameters, n x parameters.
+    /// Derivatives with respect to the parameters, n × parameters.
     pub by_parameter: DMatrix<f64>,
 }
 
@@ -48,23 +48,24 @@ pub trait Geometry: Sync {
     /// The lengths that can be changed.
     fn parameters(&self) -> &[GeometryParameter];
 
-    /// How many numbers it remembers of a sample.
+    /// Number of values in the memory of a sample.
     fn memory(&self) -> usize;
 
-    /// What it remembers of a sample at a pose of the described geometry.
+    /// Initialises the memory of a sample at a pose of the described geometry.
     ///
     /// # Errors
     /// A pose that the described robot does not reach.
     fn remember(&self, pose: &[f64], memory: &mut [f64]) -> Result<(), overact::Error>;
 
-    /// The robot with so much (m) added to the described value of each parameter.
+    /// The robot with `changes` (m) added to the described values of the parameters.
     fn changed(&self, changes: &[f64]) -> Box<dyn ChangedGeometry + '_>;
 }
 
-/// A robot whose geometry is changed.
+/// A robot with changed geometry.
 pub trait ChangedGeometry: Sync {
-    /// Evaluates the positions of the actuators at a pose, and their derivatives. What is remembered of
-    /// the sample says which of several configurations is meant, and follows the pose.
+    /// Evaluates the actuator positions at a pose, with derivatives.
+    ///
+    /// The memory selects one of several configurations and is updated to the pose.
     ///
     /// # Errors
     /// A pose that the changed robot does not reach.
@@ -76,7 +77,7 @@ pub trait ChangedGeometry: Sync {
     ) -> Result<(), overact::Error>;
 }
 
-/// The described geometry as it is: encoder offsets are all that can be calibrated.
+/// The described geometry without parameters; only encoder offsets can be calibrated.
 #[derive(Clone, Copy)]
 pub struct DescribedGeometry<'a>(&'a dyn Model);
 
@@ -89,7 +90,7 @@ impl std::fmt::Debug for DescribedGeometry<'_> {
 }
 
 impl<'a> DescribedGeometry<'a> {
-    /// That of a model, compiled or interpreted.
+    /// The geometry of a compiled or interpreted model.
     #[must_use]
     pub fn new(model: &'a dyn Model) -> Self {
         Self(model)

@@ -1,29 +1,32 @@
-//! Calibration from redundancy: encoder offsets and lengths from the closure of the loops.
+//! Calibration: encoder offsets and lengths from the closure of the loops.
 //!
-//! A robot with n sensors for r < n coordinates measures its pose more often than needed. Where the
-//! described geometry and the encoders are right, the n positions of each sample agree with one pose but
-//! for noise; where they are not, they contradict it, and the contradictions of many poses tell what is
-//! wrong, without any instrument beside the robot (self-calibration: Wampler, Hollerbach and Arai, *An
-//! implicit loop method for kinematic calibration and its application to closed-chain mechanisms*, IEEE
-//! Trans. Robotics and Automation 11, 1995; Hollerbach and Wampler, *The calibration index and taxonomy
-//! for robot kinematic calibration methods*, Int. J. Robotics Research 15, 1996).
+//! A robot with n sensors for r < n coordinates measures its pose redundantly. With the right
+//! geometry and encoders, the n positions of each sample agree with one pose up to noise. Otherwise
+//! the contradictions of many poses determine the errors, without external instruments
+//! (self-calibration: Wampler, Hollerbach and Arai, *An implicit loop method for kinematic
+//! calibration and its application to closed-chain mechanisms*, IEEE Trans. Robotics and Automation
+//! 11, 1995; Hollerbach and Wampler, *The calibration index and taxonomy for robot kinematic
+//! calibration methods*, Int. J. Robotics Research 15, 1996).
 //!
-//! With x_t the pose of sample t, o the offsets of the encoders and p the changes of lengths, the sensors
-//! show y_t = q(x_t, p) + o + noise. The sum of squares over all samples, each sensor in units of its
-//! noise, is minimised over o, p and all x_t. The poses are eliminated sample by sample (`elimination`),
-//! as in separable least squares (Golub and Pereyra, *SIAM J. Numerical Analysis* 10, 1973) and bundle
-//! adjustment: n - r equations in o and p are left of each sample.
+//! With the pose x_t of sample t, encoder offsets o and changes p of lengths, the sensors show
+//! y_t = q(x_t, p) + o + noise. The sum of squares over all samples, in units of the sensors'
+//! noise, is minimised over o, p and all x_t. The poses are eliminated sample by sample
+//! (`elimination`), as in separable least squares (Golub and Pereyra, *SIAM J. Numerical Analysis*
+//! 10, 1973) and bundle adjustment. Each sample keeps n - r equations in o and p.
 //!
-//! What they determine is told by the rank of these equations. A rigid motion of the base frame or of the
-//! platform frame changes no angle, and if all sensors are angles, neither does a common factor of all
-//! lengths: lengths are relative to those that are held as described.
+//! The rank of these equations shows which parameters are determined. A rigid motion of the base
+//! frame or of the platform frame changes no angle. If all sensors measure angles, a common factor
+//! of all lengths changes no angle, either. Lengths are relative to those that are held as
+//! described.
 //!
-//! - `geometry`: the robot as seen from here;
+//! - `geometry`: interface to the robot;
 //! - `samples`: samples of the runs, and the noise of the sensors;
 //! - `elimination`, `fit`: the equations without poses, and their solution;
-//! - `correlation`, `deviations`: how the noise hangs together over time, and how sure the solution is;
-//! - `selection`: which parameters are changed;
-//! - `result`: what is told.
+//! - `correlation`, `deviations`: autocorrelation of the noise, standard deviations of the
+//!   solution;
+//! - `selection`: choice of the changed parameters;
+//! - `report`: assembly of the result;
+//! - `result`: the result.
 
 mod correlation;
 mod deviations;
@@ -53,11 +56,12 @@ use report::Report;
 use samples::Samples;
 use selection::{Choice, independent_part};
 
-/// Estimates encoder offsets and lengths from the closure of the loops in runs. A robot whose loops tell
-/// nothing is no error: then nothing is estimated, and the remarks say why.
+/// Estimates encoder offsets and lengths from the loop closure in runs.
+///
+/// A robot without redundant sensors is no error: nothing is estimated, and the remarks say why.
 ///
 /// # Errors
-/// No run, runs that do not fit the robot, that can't be read or that leave its workspace.
+/// No run, or runs that do not fit the robot, cannot be read or leave its workspace.
 pub fn calibrate(
     model: &dyn Model,
     geometry: &dyn Geometry,
@@ -143,8 +147,10 @@ fn check(model: &dyn Model, runs: &[Log]) -> Result<(), Error> {
     Error::check(problems)
 }
 
-/// Of the first `count` parameters those that the equations determine together, in the order in which they
-/// are rather changed than held: with deviations below [`DETERMINED`] under the noise of the sensors.
+/// Those of the first `count` parameters that the equations determine together.
+///
+/// They are ordered by preference for change. Their standard deviations for the sensors' noise are
+/// below [`DETERMINED`].
 fn determined(normal: &Normal, problem: &elimination::Problem<'_>, count: usize) -> Vec<usize> {
     let n = problem.samples.sensors;
     let lengths = problem.geometry.parameters();
@@ -180,6 +186,7 @@ fn determined(normal: &Normal, problem: &elimination::Problem<'_>, count: usize)
     selected
 }
 
-/// Deviation, relative to the robot's largest length or in radians, above which a parameter counts as not
-/// determined when all are estimated together.
+/// Largest standard deviation of a determined parameter when all are estimated together.
+///
+/// In radians, or relative to the robot's largest length.
 const DETERMINED: f64 = 0.01;

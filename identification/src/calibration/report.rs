@@ -1,4 +1,4 @@
-//! What is told of a calibration.
+//! Assembles the result of a calibration.
 
 use overact::Info;
 
@@ -11,25 +11,25 @@ use super::{
     selection::{Choice, INDEPENDENT, independent_part},
 };
 
-/// What a 95 % interval may miss.
+/// Probability that a 95 % interval misses the true value.
 const MISSES: f64 = 0.05;
 
-/// What is left, in units of the sensors' noise, above which it is more than noise.
+/// Residual in units of the sensors' noise above which it is more than noise.
 const UNEXPLAINED: f64 = 1.5;
 
-/// The part of a parameter's effect, squared, that another must have in it to be named with it.
+/// Smallest squared fraction of a parameter's effect for which another one is named.
 const NAMED: f64 = 1e-3;
 
-/// A finished fit, to be told of.
+/// A finished fit to report.
 pub(super) struct Report<'a> {
     pub(super) scope: CalibrationScope,
     pub(super) choice: &'a Choice<'a>,
     pub(super) fit: &'a Fit,
-    /// The equations in the described robot.
+    /// Equations of the described robot.
     pub(super) described: &'a Normal,
 }
 
-/// A parameter before anything is known of it.
+/// Identity of a parameter.
 struct Named {
     name: String,
     unit: &'static str,
@@ -42,7 +42,7 @@ fn unit(revolute: bool) -> &'static str {
     if revolute { "rad" } else { "m" }
 }
 
-/// All parameters: offsets, then lengths.
+/// All parameters: encoder offsets, then lengths.
 fn named(info: &Info<'_>, geometry: &dyn Geometry) -> Vec<Named> {
     let sensors = info.actuators.iter().zip(info.actuator_is_revolute);
     let offsets = sensors.enumerate().map(|(index, (name, revolute))| Named {
@@ -63,7 +63,7 @@ fn named(info: &Info<'_>, geometry: &dyn Geometry) -> Vec<Named> {
     offsets.chain(lengths).collect()
 }
 
-/// The calibration of a robot whose sensors tell each pose once.
+/// Result for a robot without redundant sensors.
 pub(super) fn without_redundancy(
     info: &Info<'_>,
     geometry: &dyn Geometry,
@@ -99,7 +99,7 @@ pub(super) fn without_redundancy(
 }
 
 impl Report<'_> {
-    /// The calibration.
+    /// The result.
     pub(super) fn calibration(&self) -> Calibration {
         let problem = self.choice.problem;
         let info = problem.model.info();
@@ -150,14 +150,14 @@ impl Report<'_> {
         let values = self.fit.values();
         let each = places.iter().zip(values).enumerate();
         let parameter = |(order, ((place, one), change)): (usize, (&(usize, &Named), f64))| {
-            // A fit that determines a parameter not at all has infinite deviations.
+            // A parameter that the fit does not determine has infinite standard deviation.
             let half = |misses| {
                 let known = deviations.as_ref();
                 known.map_or(f64::INFINITY, |known| known.half(order, misses))
             };
             let known = deviations.as_ref();
             let half = half(MISSES);
-            // Of all that are estimated together, those that are right need no explanation.
+            // If all parameters are estimated together, right ones need no alternatives.
             let others = match self.scope {
                 CalibrationScope::Smallest => self.choice.alternatives(self.fit, *place),
                 _ => Vec::new(),
@@ -194,7 +194,7 @@ impl Report<'_> {
         }
     }
 
-    /// Why a parameter is not determined.
+    /// Why a parameter is undetermined.
     fn reason(&self, place: usize, all: &[Named]) -> String {
         let (normal, selected) = (&self.fit.normal, &self.fit.selected);
         let whole = normal.matrix[(place, place)];
@@ -244,7 +244,7 @@ impl Report<'_> {
         warnings
     }
 
-    /// Whether a common factor of all lengths would go unseen.
+    /// Remark if a common factor of all lengths is undetermined.
     fn scale(&self, all: &[Named]) -> Option<String> {
         let lengths = all.iter().map(|one| one.described);
         let direction = nalgebra::DVector::from_iterator(all.len(), lengths);

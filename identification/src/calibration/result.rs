@@ -1,4 +1,4 @@
-//! The result of a calibration, as it is printed and as it is serialised.
+//! Result of a calibration, for printing and serialisation.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,37 +17,36 @@ pub enum CalibrationScope {
     All,
 }
 
-/// What the closure of the loops tells of encoder offsets and lengths.
+/// Encoder offsets and lengths estimated from the loop closure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Calibration {
-    /// Which parameters it was free to change.
+    /// Parameters that were allowed to change.
     pub scope: CalibrationScope,
-    /// n, measured positions of a sample.
+    /// Number of measured positions of a sample, n.
     pub sensors: usize,
-    /// r, coordinates of the platform: each sample tells n - r numbers.
+    /// Number of platform coordinates, r; each sample has n - r equations.
     pub coordinates: usize,
-    /// Samples that it was made from.
+    /// Number of samples.
     pub samples: usize,
-    /// The noise of each sensor, as successive samples tell it.
+    /// Noise of each sensor, from successive samples.
     pub noise: Vec<SensorNoise>,
-    /// Root mean square of what the described geometry leaves unexplained, in units of the sensors'
-    /// noise: 1 where the description is right.
+    /// RMS residual of the described geometry, in units of the noise: 1 if it is right.
     pub misfit_before: f64,
     /// The same with the estimated changes.
     pub misfit_after: f64,
-    /// The parameters that are changed.
+    /// Changed parameters.
     pub estimated: Vec<CalibratedParameter>,
-    /// The parameters that stay as described.
+    /// Parameters that stay as described.
     pub held: Vec<HeldParameter>,
-    /// Whether the estimation has converged; what has not is not to be used.
+    /// Whether the estimation converged; otherwise it must not be used.
     pub converged: bool,
-    /// What is right to know: what the data can't determine at all, and why.
+    /// Remarks, such as what the data cannot determine and why.
     pub remarks: Vec<String>,
-    /// What speaks against the result.
+    /// Warnings against using the result.
     pub warnings: Vec<String>,
 }
 
-/// The noise of a sensor.
+/// Noise of a sensor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensorNoise {
     /// Name of the actuator.
@@ -58,26 +57,26 @@ pub struct SensorNoise {
     pub standard_deviation: f64,
 }
 
-/// A parameter that is changed.
+/// A changed parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CalibratedParameter {
-    /// Its name: `offset_leg1`, `d_2_leg1`, `base_x_leg1`, `end_x_leg1`.
+    /// Name: `offset_leg1`, `d_2_leg1`, `base_x_leg1`, `end_x_leg1`.
     pub name: String,
     /// `rad` or `m`.
     pub unit: &'static str,
-    /// What it is.
+    /// Kind.
     pub kind: ParameterKind,
-    /// What the description says; an offset is zero there, whatever the log's `position_offset` is.
+    /// Value in the description; zero for an offset, whatever the log's `position_offset` is.
     pub described: f64,
-    /// What is added to it.
+    /// Change to add.
     pub change: f64,
     /// Standard deviation of the change.
     pub standard_deviation: f64,
-    /// The 95 % interval of the change.
+    /// 95 % interval of the change.
     pub interval_95: [f64; 2],
-    /// Parameters that would explain the data as well in its place.
+    /// Parameters that would explain the data as well instead.
     pub alternatives: Vec<String>,
-    /// Its place among the sensors (offsets) or among the geometry's parameters.
+    /// Index among the sensors (offsets) or the geometry's parameters.
     #[serde(skip)]
     pub index: usize,
 }
@@ -85,29 +84,30 @@ pub struct CalibratedParameter {
 /// A parameter that stays as described.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HeldParameter {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// `rad` or `m`.
     pub unit: &'static str,
-    /// What it is.
+    /// Kind.
     pub kind: ParameterKind,
-    /// What the description says.
+    /// Value in the description.
     pub described: f64,
-    /// Standard deviation that a change of it would have beside the estimated ones; none where the data
-    /// do not determine it.
+    /// Standard deviation of a change, if it were estimated with the others.
+    ///
+    /// `None` if the data do not determine it.
     pub deviation_of_a_change: Option<f64>,
     /// Why the data do not determine it.
     pub reason: Option<String>,
 }
 
 impl Calibration {
-    /// Whether it changes anything: an estimation that has not converged does not.
+    /// Whether it changes anything; a result that has not converged does not.
     #[must_use]
     pub fn is_change(&self) -> bool {
         self.converged && !self.estimated.is_empty()
     }
 
-    /// What is to be subtracted from the position of each sensor; zero where no offset is estimated.
+    /// Offset to subtract from each sensor's position; zero if none is estimated.
     #[must_use]
     pub fn offsets(&self) -> Vec<f64> {
         let mut offsets = vec![0.0; self.sensors];
@@ -118,7 +118,7 @@ impl Calibration {
         offsets
     }
 
-    /// The lengths that are changed.
+    /// Changed lengths.
     pub fn lengths(&self) -> impl Iterator<Item = &CalibratedParameter> {
         let is_length = |one: &&CalibratedParameter| one.kind != ParameterKind::EncoderOffset;
         self.estimated.iter().filter(is_length)

@@ -1,11 +1,10 @@
-//! The samples of the runs that a calibration is made from, and the noise of their sensors.
+//! Samples of the runs for a calibration, and the noise of their sensors.
 //!
-//! Positions are taken as they were measured, without a filter. Two thousand samples that are spread
-//! over all runs tell as much as a calibration can use: their noise is small, and what the parameters
-//! gain by more of them is less than what any real robot's geometry leaves unexplained.
+//! Positions are unfiltered. Two thousand samples over all runs suffice: their noise is small, and
+//! more of them gain less than the error of any real robot's geometry.
 //!
-//! The noise of a sensor is told from the fourth differences of successive samples: a motion that is
-//! smooth from sample to sample leaves nothing in them, white noise of deviation σ has σ √70.
+//! The noise of a sensor is estimated from fourth differences of successive samples. They are zero
+//! for smooth motion, and have the standard deviation σ √70 for white noise.
 
 use overact::Code;
 use overact::{Model, math::wrap_angle};
@@ -19,35 +18,38 @@ use crate::{
 /// Samples of all runs together.
 const SAMPLES: usize = 2000;
 
-/// The golden section: its multiples are spread evenly between whole numbers and never return.
+/// Golden ratio; its multiples modulo 1 are evenly distributed and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Time between two samples on the way of which poses are followed, s: one in which a robot moves little.
+/// Time between two samples for which poses are tracked, s; the robot moves little in it.
 const FOLLOWED: f64 = 0.005;
 
-/// Factors of the fourth differences, and the root of the sum of their squares.
+/// Coefficients of fourth differences, and the root of their sum of squares.
 const DIFFERENCES: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const DIFFERENCES_NORM: f64 = 8.366_600_265_340_756;
 
-/// The mean magnitude of a normal variable, in deviations: √(2/π). A few jumps do not spoil it, and unlike a
-/// median it does not step with the resolution of an encoder.
+/// Mean magnitude of a normal variable, in standard deviations: √(2/π).
+///
+/// It is robust against a few jumps and, unlike a median, not quantised by the encoder's
+/// resolution.
 const NORMAL_MAGNITUDE: f64 = 0.797_884_560_802_865;
 
-/// The noise of a sensor counts as at least this part of the largest one: that of an encoder which
-/// stands still is not known to be zero.
+/// Smallest noise of a sensor, relative to the largest one.
+///
+/// An encoder at rest shows no noise, but has some.
 const LEAST_NOISE: f64 = 1e-3;
 
-/// Rows of differences that are kept of a run; the noise of a sensor does not change.
+/// Rows of differences per run, since the noise does not change.
 const DIFFERENCED: usize = 20_000;
 
 /// Samples of runs.
 #[derive(Debug, Clone)]
 pub(super) struct Samples {
-    /// n, sensors.
+    /// Number of sensors, n.
     pub(super) sensors: usize,
-    /// Positions, samples x n (rad, m).
+    /// Positions, samples × n (rad, m).
     pub(super) positions: Vec<f64>,
-    /// Poses that fit them best in the described geometry, samples x numbers of a pose.
+    /// Best poses in the described geometry, samples × numbers of a pose.
     pub(super) poses: Vec<f64>,
     /// Number of samples of each run, in the order of the runs.
     pub(super) of_runs: Vec<usize>,
@@ -61,10 +63,10 @@ impl Samples {
         self.of_runs.iter().sum()
     }
 
-    /// Takes samples of runs.
+    /// Selects samples of runs.
     ///
     /// # Errors
-    /// Runs that can't be read, that do not fit the robot or that leave its workspace.
+    /// Runs that cannot be read, do not fit the robot or leave its workspace.
     pub(super) fn new(model: &dyn Model, runs: &[Log]) -> Result<Self, Error> {
         let info = model.info();
         let n = info.sizes.actuators;
@@ -85,7 +87,7 @@ impl Samples {
         Ok(samples)
     }
 
-    /// Takes about one sample in `stride` of a run.
+    /// Selects about one sample in `stride` of a run.
     fn take(
         &mut self,
         model: &dyn Model,
@@ -116,13 +118,13 @@ impl Samples {
     }
 }
 
-/// The poses along a run.
+/// Poses along a run.
 struct Way<'a> {
     model: &'a dyn Model,
     log: &'a Log,
-    /// One sample in so many is taken.
+    /// One of this number of samples is selected.
     stride: usize,
-    /// One in so many is followed.
+    /// Poses are tracked every this number of samples.
     followed: usize,
     pose: Vec<f64>,
 }
@@ -139,7 +141,7 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// Follows the next sample; its pose where it is to be taken.
+    /// Tracks the next sample; returns its pose if it is selected.
     fn pose(&mut self, number: usize, row: &[f64]) -> Result<Option<&[f64]>, Error> {
         if number == 0 {
             approach(self.model, row, &mut self.pose);
@@ -161,8 +163,10 @@ impl<'a> Way<'a> {
     }
 }
 
-/// Whether a sample is taken: one in each `stride`, at a place that is another one every time. Errors of encoders
-/// return with a motion that returns, so samples at one distance would meet the same few of them again and again.
+/// Whether a sample is selected: one in each `stride`, at a varying place.
+///
+/// Encoder errors repeat with periodic motion. Equally spaced samples would always meet the same
+/// ones.
 fn is_taken(number: usize, stride: usize) -> bool {
     let place = (number / stride) as f64 * GOLDEN;
     number % stride == (place.fract() * stride as f64) as usize
@@ -173,7 +177,7 @@ fn differenced(positions: &[f64], n: usize, sensor: usize) -> impl Iterator<Item
     let count = (positions.len() / n).saturating_sub(DIFFERENCES.len() - 1);
     (0..count).map(move |first| {
         let terms = DIFFERENCES.iter().enumerate();
-        // Differences of neighbours, so that an angle may pass a whole turn.
+        // Differences to the first position, which keep precision for large angles.
         let start = positions[first * n + sensor];
         let sum = terms.map(|(k, factor)| {
             let step = positions[(first + k) * n + sensor] - start;
@@ -183,7 +187,7 @@ fn differenced(positions: &[f64], n: usize, sensor: usize) -> impl Iterator<Item
     })
 }
 
-/// Deviations of the sensors' noise from their differences.
+/// Standard deviations of the sensors' noise from their differences.
 fn noise(differences: Vec<Vec<f64>>, revolute: &[bool]) -> Vec<f64> {
     let deviation = |all: Vec<f64>| {
         let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
@@ -203,7 +207,7 @@ fn noise(differences: Vec<Vec<f64>>, revolute: &[bool]) -> Vec<f64> {
     pairs.map(|(own, kind)| own.max(floor(*kind))).collect()
 }
 
-/// The difference of two positions, an angle's modulo a turn.
+/// Difference of two positions; modulo a turn for angles.
 pub(super) fn difference(measured: f64, reached: f64, revolute: bool) -> f64 {
     if revolute {
         wrap_angle(measured - reached)

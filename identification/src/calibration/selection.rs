@@ -1,12 +1,15 @@
-//! Which parameters are changed.
+//! Choice of the changed parameters: stepwise selection.
 //!
-//! The loops tell the difference of what the sensors show and what the geometry allows, n - r numbers a
-//! sample; many sets of parameters explain it equally well when all may change, for nothing but the
-//! description says where the base frame, the platform frame and the unit of length are. So the smallest
-//! set that explains it is looked for: parameters enter one after the other, each time the one that explains
-//! most, as long as it explains more than chance would under white noise; after each, parameters are
-//! exchanged for others that explain more in their place, and leave where the others have made them useless.
-//! At the end those leave that are not significant by their honest deviations. All others stay as described.
+//! The closure has n - r equations per sample. If all parameters may change, many sets explain them
+//! equally well, since only the description defines the base frame, the platform frame and the unit
+//! of length. The smallest set is therefore searched:
+//!
+//! - Parameters enter one by one, the one with the largest gain first, while the gain is
+//!   significant for white noise.
+//! - After each entry, parameters are exchanged for better ones, and useless ones are removed.
+//! - Finally, parameters that are insignificant for correlated noise are removed.
+//!
+//! All other parameters stay as described.
 
 use nalgebra::DVector;
 
@@ -20,28 +23,29 @@ use crate::estimation::intervals::distributions::student_quantile;
 /// Probability that any parameter enters although the description is right.
 pub(super) const FALSE_ALARM: f64 = 1e-3;
 
-/// Part of a parameter's effect outside of those of others, squared, below which it can't be told from
-/// them: the root of what rounding leaves of sums of squares.
+/// Smallest squared fraction of a parameter's effect outside those of others.
+///
+/// It is the square root of the rounding error of sums of squares.
 pub(super) const INDEPENDENT: f64 = 1e-10;
 
-/// Entries and exchanges, at most, for each parameter that may be changed.
+/// Largest number of entries and exchanges for each candidate.
 const ROUNDS: usize = 4;
 
-/// What a choice is made from.
+/// Inputs of the selection.
 #[derive(Clone, Copy)]
 pub(super) struct Choice<'a> {
     pub(super) problem: &'a Problem<'a>,
-    /// Parameters that may be changed.
+    /// Candidates for change.
     pub(super) candidates: &'a [usize],
     /// n - r.
     pub(super) redundancy: usize,
 }
 
 impl Choice<'_> {
-    /// The fit of the smallest set that explains the samples.
+    /// Fit of the smallest set that explains the samples.
     pub(super) fn smallest(&self, start: State) -> Result<Fit, overact::Error> {
         let mut fit = Fit::new(self.problem, start, Vec::new())?;
-        // As often as this a search that goes round in circles may turn.
+        // Limits a search that cycles.
         for _ in 0..ROUNDS * self.candidates.len() {
             let next = match self.exchanged(&fit)? {
                 Some(next) => Some(next),
@@ -61,7 +65,7 @@ impl Choice<'_> {
         Ok(fit)
     }
 
-    /// The fit with the parameter that explains most of what is left, if it is significant.
+    /// Fit with the parameter of the largest gain, if that is significant.
     fn entered(&self, fit: &Fit) -> Result<Option<Fit>, overact::Error> {
         let free = self.candidates.iter().copied();
         let gains = free.filter_map(|one| Some((one, self.gain(fit, one)?)));
@@ -77,7 +81,7 @@ impl Choice<'_> {
         Ok((next.converged && better).then_some(next))
     }
 
-    /// The fit without the least significant parameter, if that is not significant at all.
+    /// Fit without the least significant parameter, if that is insignificant.
     fn removed(&self, fit: &Fit) -> Result<Option<Fit>, overact::Error> {
         let Some(ratios) = self.ratios(fit) else {
             return Ok(None);
@@ -90,8 +94,7 @@ impl Choice<'_> {
         self.of_set(fit, set).map(Some)
     }
 
-    /// The fit with one parameter exchanged for another that explains more in its place, or without one
-    /// that the others have made useless.
+    /// Fit with one parameter exchanged for a better one, or without a useless one.
     fn exchanged(&self, fit: &Fit) -> Result<Option<Fit>, overact::Error> {
         let model = LinearModel::new(fit);
         if let Some(useless) = self.useless(fit, &model) {
@@ -123,8 +126,9 @@ impl Choice<'_> {
         Ok(better.then_some(next))
     }
 
-    /// The fit of one parameter less that explains as much, with one of the others exchanged: what two
-    /// parameters explain together, one may explain alone.
+    /// Fit with one parameter removed and another one exchanged, if it is as good.
+    ///
+    /// One parameter may explain alone what two explain together.
     fn smaller(&self, fit: &Fit) -> Result<Option<Fit>, overact::Error> {
         let model = LinearModel::new(fit);
         let mut best: Option<(f64, Vec<usize>)> = None;
@@ -152,7 +156,7 @@ impl Choice<'_> {
         Ok((next.converged && next.normal.square < limit).then_some(next))
     }
 
-    /// The fit of another set, from where a fit is.
+    /// Fit of another set, starting from a fit.
     fn of_set(&self, fit: &Fit, set: Vec<usize>) -> Result<Fit, overact::Error> {
         let mut state = fit.state.clone();
         for (place, change) in state.changes.iter_mut().enumerate() {
@@ -163,13 +167,14 @@ impl Choice<'_> {
         Fit::new(self.problem, state, set)
     }
 
-    /// The sum of squares up to which a smaller set is as good: half of what a parameter has to explain to
-    /// enter, so that none enters and leaves for ever.
+    /// Sum of squares up to which a smaller set is as good.
+    ///
+    /// It allows half of the gain that a parameter needs to enter, which prevents cycles.
     fn as_good(&self, fit: &Fit) -> f64 {
         fit.normal.square + 0.5 * self.least_gain(fit)
     }
 
-    /// A parameter without which the others explain as much.
+    /// A parameter that the others make useless.
     fn useless(&self, fit: &Fit, model: &LinearModel<'_>) -> Option<usize> {
         let limit = self.as_good(fit);
         fit.selected.iter().copied().find(|&out| {
@@ -178,8 +183,7 @@ impl Choice<'_> {
         })
     }
 
-    /// By how much the sum of squares falls with one more parameter; none where it is selected or can't
-    /// be told from those that are.
+    /// Decrease of the sum of squares with one more parameter; `None` if selected or dependent.
     fn gain(&self, fit: &Fit, one: usize) -> Option<f64> {
         if fit.selected.contains(&one) {
             return None;
@@ -188,7 +192,7 @@ impl Choice<'_> {
         Some(fit.normal.right[one].powi(2) / own)
     }
 
-    /// The fall of the sum of squares that is more than chance.
+    /// Smallest significant decrease of the sum of squares.
     pub(super) fn least_gain(&self, fit: &Fit) -> f64 {
         let count = self.problem.samples.count() * self.redundancy;
         let variance = variance(fit.normal.square, count, fit.selected.len());
@@ -196,12 +200,12 @@ impl Choice<'_> {
         variance * quantile * quantile
     }
 
-    /// The probability that one parameter which is right enters.
+    /// Probability that one right parameter enters.
     fn level(&self) -> f64 {
         FALSE_ALARM / self.candidates.len().max(1) as f64
     }
 
-    /// For each fitted parameter its change in units of the one that chance would allow.
+    /// Change of each fitted parameter, divided by the largest insignificant one.
     fn ratios(&self, fit: &Fit) -> Option<Vec<f64>> {
         let of_runs = &self.problem.samples.of_runs;
         let deviations = Deviations::new(fit, of_runs, self.redundancy)?;
@@ -211,8 +215,7 @@ impl Choice<'_> {
         Some(values.map(ratio).collect())
     }
 
-    /// The parameters that explain the samples as well in the place of the parameter `out`, as far as
-    /// the equations at the solution tell.
+    /// Parameters that explain the samples as well instead of `out`, in the linearised equations.
     pub(super) fn alternatives(&self, fit: &Fit, out: usize) -> Vec<usize> {
         let model = LinearModel::new(fit);
         let limit = fit.normal.square + self.least_gain(fit);
@@ -227,7 +230,7 @@ impl Choice<'_> {
     }
 }
 
-/// A set with one parameter in the place of another.
+/// The set with `other` instead of `out`.
 fn exchanged(selected: &[usize], out: usize, other: usize) -> Vec<usize> {
     let one = |&own: &usize| if own == out { other } else { own };
     let mut set: Vec<usize> = selected.iter().map(one).collect();
@@ -235,13 +238,12 @@ fn exchanged(selected: &[usize], out: usize, other: usize) -> Vec<usize> {
     set
 }
 
-/// A set without one of its parameters.
+/// The set without `out`.
 fn without(selected: &[usize], out: usize) -> Vec<usize> {
     selected.iter().copied().filter(|one| *one != out).collect()
 }
 
-/// The part of a parameter's effect that no change of the selected ones has, as a sum of squares; none
-/// where there is no such part.
+/// Squared part of a parameter's effect outside the selected ones; `None` if there is none.
 pub(super) fn independent_part(normal: &Normal, selected: &[usize], one: usize) -> Option<f64> {
     let whole = normal.matrix[(one, one)];
     let mut own = whole;
@@ -253,12 +255,12 @@ pub(super) fn independent_part(normal: &Normal, selected: &[usize], one: usize) 
     (whole > 0.0 && own > INDEPENDENT * whole).then_some(own)
 }
 
-/// The sum of squares as a function of all parameters, linear about a fit.
+/// Sum of squares as a function of all parameters, linearised at a fit.
 struct LinearModel<'a> {
     normal: &'a Normal,
-    /// N p + g, with p the changes that the fit has made: the right-hand side for the whole changes.
+    /// N p + g, with the changes p of the fit: right-hand side for total changes.
     right: DVector<f64>,
-    /// The sum of squares without any change.
+    /// Sum of squares without any change.
     square: f64,
 }
 
@@ -274,8 +276,7 @@ impl<'a> LinearModel<'a> {
         }
     }
 
-    /// The least sum of squares that changes of a set of parameters reach; none for one that is not
-    /// determined.
+    /// Smallest sum of squares for changes of a set; `None` if the set is undetermined.
     fn square(&self, set: &[usize]) -> Option<f64> {
         if set.is_empty() {
             return Some(self.square);
@@ -283,7 +284,7 @@ impl<'a> LinearModel<'a> {
         let matrix = restricted(&self.normal.matrix, set);
         let right = self.right.select_rows(set);
         let inverse = inverted(&matrix)?;
-        // What rounding leaves of a singular matrix is no model.
+        // A numerically singular matrix gives no valid model.
         let whole = matrix.diagonal().component_mul(&inverse.diagonal());
         if whole.iter().any(|inflated| *inflated > 1.0 / INDEPENDENT) {
             return None;

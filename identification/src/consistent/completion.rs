@@ -1,4 +1,4 @@
-//! Bodies of which some parameters are known.
+//! Completion of a body from some of its parameters.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,17 +8,23 @@ use super::{
     unknowns::{Group, Kind, Unknowns},
 };
 
-/// What is given is met to this part of its scale, or no body has it.
+/// Relative tolerance of given parameters; beyond it no body has them.
 const MET: f64 = 1e-3;
 
-/// Deviations of what is given, by the scale of their kind: small enough to be met, large enough for the
-/// precision of numbers.
+/// Standard deviation of given parameters, relative to the scale of their kind.
+///
+/// It is small enough to meet them and large enough for floating point.
 const DEVIATION: f64 = 1e-7;
 
-/// A body of which some parameters are given: the mass, if it is not, of the uniform body that fits best;
-/// first moments that are missing zero; second moments, where none is given, those of the uniform body of
-/// that mass about its own centre; where some are, those of the body nearest to that one which has them.
-/// No body has the result where none can have what is given.
+/// Completes a body from some given parameters.
+///
+/// - A missing mass is that of the best-fitting uniform body.
+/// - Missing first moments are zero.
+/// - If no second moments are given, they are those of the uniform body of that mass about its
+///   centre.
+/// - If some are given, the result is the body nearest to that uniform one.
+///
+/// If no body has the given parameters, the result is no body, either.
 pub(super) fn completed(given: &[Option<f64>; 10], uniform: &Inertia) -> Inertia {
     let mass = given[9].unwrap_or_else(|| fitting_mass(given, uniform));
     let mut own = Inertia::from(given.map(Option::unwrap_or_default));
@@ -35,7 +41,7 @@ pub(super) fn completed(given: &[Option<f64>; 10], uniform: &Inertia) -> Inertia
     nearest(&centred, given).unwrap_or(own)
 }
 
-/// The mass of the uniform body whose second moments are nearest to those that are given.
+/// Mass of the uniform body with second moments nearest to the given ones.
 fn fitting_mass(given: &[Option<f64>; 10], uniform: &Inertia) -> f64 {
     let pairs = given[..6].iter().zip(uniform.iter());
     let (mut product, mut square) = (0.0, 0.0);
@@ -49,7 +55,7 @@ fn fitting_mass(given: &[Option<f64>; 10], uniform: &Inertia) -> f64 {
     }
 }
 
-/// Second moments of a body's whole mass in its centre.
+/// Second moments of the whole mass at a body's centre.
 fn steiner(body: &Inertia) -> [f64; 6] {
     let [x, y, z] = [6, 7, 8].map(|k| body[k] / body[9]);
     let square = [
@@ -113,12 +119,12 @@ mod tests {
 
     #[test]
     fn a_mass_and_a_centre_get_the_uniform_body_s_moments_about_them() {
-        // A ball of 1 kg, moments 0.01, whose mass becomes 4 kg and whose centre goes to (0.5, 0, 0).
+        // A ball of 1 kg and moments 0.01 becomes 4 kg with centre (0.5, 0, 0).
         let mut given = [None; 10];
         (given[6], given[9]) = (Some(2.0), Some(4.0));
         let expected = Inertia::from([0.04, 0.0, 0.0, 1.04, 0.0, 1.04, 2.0, 0.0, 0.0, 4.0]);
         assert!((completed(&given, &ball()) - expected).norm() < 1e-15);
-        // Back again: a body that is not uniform about its own origin.
+        // The reverse: a body that is not uniform about its own origin.
         let mut back = [None; 10];
         back[9] = Some(1.0);
         assert!((completed(&back, &expected) - ball()).norm() < 1e-15);
@@ -131,7 +137,7 @@ mod tests {
         let own = completed(&given, &ball());
         assert_eq!((own[5], own[6], own[9]), (0.3, 0.5, 2.0));
         assert!(divergence(&own, &own).is_some(), "{own}");
-        // Less than the mass in its centre has.
+        // Less than a point mass at its centre has.
         given[5] = Some(0.1);
         assert!(divergence(&completed(&given, &ball()), &ball()).is_none());
     }

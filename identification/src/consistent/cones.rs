@@ -1,11 +1,12 @@
-//! What holds the unknowns inside: cones with their multipliers.
+//! Constraints of the unknowns: cones with their multipliers.
 //!
-//! On the path of weight μ the multiplier of a body's pseudo-inertia P is Z = μ P^-1, that of a distance s
-//! from a bound z = μ/s. A step dP = G U Gᵀ is found in coordinates in which P and Z are the same diagonal
-//! matrix, G^-1 P G^-T = Gᵀ Z G = Λ (Nesterov, Todd 1997): its curvature is ½ |U|² then, and the multiplier
-//! changes by μ Λ^-1 - Λ - U. Unlike the curvature of the barrier alone this one knows which border holds
-//! the point back, so that a fall of μ by a factor of ten costs a step or two; and no matrix that is about
-//! to degenerate is ever inverted.
+//! On the central path of weight μ, the multiplier of a body's pseudo-inertia P is Z = μ P^-1. That
+//! of a distance s from a bound is z = μ/s. A step dP = G U Gᵀ uses the Nesterov-Todd scaling: P
+//! and Z become the same diagonal matrix, G^-1 P G^-T = Gᵀ Z G = Λ (Nesterov, Todd 1997). The
+//! curvature is then ½ |U|², and the scaled multiplier changes by μ Λ^-1 - Λ - U.
+//!
+//! Unlike the curvature of the barrier alone, this one knows the active constraints. Reducing μ by
+//! a factor of ten needs one or two steps, and no nearly singular matrix is inverted.
 
 use nalgebra::{Matrix4, Vector4};
 
@@ -14,42 +15,44 @@ use super::{
     side::{Side, until},
 };
 
-/// What the coefficients of a step are multiplied with, and what they may become.
+/// A constraint set of a block of unknowns.
 pub(super) trait Cone {
-    /// The values (of fewer than ten unknowns the first ones).
+    /// Values; a block of fewer than ten unknowns uses the first entries.
     fn values(&self) -> Inertia;
 
-    /// The matrix that makes changes of the values of the coordinates of a step.
+    /// Matrix from step coordinates to changes of the values.
     fn scaling(&self) -> Metric;
 
-    /// The slope of `cost` times the divergence without its logarithms, and of the barrier times `weight`,
-    /// in the coordinates of a step.
+    /// Gradient in step coordinates.
+    ///
+    /// It is that of `cost` times the divergence without its logarithms, and `weight` times the
+    /// barrier.
     fn slope(&self, cost: f64, weight: f64) -> Inertia;
 
     /// Number of products of a distance and its multiplier, and their sum.
     fn products(&self) -> (usize, f64);
 
-    /// Takes a step towards a weight as the next one: how many times it can be made.
+    /// Computes a step towards a weight; returns the largest feasible multiple.
     fn propose(&mut self, step: &Inertia, weight: f64) -> f64;
 
-    /// Makes a part of the step that was proposed; none where rounding leaves the cone.
+    /// Makes a fraction of the computed step; `None` if rounding leaves the cone.
     fn advance(&mut self, part: f64) -> Option<()>;
 }
 
-/// The pseudo-inertia of a body.
+/// Cone of a body's pseudo-inertia.
 pub(super) struct BodyCone {
     /// Inverse of the prior's pseudo-inertia.
     cost: Matrix4<f64>,
     /// G.
     scaling: Matrix4<f64>,
-    /// The diagonal of Λ.
+    /// Diagonal of Λ.
     lambda: Vector4<f64>,
     /// U and the change of the multiplier.
     proposed: [Matrix4<f64>; 2],
 }
 
 impl BodyCone {
-    /// A body on the path of a weight; none where it or its prior is none.
+    /// A body on the path of a weight; `None` if it or its prior is no body.
     pub(super) fn new(prior: &Inertia, own: &Inertia, weight: f64) -> Option<Self> {
         let lower = pseudo_inertia(own).cholesky()?.l();
         Some(Self {
@@ -61,8 +64,9 @@ impl BodyCone {
     }
 }
 
-/// Rows and columns of a symmetric matrix in the order of a step's coordinates, in which off-diagonal entries
-/// are multiplied by √2 so that lengths stay what they are.
+/// Rows and columns of a symmetric matrix in the order of step coordinates.
+///
+/// Off-diagonal entries are multiplied by √2, so norms are preserved.
 const ENTRIES: [(usize, usize); 10] = [
     (0, 0),
     (1, 1),
@@ -150,14 +154,14 @@ impl Cone for BodyCone {
     }
 }
 
-/// A coefficient above zero.
+/// Cone of a positive coefficient.
 pub(super) struct PositiveCone {
     prior: f64,
     side: Side,
 }
 
 impl PositiveCone {
-    /// A coefficient on the path of a weight; none where it is not positive.
+    /// A coefficient on the path of a weight; `None` if it is not positive.
     pub(super) fn new(prior: f64, own: f64, weight: f64) -> Option<Self> {
         let side = Side::new((0, 0.0, 1.0), own, weight)?;
         Some(Self { prior, side })
@@ -193,17 +197,17 @@ impl Cone for PositiveCone {
     }
 }
 
-/// A coefficient of either sign, which nothing but its magnitude holds back.
+/// An unconstrained coefficient with a quadratic cost.
 pub(super) struct FreeCone {
-    /// By how much it changes at the cost of ½.
+    /// Change that costs ½.
     scale: f64,
     value: f64,
-    /// What the next step adds.
+    /// Next step.
     proposed: f64,
 }
 
 impl FreeCone {
-    /// A coefficient whose half square by that of its magnitude costs `cost`.
+    /// A coefficient with the cost `cost` times ½ (value/`magnitude`)².
     pub(super) fn new(magnitude: f64, value: f64, cost: f64) -> Self {
         Self {
             scale: magnitude / cost.sqrt(),
@@ -284,7 +288,7 @@ mod tests {
             };
             let (up, here, down) = (at(1.0)?, at(0.0)?, at(-1.0)?);
             assert!(((up - down) / 2e-5 - slope[k]).abs() < 1e-6, "{k}");
-            // On the path of weight 1 a step's coordinates see the curvature 1.
+            // On the path of weight 1, the curvature in step coordinates is 1.
             assert!(((up - 2.0 * here + down) / 1e-10 - 1.0).abs() < 1e-3, "{k}");
         }
         Ok(())
@@ -324,7 +328,7 @@ mod tests {
     #[test]
     fn a_coefficient_reaches_as_far_as_zero() -> Result<(), &'static str> {
         let mut cone = PositiveCone::new(2.0, 2.0, 1.0).ok_or("not positive")?;
-        // The scaling of a coefficient on the path of weight 1 is its value.
+        // On the path of weight 1, the scaling of a coefficient is its value.
         let step = Inertia::from_fn(|k, _| if k == 0 { -4.0 } else { 0.0 });
         assert!((cone.propose(&step, 1.0) - 0.25).abs() < 1e-12);
         assert!(PositiveCone::new(2.0, 0.0, 1.0).is_none());

@@ -1,4 +1,4 @@
-//! The density of bodies of which only the shape is believed.
+//! Common density of bodies of which only the shape is known beforehand.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,7 +8,7 @@ use super::{
 };
 
 impl Values {
-    /// With the density by which uniform bodies explain best what is measured.
+    /// Sets the density with which uniform bodies fit the data best.
     pub(super) fn with_density(
         mut self,
         unknowns: &Unknowns,

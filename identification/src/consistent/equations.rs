@@ -1,25 +1,24 @@
-//! The equations of a step.
+//! Linear equations of a step.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::pseudo_inertia::Metric;
 
-/// How often a solution is put into the equations again, to mend what rounding left.
+/// Number of refinements of a solution against rounding.
 const REFINEMENTS: usize = 2;
 
-/// The equations of a step u: y = r - M u and u = Mᵀ y - g.
+/// Equations of a step u: y = r - M u and u = Mᵀ y - g.
 pub(super) struct Equations {
-    /// M: what is measured, and a row for each bound, by the coordinates of a step.
+    /// M: measured rows, then one row for each bound, in step coordinates.
     pub(super) matrix: DMatrix<f64>,
-    /// 1 + M Mᵀ.
+    /// Cholesky factor of 1 + M Mᵀ.
     gram: Cholesky<f64, Dyn>,
-    /// For each block of unknowns its first one, their number, and the matrix S that makes changes of them of
-    /// the coordinates.
+    /// For each block: first unknown, length, and matrix S from step coordinates to changes.
     scalings: Vec<(usize, usize, Metric)>,
 }
 
 impl Equations {
-    /// None where numbers are not finite.
+    /// `None` if numbers are not finite.
     pub(super) fn new(matrix: DMatrix<f64>, scalings: Vec<(usize, usize, Metric)>) -> Option<Self> {
         let gram = one_plus_square(&matrix)?;
         Some(Self {
@@ -29,7 +28,7 @@ impl Equations {
         })
     }
 
-    /// The step for what is unexplained, of the rows that are measured, and a slope.
+    /// The step for residuals `unexplained` of the measured rows and the gradient `slope`.
     pub(super) fn solved(&self, unexplained: &DVector<f64>, slope: &DVector<f64>) -> DVector<f64> {
         let mut rest = DVector::zeros(self.matrix.nrows());
         rest.rows_mut(0, unexplained.len()).copy_from(unexplained);
@@ -44,7 +43,7 @@ impl Equations {
         step
     }
 
-    /// Variances of the unknowns, all rows having the variance 1: the diagonal of S (1 + Mᵀ M)^-1 Sᵀ.
+    /// Variances of the unknowns for rows of unit variance: diagonal of S (1 + Mᵀ M)^-1 Sᵀ.
     pub(super) fn variances(&self) -> DVector<f64> {
         let count = self.matrix.ncols();
         let told = self.matrix.tr_mul(&self.gram.solve(&self.matrix));
@@ -60,8 +59,9 @@ impl Equations {
     }
 }
 
-/// A triangle L of 1 + M Mᵀ. Where rows of M are so nearly dependent that their products hide it, L is found
-/// from M itself: [Mᵀ; 1] = Q Lᵀ.
+/// Triangular factor L of 1 + M Mᵀ.
+///
+/// If rows of M are nearly dependent, L follows from M itself: [Mᵀ; 1] = Q Lᵀ.
 fn one_plus_square(matrix: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
     let count = matrix.nrows();
     if !matrix.iter().all(|value| value.is_finite()) {
@@ -113,8 +113,8 @@ mod tests {
         rows[(1, 0)] += 1e-4;
         let scalings = vec![(0, 10, Metric::identity()), (10, 1, Metric::identity())];
         let equations = Equations::new(rows, scalings).expect("finite numbers");
-        // Of the difference of both 1e-4 d_0 is measured, with the variance 2: d_0 = 1, less its part along
-        // the rows, which may not change.
+        // The difference of both rows measures 1e-4 d_0 with variance 2. Therefore d_0 = 1, minus
+        // its part along the rows, which may not change.
         let (rest, slope) = (DVector::from_vec(vec![0.0, 2e4]), DVector::zeros(12));
         let step = equations.solved(&rest, &slope);
         assert!((step[0] - (1.0 - 1.0 / 650.0)).abs() < 1e-3, "{step}");

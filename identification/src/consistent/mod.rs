@@ -1,14 +1,16 @@
-//! Standard parameters that a robot can have: the physically consistent estimate.
+//! Physically consistent standard parameters.
 //!
-//! Base parameters b = B χ say nothing of the standard parameters χ one by one, and noise can give them
-//! values that no robot has: negative masses, moments that no distribution of mass yields. Controllers and
-//! simulators need a χ whose mass matrix is positive definite everywhere. Of all χ whose bodies have
-//! positive definite pseudo-inertias, and whose friction and rotor inertias are positive, the one is taken
-//! that explains the data best; where they leave it open, the one nearest to a prior (Sousa, Cortesão
-//! 2014; Traversaro et al. 2016; distance: Lee, Wensing, Park 2020).
+//! Base parameters b = B χ do not determine the standard parameters χ individually. Noise can also
+//! give them values without a physical meaning: negative masses, or impossible moments of inertia.
+//! Controllers and simulators need a χ with a positive definite mass matrix everywhere.
 //!
-//! The data enter by the R factors of the observation system, so a million samples cost as much as a
-//! thousand.
+//! The estimate is physically consistent: bodies have positive definite pseudo-inertias, and
+//! friction and rotor inertias are positive. Among these χ, it explains the data best, and is
+//! nearest to a prior in directions that the data leave open (Sousa, Cortesão 2014; Traversaro et
+//! al. 2016; distance: Lee, Wensing, Park 2020).
+//!
+//! The data enter by the R factors of the observation system, so the cost is independent of the
+//! number of samples.
 
 mod completion;
 mod cones;
@@ -49,30 +51,31 @@ use crate::{
     result::Estimate,
 };
 
-/// Directions of the base parameters that the data show less than this part as well as the best one are
-/// left to the prior.
+/// Smallest relative singular value of directions that the data determine.
+///
+/// Other directions are left to the prior.
 const RANK_TOLERANCE: f64 = 1e-10;
 
-/// Noise is at least this part of what is measured, so that exact data keep a weight.
+/// Smallest relative noise, so that exact data keep a finite weight.
 const SMALLEST_NOISE: f64 = 1e-9;
 
-/// A set of standard parameters that a robot can have.
+/// A physically consistent set of standard parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Consistent {
-    /// Which inputs it explains.
+    /// Model.
     pub model: ModelKind,
     /// All standard parameters of the model.
     pub parameters: Vec<ConsistentParameter>,
-    /// The bodies.
+    /// Bodies.
     pub bodies: Vec<ConsistentBody>,
-    /// Values of the base parameters that follow (SI units), in their order.
+    /// Values of the base parameters in their order (SI units).
     #[serde(skip)]
     pub base_values: Vec<f64>,
     /// ||ρ||, unweighted.
     pub residual_norm: f64,
     /// 100 ||ρ||/||Y||, unweighted.
     pub relative_error_percent: f64,
-    /// The relative error of the base parameters by least squares, of which no consistency is asked.
+    /// Relative residual of the base parameters by least squares, without consistency.
     pub base_relative_error_percent: f64,
     /// Each line of Γ.
     pub lines: Vec<LineError>,
@@ -81,16 +84,17 @@ pub struct Consistent {
 /// A standard parameter of a consistent estimate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConsistentParameter {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// SI unit.
     pub unit: String,
     /// Value.
     pub value: f64,
-    /// What was believed before the data spoke.
+    /// Prior value.
     pub prior: f64,
-    /// The part of the prior's variance that the data took away: 1 for a parameter that they determine, 0
-    /// for one of which they say nothing.
+    /// Fraction of the prior's variance that the data removed.
+    ///
+    /// 1 for a parameter that they determine, 0 for one that they do not affect.
     pub determined: f64,
 }
 
@@ -101,12 +105,13 @@ pub struct ConsistentBody {
     pub mass: String,
     /// Mass, kg.
     pub mass_kg: f64,
-    /// Smallest eigenvalue of its pseudo-inertia by the trace, lengths being scaled to the body: positive
-    /// for a body, 0.25 at most.
+    /// Smallest eigenvalue of its pseudo-inertia divided by the trace, with scaled lengths.
+    ///
+    /// Positive for a body, at most 0.25.
     pub definiteness: f64,
 }
 
-/// The consistent estimate of a system, none where no step leads there.
+/// Consistent estimate of a system; `None` if the search fails.
 #[must_use]
 pub(crate) fn consistent(
     (columns, base): (&ColumnSet, &BaseParameters),
@@ -129,7 +134,7 @@ pub(crate) fn consistent(
     ))
 }
 
-/// What the data say of the base parameters, in units of its noise: one row for each direction.
+/// Measured directions of the base parameters in units of the noise: rows and right-hand side.
 fn observed(system: &System, estimate: &Estimate, count: usize) -> (DMatrix<f64>, DVector<f64>) {
     let all: Vec<usize> = (0..count).collect();
     let reduced = Factor::reduced_together(&system.lines, &estimate.weights, &all);
@@ -143,7 +148,7 @@ fn observed(system: &System, estimate: &Estimate, count: usize) -> (DMatrix<f64>
         .residual_deviation
         .max(smallest)
         .max(f64::MIN_POSITIVE);
-    // Rows that say nothing are those behind the rank of a triangle of falling diagonal.
+    // Rows beyond the rank of the pivoted triangle contain no information.
     let mut b = reduced.rhs / noise;
     let sorted = (reduced.triangle / noise).col_piv_qr();
     let mut rows = sorted.r();
@@ -160,7 +165,7 @@ fn observed(system: &System, estimate: &Estimate, count: usize) -> (DMatrix<f64>
     )
 }
 
-/// B: base parameters of unknowns.
+/// B: base parameters from unknowns.
 fn regroupings(base: &BaseParameters, unknowns: &Unknowns) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(base.columns.len(), unknowns.len());
     for (row, (&kept, regrouped)) in base.columns.iter().zip(&base.regroupings).enumerate() {

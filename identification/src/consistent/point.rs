@@ -1,4 +1,4 @@
-//! A point on the way to a consistent estimate, and its steps.
+//! Iterate of the interior-point method, and its steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -10,10 +10,10 @@ use super::{
     unknowns::{Group, Kind, Unknowns},
 };
 
-/// A step goes no farther than this part of the way to where a body or a multiplier degenerates.
+/// Largest fraction of the distance to the boundary in one step.
 const CLEAR: f64 = 0.9;
 
-/// Unknowns that are constrained together, on their way.
+/// Unknowns that are constrained together.
 struct Block {
     first: usize,
     len: usize,
@@ -46,7 +46,7 @@ impl Block {
     }
 }
 
-/// A point on its way, with its multipliers.
+/// An iterate with its multipliers.
 pub(super) struct Point {
     blocks: Vec<Block>,
     /// Number of unknowns.
@@ -55,17 +55,18 @@ pub(super) struct Point {
     cost: f64,
 }
 
-/// A step that was made.
+/// A completed step.
 pub(super) struct Step {
-    /// Its length in the metric of D.
+    /// Length in the metric of D.
     pub(super) length: f64,
-    /// The part of it that was made.
+    /// Fraction that was made.
     pub(super) part: f64,
 }
 
 impl Point {
-    /// On the path of the first weight, the second one being that of the divergence without its logarithms;
-    /// none outside the cones and bounds.
+    /// A point on the central path of the first weight; `None` outside cones and bounds.
+    ///
+    /// The second weight is that of the divergence without its logarithms.
     pub(super) fn new(
         unknowns: &Unknowns,
         values: &DVector<f64>,
@@ -80,12 +81,12 @@ impl Point {
         })
     }
 
-    /// The unknowns.
+    /// Values of the unknowns.
     pub(super) fn values(&self) -> DVector<f64> {
         self.gathered(|block| block.cone.values())
     }
 
-    /// A vector over all unknowns of what each cone has.
+    /// Collects a vector over all unknowns from the cones.
     fn gathered(&self, own: impl Fn(&Block) -> Inertia) -> DVector<f64> {
         let mut all = DVector::zeros(self.len);
         for block in &self.blocks {
@@ -96,7 +97,7 @@ impl Point {
         all
     }
 
-    /// The weight of the path that is nearest.
+    /// Weight of the nearest point of the central path.
     pub(super) fn weight(&self) -> f64 {
         let (mut count, mut sum) = (0, 0.0);
         for block in &self.blocks {
@@ -138,7 +139,7 @@ impl Point {
         (length.is_finite() && part > 0.0).then_some(Step { length, part })
     }
 
-    /// The equations of a step: M, with a row more for each bound.
+    /// Equations of a step: M, with an additional row for each bound.
     pub(super) fn equations(&self, a: &DMatrix<f64>) -> Option<Equations> {
         let sides: usize = self.blocks.iter().map(|block| block.sides.len()).sum();
         let mut all = DMatrix::zeros(a.nrows() + sides, self.len);
@@ -161,7 +162,7 @@ impl Point {
         Equations::new(all, scalings.collect())
     }
 
-    /// The slope in the coordinates of a step.
+    /// Gradient in step coordinates.
     fn slope(&self, weight: f64) -> DVector<f64> {
         self.gathered(|block| {
             let mut slope = block.cone.slope(self.cost, weight);

@@ -1,4 +1,4 @@
-//! The prior values that a description gives, completed, and what is wrong with them.
+//! Completion and validation of the prior values of a description.
 
 use overact::Code;
 use std::collections::BTreeMap;
@@ -12,12 +12,14 @@ use super::{
 };
 use crate::{error::Problem, prior::Prior};
 
-/// A standard parameter as a prior speaks of it: its name and what it is.
+/// Name and symbol of a standard parameter.
 pub(super) type Named<'a> = (&'a str, StandardParameter);
 
 impl Prior {
-    /// What is wrong with it for a robot of these standard parameters: bodies that nobody can build (the
-    /// problem's column is a parameter of the body) and bounds that leave nothing.
+    /// Problems of the prior for a robot with these standard parameters.
+    ///
+    /// They are impossible bodies and empty bounds. The problem's column is a parameter of the
+    /// body.
     #[must_use]
     pub fn problems(&self, parameters: &[Named<'_>]) -> Vec<Problem> {
         let values = Values::new(self, parameters);
@@ -33,7 +35,7 @@ impl Prior {
         bodies.chain(bounds).collect()
     }
 
-    /// The problem of a body whose values can't be those of any body.
+    /// The problem of a body with impossible parameters.
     fn impossible_body(&self, suffix: &str) -> Problem {
         let message = format!(
             "no body has the prior parameters of `m{suffix}`: whatever the others are, its pseudo-inertia is not positive definite"
@@ -51,7 +53,7 @@ impl Prior {
     }
 }
 
-/// What is wrong with a parameter's bounds, if anything.
+/// The problem of a parameter's bounds, if there is one.
 fn impossible_bounds(
     name: &str,
     [low, high]: [f64; 2],
@@ -75,7 +77,7 @@ fn impossible_bounds(
 }
 
 impl Values {
-    /// The values that are given, and uniform bodies of density 1.
+    /// The given values, and uniform bodies of density 1.
     pub(super) fn new(prior: &Prior, parameters: &[Named<'_>]) -> Self {
         let mut values = Self {
             given: BTreeMap::new(),

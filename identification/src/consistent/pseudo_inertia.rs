@@ -1,9 +1,10 @@
-//! The pseudo-inertia of a rigid body, and distances between two of them.
+//! Pseudo-inertia of a rigid body, and divergence between two bodies.
 //!
-//! P = ∫ [p; 1] [p; 1]ᵀ dm is linear in the ten inertial parameters, and these are those of a body of
-//! positive mass density exactly if P is positive definite (Wensing, Kim, Slotine 2018). The divergence
-//! tr(P_0^-1 P) - log det(P_0^-1 P) - 4 is a distance from a prior P_0 that does not depend on frames and
-//! units, and it grows without bound where P ceases to be positive definite (Lee, Wensing, Park 2020).
+//! P = ∫ [p; 1] [p; 1]ᵀ dm is linear in the ten inertial parameters. P is positive definite if and
+//! only if they belong to a body of positive mass density (Wensing, Kim, Slotine 2018). The
+//! divergence tr(P_0^-1 P) - log det(P_0^-1 P) - 4 is a distance from a prior P_0. It is
+//! independent of frames and units, and infinite at the boundary of positive definite P (Lee,
+//! Wensing, Park 2020).
 
 use nalgebra::{Matrix4, SMatrix, SVector};
 use overact::StandardParameter;
@@ -14,15 +15,15 @@ pub(super) type Inertia = SVector<f64, 10>;
 /// A matrix over the ten inertial parameters.
 pub(super) type Metric = SMatrix<f64, 10, 10>;
 
-/// Rows and columns of P in which a parameter stands, with its factors.
+/// Rows and columns of P that contain a parameter, with its factors.
 fn places(parameter: StandardParameter) -> &'static [(usize, usize, f64)] {
     use StandardParameter as P;
     match parameter {
-        // ∫x² = (yy + zz - xx)/2, and so on.
+        // ∫x² = (yy + zz - xx)/2, and cyclic permutations.
         P::Xx => &[(0, 0, -0.5), (1, 1, 0.5), (2, 2, 0.5)],
         P::Yy => &[(0, 0, 0.5), (1, 1, -0.5), (2, 2, 0.5)],
         P::Zz => &[(0, 0, 0.5), (1, 1, 0.5), (2, 2, -0.5)],
-        // xy = -∫x y, and so on.
+        // xy = -∫x y, and cyclic permutations.
         P::Xy => &[(0, 1, -1.0), (1, 0, -1.0)],
         P::Xz => &[(0, 2, -1.0), (2, 0, -1.0)],
         P::Yz => &[(1, 2, -1.0), (2, 1, -1.0)],
@@ -35,7 +36,7 @@ fn places(parameter: StandardParameter) -> &'static [(usize, usize, f64)] {
     }
 }
 
-/// ∂P/∂χ of the ten parameters.
+/// ∂P/∂χ for the ten parameters.
 fn directions() -> [Matrix4<f64>; 10] {
     StandardParameter::INERTIA.map(|parameter| {
         let mut direction = Matrix4::zeros();
@@ -46,7 +47,7 @@ fn directions() -> [Matrix4<f64>; 10] {
     })
 }
 
-/// ∂χ/∂P: the matrices whose product with P has the parameters for a trace.
+/// ∂χ/∂P: each parameter is the trace of its matrix times P.
 fn duals() -> [Matrix4<f64>; 10] {
     use StandardParameter as P;
     let entries: [&[(usize, usize, f64)]; 10] = StandardParameter::INERTIA.map(|p| match p {
@@ -77,7 +78,7 @@ pub(super) fn pseudo_inertia(inertia: &Inertia) -> Matrix4<f64> {
     terms.map(|(direction, value)| direction * *value).sum()
 }
 
-/// The divergence of a body from its prior, none where no body has these parameters.
+/// Divergence of a body from its prior; `None` if the parameters belong to no body.
 pub(super) fn divergence(inertia: &Inertia, prior: &Inertia) -> Option<f64> {
     let lower = pseudo_inertia(prior).cholesky()?;
     let pseudo = pseudo_inertia(inertia);
@@ -90,13 +91,14 @@ pub(super) fn divergence(inertia: &Inertia, prior: &Inertia) -> Option<f64> {
     Some(lower.solve(&pseudo).trace() - log - 4.0)
 }
 
-/// The ten parameters of a P.
+/// The ten parameters of P.
 pub(super) fn inertia(pseudo: &Matrix4<f64>) -> Inertia {
     Inertia::from(duals().map(|dual| (dual * pseudo).trace()))
 }
 
-/// The smallest eigenvalue of P by its trace, after scaling lengths so that the body's mean square radius
-/// is 1: a number without units, positive for a body, 0.25 at most.
+/// Smallest eigenvalue of P divided by its trace, for a mean square radius scaled to 1.
+///
+/// Dimensionless; positive for a body, at most 0.25.
 pub(super) fn definiteness(inertia: &Inertia) -> f64 {
     let mut pseudo = pseudo_inertia(inertia);
     let second: f64 = pseudo.view((0, 0), (3, 3)).trace();
@@ -117,7 +119,7 @@ mod tests {
     use super::{Inertia, definiteness, directions, divergence, duals, inertia, pseudo_inertia};
     use nalgebra::Matrix4;
 
-    /// A box of 2 kg whose centre is off the origin.
+    /// A box of 2 kg whose centre is not the origin.
     fn body() -> Inertia {
         let (mass, centre, half) = (2.0, [0.1, -0.2, 0.3], [0.1, 0.05, 0.2]);
         let mut pseudo = Matrix4::zeros();
@@ -143,7 +145,7 @@ mod tests {
         }
         let own = body();
         assert!((inertia(&pseudo_inertia(&own)) - own).norm() < 1e-15);
-        // Steiner: xx of the box about the origin.
+        // Steiner's theorem: xx of the box about the origin.
         assert!(
             (own[0] - 2.0 * (0.2_f64.powi(2) + 0.3_f64.powi(2) + (0.0025 + 0.04) / 3.0)).abs()
                 < 1e-15

@@ -1,6 +1,6 @@
-//! A distance from a bound, with its multiplier.
+//! Distance from a bound, with its multiplier.
 
-/// A distance of an unknown from a bound.
+/// Distance of an unknown from a bound.
 pub(super) struct Side {
     /// Number of the unknown within its group.
     pub(super) place: usize,
@@ -12,7 +12,7 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// sign (value - limit) on the path of a weight, none where it is not positive.
+    /// sign (value - limit) on the path of a weight; `None` if it is not positive.
     pub(super) fn new(
         (place, limit, sign): (usize, f64, f64),
         value: f64,
@@ -28,12 +28,12 @@ impl Side {
         })
     }
 
-    /// The curvature that a step sees.
+    /// Curvature in a step.
     pub(super) fn stiffness(&self) -> f64 {
         self.multiplier / self.distance
     }
 
-    /// The slope of the barrier.
+    /// Slope of the barrier.
     pub(super) fn slope(&self, weight: f64) -> f64 {
         -self.sign * weight / self.distance
     }
@@ -42,7 +42,7 @@ impl Side {
         self.distance * self.multiplier
     }
 
-    /// Takes a change of the unknown as the next one: how many times it can be made.
+    /// Computes a change of the unknown; returns the largest feasible multiple.
     pub(super) fn propose(&mut self, step: f64, weight: f64) -> f64 {
         let farther = self.sign * step;
         let change = weight / self.distance - self.multiplier - self.stiffness() * farther;
@@ -56,7 +56,7 @@ impl Side {
     }
 }
 
-/// How many times a change can be made before a positive number is none.
+/// Multiple of a change at which a positive value becomes zero.
 pub(super) fn until(value: f64, change: f64) -> f64 {
     match change < 0.0 {
         true => -value / change,

@@ -1,47 +1,52 @@
-//! The program of a consistent estimate, solved by an interior-point method.
+//! Interior-point method for a consistent estimate.
 //!
-//! ½ ||A x - b||² + γ D(x) is minimised, A x ≈ b being the data in units of their noise and D the sum of
-//! all divergences, of -log of the distances from the bounds, and of ½ (x/scale)² of free unknowns. The
-//! point follows the path on which the barriers of D weigh μ, from where the prior is good enough down to
-//! μ = γ, and the multipliers of all barriers with it (primal-dual path following; Vandenberghe, *The
-//! CVXOPT linear and quadratic cone program solvers*, 2010). A step d = S u in the coordinates of the cones
-//! minimises ½ ||A d - r||² + ½ |u|² + gᵀ u, r being what is unexplained and g the slope. With M = A S that
-//! is u = Mᵀ y - g and (1 + M Mᵀ) y = r + M g: a system of as many unknowns as there are base parameters.
+//! It minimises ½ ||A x - b||² + γ D(x). A x ≈ b are the data in units of their noise. D is the sum
+//! of all divergences, of -log of the distances from the bounds, and of ½ (x/scale)² of free
+//! unknowns. The iterates follow the central path with barrier weight μ, from large μ down to μ =
+//! γ, together with the multipliers (primal-dual path following; Vandenberghe, *The CVXOPT linear
+//! and quadratic cone program solvers*, 2010).
+//!
+//! A step d = S u in cone coordinates minimises ½ ||A d - r||² + ½ |u|² + gᵀ u, with the residual r
+//! and the gradient g. With M = A S, u = Mᵀ y - g and (1 + M Mᵀ) y = r + M g. This system has the
+//! size of the number of base parameters.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{point::Point, start::start, unknowns::Unknowns};
 
-/// Weight γ of the divergence: its growth by 1 is worth as much as a residual that grows by some hundredths
-/// of its standard deviation.
+/// Weight γ of the divergence.
+///
+/// An increase of the divergence by 1 is worth some hundredths of the residual's standard
+/// deviation.
 const LAST_WEIGHT: f64 = 1e-3;
 
-/// A step wants the weight to fall by this factor, after one that went far.
+/// Reduction of the weight after a long step.
 const FALL: f64 = 0.1;
 
-/// And by this one after one that did not.
+/// Reduction of the weight after a short step.
 const SLOW_FALL: f64 = 0.5;
 
-/// A step goes far when it is made by at least this part.
+/// Fraction of a step above which it is long.
 const FAR: f64 = 0.5;
 
-/// A step is short when its length in the metric of D is below this.
+/// Length of a step, in the metric of D, below which it is short.
 const SHORT: f64 = 0.25;
 
-/// Most steps; 75 are the most that were seen.
+/// Largest number of steps; 75 is the largest number observed.
 const STEPS: usize = 300;
 
-/// The solution.
+/// Solution.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Solution {
-    /// The unknowns.
+    /// Unknowns.
     pub(super) values: DVector<f64>,
-    /// For each unknown the part of its prior variance that the data took away, 0 to 1.
+    /// For each unknown the fraction of its prior variance that the data removed, 0 to 1.
     pub(super) determined: DVector<f64>,
 }
 
-/// Minimises; the rows of A are independent. None where the steps do not end, or the prior is outside of the
-/// cones.
+/// Minimises the objective; the rows of A must be independent.
+///
+/// `None` if the steps do not converge, or the prior is outside the cones.
 pub(super) fn solve(unknowns: &Unknowns, a: &DMatrix<f64>, b: &DVector<f64>) -> Option<Solution> {
     let values = start(unknowns);
     let worst = (a * &values - b).norm_squared() / (2.0 * unknowns.len() as f64);
@@ -51,7 +56,7 @@ pub(super) fn solve(unknowns: &Unknowns, a: &DMatrix<f64>, b: &DVector<f64>) -> 
         let weight = (fall * point.weight()).max(LAST_WEIGHT);
         let step = point.advance((a, b), weight)?;
         fall = if step.part < FAR { SLOW_FALL } else { FALL };
-        // As short as rounding lets steps become.
+        // The steps have reached rounding errors.
         let is_full = weight <= LAST_WEIGHT && step.part >= 1.0;
         if is_full && (step.length == 0.0 || last <= SHORT && step.length > 0.5 * last) {
             let values = point.values();
@@ -63,8 +68,9 @@ pub(super) fn solve(unknowns: &Unknowns, a: &DMatrix<f64>, b: &DVector<f64>) -> 
     None
 }
 
-/// For each unknown 1 - σ²/σ_0²: σ² is its variance with the data, σ_0² that of the prior, both of the
-/// Gaussians that have the objective's curvature.
+/// 1 - σ²/σ_0² for each unknown, with its variances σ² with and σ_0² without data.
+///
+/// Both are those of Gaussians with the objective's curvature.
 fn determined(
     unknowns: &Unknowns,
     a: &DMatrix<f64>,

@@ -1,13 +1,13 @@
-//! Where the search for a consistent estimate starts.
+//! Starting point of the search for a consistent estimate.
 
 use nalgebra::DVector;
 
 use super::unknowns::{Kind, Unknowns};
 
-/// Bounded unknowns start at least this part of the bounds' distance from either.
+/// Smallest distance of a bounded unknown from its bounds, by their distance.
 const INSIDE: f64 = 0.1;
 
-/// The priors, those that have bounds moved inside.
+/// Prior values, with bounded ones moved inside their bounds.
 pub(super) fn start(unknowns: &Unknowns) -> DVector<f64> {
     let mut values = DVector::zeros(unknowns.len());
     for group in &unknowns.groups {
@@ -22,7 +22,7 @@ pub(super) fn start(unknowns: &Unknowns) -> DVector<f64> {
             let low = if is_free { *low } else { low.max(0.0) };
             let inside = moved_inside(own[*k], low, *high);
             match &group.kind {
-                // A heavier or lighter body of the same shape.
+                // A body of the same shape with another mass.
                 Kind::Body { .. } => own *= inside / own[*k],
                 _ => own[*k] = inside,
             }
@@ -31,7 +31,7 @@ pub(super) fn start(unknowns: &Unknowns) -> DVector<f64> {
     values
 }
 
-/// The value, or the nearest one that is clear of the bounds.
+/// The nearest value with the required distance from the bounds.
 fn moved_inside(value: f64, low: f64, high: f64) -> f64 {
     match (low.is_finite(), high.is_finite()) {
         (true, true) => {

@@ -1,4 +1,4 @@
-//! Programs whose answers are known.
+//! Problems with known solutions.
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -10,7 +10,7 @@ use super::{
     unknowns::{Group, Kind, Unknowns},
 };
 
-/// Half a kilogram in a box of 0.2 m, 0.1 m, 0.4 m with one corner at the origin.
+/// A box of 0.5 kg and 0.2 m × 0.1 m × 0.4 m with one corner at the origin.
 fn body() -> Inertia {
     let (mass, edge) = (0.5, [0.2, 0.1, 0.4]);
     let [x, y, z] = edge;
@@ -30,7 +30,7 @@ fn body() -> Inertia {
     ])
 }
 
-/// A body, a coefficient that can't be negative and one of either sign.
+/// A body, a positive coefficient and a free one.
 fn unknowns(prior: Inertia, bounds: Vec<(usize, [f64; 2])>) -> Unknowns {
     let group = |first, kind, bounds| Group {
         first,
@@ -82,7 +82,7 @@ fn a_body_that_the_data_determine_is_found() -> Result<(), &'static str> {
 #[test]
 fn what_no_robot_has_becomes_the_nearest_that_one_has() -> Result<(), &'static str> {
     let all = unknowns(body(), Vec::new());
-    // Moments that no body has (xx + yy < zz), a negative coefficient.
+    // Impossible moments (xx + yy < zz), and a negative coefficient.
     let mut wanted = DVector::zeros(12);
     wanted.rows_mut(0, 10).copy_from(&body());
     wanted[5] = wanted[0] + wanted[3] + 0.02;
@@ -93,7 +93,7 @@ fn what_no_robot_has_becomes_the_nearest_that_one_has() -> Result<(), &'static s
     let own = Inertia::from_iterator(found.values.rows(0, 10).iter().copied());
     assert!(definiteness(&own) > 0.0 && definiteness(&own) < 1e-3);
     assert!(found.values[10] > 0.0 && found.values[10] < 1e-3);
-    // No way down: the objective grows in every direction that stays inside, by as much as its slope says.
+    // The objective increases in every feasible direction, by its gradient.
     let objective = |values: &DVector<f64>| {
         let own = Inertia::from_iterator(values.rows(0, 10).iter().copied());
         let ratio = values[10] / 2.0;

@@ -1,4 +1,4 @@
-//! The unknowns of a consistent estimate: bodies, coefficients that can't be negative, and free ones.
+//! Unknowns of a consistent estimate: bodies, positive coefficients and free ones.
 
 use std::collections::BTreeMap;
 
@@ -13,33 +13,33 @@ use crate::{
     regression::columns::{Column, ColumnSet},
 };
 
-/// Unknowns that are constrained together.
+/// Kind of unknowns that are constrained together.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Kind {
     /// The ten parameters of a body.
     Body {
-        /// The nearest body where the data say nothing.
+        /// Nearest body without data.
         prior: Inertia,
     },
-    /// A coefficient above zero.
+    /// A positive coefficient.
     Positive {
-        /// The nearest value where the data say nothing.
+        /// Value without data.
         prior: f64,
     },
     /// A coefficient of either sign.
     Free {
-        /// Its magnitude where the data say nothing.
+        /// Magnitude without data.
         scale: f64,
     },
 }
 
-/// Unknowns that are constrained together, with their place among all unknowns.
+/// Unknowns that are constrained together, with their position among all.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Group {
     /// Number of the first unknown.
     pub(super) first: usize,
     pub(super) kind: Kind,
-    /// Numbers within the group of unknowns with bounds, and the bounds.
+    /// Bounded unknowns, by number within the group, with their bounds.
     pub(super) bounds: Vec<(usize, [f64; 2])>,
 }
 
@@ -57,20 +57,20 @@ impl Group {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Unknowns {
     pub(super) groups: Vec<Group>,
-    /// Number of the unknown of each column of the model.
+    /// Unknown of each column of the model.
     pub(super) of_column: Vec<usize>,
-    /// Names by unknown: those of bodies without a column of their own, too.
+    /// Names of the unknowns, including those of bodies without a column of their own.
     pub(super) names: Vec<String>,
 }
 
 impl Unknowns {
-    /// The unknowns of a model's columns.
+    /// Unknowns of a model's columns.
     pub(super) fn new(columns: &ColumnSet, prior: &Prior, values: &Values) -> Self {
         let mut all = Self {
             of_column: vec![0; columns.len()],
             ..Self::default()
         };
-        // Payloads of different names are different bodies.
+        // Payloads with different names are different bodies.
         let mut bodies: BTreeMap<(Body, Option<&str>), Vec<usize>> = BTreeMap::new();
         for (index, column) in columns.as_slice().iter().enumerate() {
             if column.symbol.is_inertial() {
@@ -121,7 +121,7 @@ impl Unknowns {
         self.add(Kind::Body { prior }, names.to_vec());
     }
 
-    /// Gives each unknown its bounds.
+    /// Assigns the bounds.
     fn bound(&mut self, prior: &Prior) {
         for group in &mut self.groups {
             let own = (0..group.len()).filter_map(|k| {
@@ -133,13 +133,13 @@ impl Unknowns {
     }
 }
 
-/// What a column that is no body's is.
+/// Kind of a column that belongs to no body.
 fn scalar(column: &Column, values: &Values) -> Kind {
     use StandardParameter as P;
     let value = values.scalar(column);
     match column.symbol {
-        // Friction split by direction contains the offset, which has either sign.
-        // So may the coefficient of a spring have, as its expression is written.
+        // Friction split by direction contains the offset, and a spring's coefficient has the sign
+        // of its expression; both may have either sign.
         P::Off | P::K | P::FsPos | P::FsNeg => Kind::Free { scale: value },
         P::Fs if column.direction.is_some() => Kind::Free { scale: value },
         _ => Kind::Positive { prior: value },

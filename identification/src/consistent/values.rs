@@ -1,4 +1,4 @@
-//! The prior value of every standard parameter.
+//! Prior values of all standard parameters.
 
 use std::collections::BTreeMap;
 
@@ -11,18 +11,18 @@ use crate::{
     result::Estimate,
 };
 
-/// Mean square radius of a body of which nothing is known, m².
+/// Mean square radius of an unknown body, m².
 const SQUARE_RADIUS: f64 = 0.01;
 
-/// Coefficients of friction and rotors of which nothing is known (SI units).
+/// Unknown coefficients of friction and rotors (SI units).
 const SMALL: f64 = 0.1;
 
-/// The prior value of every unknown.
+/// Prior values of all unknowns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Values {
-    /// Bodies by the suffix of their names that are given.
+    /// Given bodies, by the suffix of their names.
     pub(super) given: BTreeMap<String, Inertia>,
-    /// Bodies by suffix of a common density.
+    /// Uniform bodies of unit density, by suffix, and their common density.
     pub(super) uniform: BTreeMap<String, Inertia>,
     pub(super) density: f64,
     /// Coefficients by name.
@@ -30,7 +30,7 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// The coefficients that are not given as the base parameters have them, or a part of them.
+    /// Sets coefficients that are not given from the positive base parameters.
     pub(super) fn with_estimate(
         mut self,
         columns: &ColumnSet,
@@ -62,7 +62,7 @@ impl Values {
         self.given.get(suffix).copied().unwrap_or_else(uniform)
     }
 
-    /// The magnitude of a coefficient.
+    /// Magnitude of a coefficient.
     pub(super) fn scalar(&self, column: &Column) -> f64 {
         let own = self.scalars.get(&column.name).copied();
         own.map(f64::abs)
@@ -77,7 +77,7 @@ pub(super) fn ball() -> Inertia {
     Inertia::from([moment, 0.0, 0.0, moment, 0.0, moment, 0.0, 0.0, 0.0, 1.0])
 }
 
-/// What follows the symbol in the name of a parameter.
+/// The part of a parameter's name after its symbol.
 pub(super) fn suffix(name: &str, symbol: StandardParameter) -> &str {
     name.strip_prefix(symbol.name()).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! Zip archives as NumPy writes them: members as they are, or deflated.
+//! Zip archives as NumPy writes them: stored or deflated members.
 
 use std::io::Read;
 
@@ -6,29 +6,29 @@ use libflate::deflate::Decoder;
 
 use super::budget::Budget;
 
-/// Records of an archive start with these bytes.
+/// Magic numbers of the records of an archive.
 const END: &[u8] = b"PK\x05\x06";
 const LISTED: &[u8] = b"PK\x01\x02";
 const MEMBER: &[u8] = b"PK\x03\x04";
 
-/// Bytes of the record at the end, and of a comment behind it, at most.
+/// Size of the end record, and largest size of the comment after it.
 const END_SIZE: usize = 22;
 const LONGEST_COMMENT: usize = 1 << 16;
 
-/// A size that stands elsewhere: the member has more than 4 GB.
+/// Size that marks a member of more than 4 GB.
 const ELSEWHERE: usize = u32::MAX as usize;
 
 /// A member of an archive.
 pub(super) struct Member {
     pub(super) name: String,
-    /// 0 as it is, 8 deflated.
+    /// 0 stored, 8 deflated.
     method: usize,
     packed: usize,
     size: usize,
     start: usize,
 }
 
-/// A number of two or four bytes, the lowest first.
+/// A little-endian number of two or four bytes.
 fn number(bytes: &[u8], place: usize, size: usize) -> Option<usize> {
     let bytes = bytes.get(place..place.checked_add(size)?)?;
     Some(
@@ -39,10 +39,10 @@ fn number(bytes: &[u8], place: usize, size: usize) -> Option<usize> {
     )
 }
 
-/// The members of an archive.
+/// Lists the members of an archive.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A description of the defect.
 pub(super) fn members(archive: &[u8]) -> Result<Vec<Member>, String> {
     let cut_off = || String::from("it is cut off");
     let from = archive.len().saturating_sub(END_SIZE + LONGEST_COMMENT);
@@ -75,10 +75,10 @@ pub(super) fn members(archive: &[u8]) -> Result<Vec<Member>, String> {
 }
 
 impl Member {
-    /// All bytes of the member.
+    /// Reads all bytes of the member.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// A description of the defect.
     pub(super) fn content(&self, archive: &[u8], budget: &mut Budget) -> Result<Vec<u8>, String> {
         let broken = |what: &str| format!("`{}` {what}", super::problems::shown(&self.name));
         let named = |why: &str| format!("`{}`: {why}", super::problems::shown(&self.name));
@@ -95,12 +95,12 @@ impl Member {
         let data = data.ok_or_else(|| broken("is cut off"))?;
         let content = match self.method {
             0 => {
-                // The same bytes may be those of many members.
+                // Several members may share the same bytes.
                 budget.take(data.len() as u64).map_err(|why| named(&why))?;
                 data.to_vec()
             }
             8 => {
-                // One byte more shows that the member is larger than it says.
+                // One more byte shows that the member is larger than stated.
                 let unpacked = Decoder::new(data).take(self.size as u64 + 1);
                 budget.unpack(unpacked).map_err(|why| named(&why))?
             }

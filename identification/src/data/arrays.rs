@@ -1,4 +1,4 @@
-//! Arrays of a file as columns of samples: vectors, and the columns of matrices.
+//! Arrays of a file as columns of samples: vectors, and columns of matrices.
 
 use overact::Code;
 use std::sync::Arc;
@@ -6,14 +6,14 @@ use std::sync::Arc;
 use super::problems::Existing;
 use crate::error::{Error, Problem};
 
-/// An array that a caller has in memory.
+/// An array in a caller's memory.
 #[derive(Debug, Clone, Copy)]
 pub struct Array<'a> {
-    /// Its name; columns of a matrix are called `name(:,2)`, counted from 1.
+    /// Name; columns of a matrix are called `name(:,2)`, counted from 1.
     pub name: &'a str,
-    /// Rows and columns; samples follow one another along the longer side.
+    /// Rows and columns; samples run along the longer side.
     pub shape: (usize, usize),
-    /// Its numbers, one column after the other.
+    /// Values in column-major order.
     pub values: &'a [f64],
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Arrays {
 }
 
 impl Arrays {
-    /// No arrays so far.
+    /// No arrays.
     pub(super) const fn new(file: String) -> Self {
         Self {
             file,
@@ -49,8 +49,9 @@ impl Arrays {
         &self.file
     }
 
-    /// Adds an array of `rows` x `columns` whose `values` follow one another down its columns. Samples
-    /// follow one another along its longer side.
+    /// Adds an array of `rows` × `columns` with column-major `values`.
+    ///
+    /// Samples run along its longer side.
     pub(super) fn push(&mut self, name: &str, (rows, columns): (usize, usize), values: &[f64]) {
         self.names.push(name.to_owned());
         let mut add = |name: String, values: Arc<[f64]>| self.series.push(Series { name, values });
@@ -73,7 +74,7 @@ impl Arrays {
         self.series.len()
     }
 
-    /// The place of a vector, or of a column of a matrix written `name(:,2)`, or of a row, `name(2,:)`.
+    /// Index of a vector, of a matrix column `name(:,2)` or of a matrix row `name(2,:)`.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         let bare: String = name.chars().filter(|c| !c.is_whitespace()).collect();
         // A vector is a matrix of one column.
@@ -81,18 +82,18 @@ impl Arrays {
             .strip_suffix("(:,1)")
             .or_else(|| bare.strip_suffix("(1,:)"));
         let is = |name: &str| self.series.iter().position(|series| series.name == name);
-        // A name of the caller's own may have blanks.
+        // A caller's name may contain blanks.
         is(name)
             .or_else(|| is(&bare))
             .or_else(|| vector.and_then(is))
     }
 
-    /// The numbers of a vector or of a column of a matrix.
+    /// Values of a vector or of a matrix column.
     pub(super) fn values(&self, name: &str) -> Option<&[f64]> {
         self.find(name).map(|place| &*self.series[place].values)
     }
 
-    /// What arrays there are.
+    /// The existing arrays.
     pub(super) fn existing(&self) -> Existing<'_> {
         Existing {
             names: self.names.iter().map(String::as_str).collect(),
@@ -101,7 +102,7 @@ impl Arrays {
         }
     }
 
-    /// The first column of a matrix that is called as if it were a vector.
+    /// First column of a matrix that is named like a vector.
     pub(super) fn first_column(&self, name: &str) -> Option<&str> {
         let start = format!("{name}(");
         let mut parts = self.series.iter();
@@ -109,7 +110,7 @@ impl Arrays {
         part.map(|series| series.name.as_str())
     }
 
-    /// Goes through some series, whose names are for messages.
+    /// Reads some series row by row; the names are for messages.
     ///
     /// # Errors
     /// Series of different lengths.
@@ -139,7 +140,7 @@ impl Arrays {
     }
 }
 
-/// Series that are gone through.
+/// Series that are read row by row.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     file: &'a str,
@@ -148,10 +149,10 @@ pub(super) struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Puts the numbers of the next sample into `values`; `false` at the end.
+    /// Writes the next sample to `values`; `false` at the end.
     ///
     /// # Errors
-    /// Numbers that are not finite.
+    /// Values that are not finite.
     pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         let sample = self.next;
         self.next += 1;

@@ -1,31 +1,31 @@
-//! How much a packed file may unpack to: a few megabytes may hold as many gigabytes of zeros.
+//! Limit on the unpacked size of a file: a few megabytes may contain gigabytes of zeros.
 
 use std::io::{Read, Take};
 
-/// Bytes that a file may unpack to beyond its own size.
+/// Unpacked bytes in addition to the size of the file.
 const UNPACKED: u64 = 1 << 28;
 
-/// Bytes that the members of a file may still unpack to.
+/// Remaining bytes that the members of a file may unpack to.
 #[derive(Debug)]
 pub(super) struct Budget {
     left: u64,
 }
 
 impl Budget {
-    /// The budget of a file of these bytes: what is stored unpacked is limited by the file itself.
+    /// Budget of a file with these bytes; stored members are limited by the file itself.
     pub(super) const fn of_file(bytes: &[u8]) -> Self {
         Self {
             left: UNPACKED + bytes.len() as u64,
         }
     }
 
-    /// A budget of so many bytes.
+    /// A budget of `left` bytes.
     #[cfg(test)]
     pub(super) const fn with(left: u64) -> Self {
         Self { left }
     }
 
-    /// Takes so many bytes from the budget.
+    /// Takes bytes from the budget.
     ///
     /// # Errors
     /// A sentence, if fewer are left.
@@ -34,15 +34,15 @@ impl Budget {
         Ok(())
     }
 
-    /// An input that ends where nothing is left; [`settle`](Self::settle) takes what was read of it.
+    /// Limits an input to the budget; [`settle`](Self::settle) then takes what was read.
     pub(super) fn limited<R: Read>(&self, input: R) -> Take<R> {
         input.take(self.left + 1)
     }
 
-    /// Takes what was read of a limited input.
+    /// Takes the bytes read from a limited input.
     ///
     /// # Errors
-    /// A sentence, if it was longer than what was left.
+    /// A sentence, if the input was longer than the budget.
     pub(super) fn settle<R>(&mut self, input: &Take<R>) -> Result<(), String> {
         self.take(self.left + 1 - input.limit())
     }
@@ -50,7 +50,7 @@ impl Budget {
     /// Reads to the end.
     ///
     /// # Errors
-    /// A sentence, if the input is broken or longer than what is left.
+    /// A sentence, if the input is broken or longer than the budget.
     pub(super) fn unpack(&mut self, input: impl Read) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let read = self.limited(input).read_to_end(&mut bytes);

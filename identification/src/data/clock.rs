@@ -1,38 +1,38 @@
-//! The clock of a run: whether its times are uniform, and how often it was sampled.
+//! Clock of a run: uniformity of its times, and sampling frequency.
 
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// A step of time may differ from the usual one by this fraction.
+/// Largest relative deviation of a time step from the usual one.
 const STEP_TOLERANCE: f64 = 1e-3;
 
-/// Steps from which the usual one is told.
+/// Number of steps from which the usual one is determined.
 const FIRST_STEPS: usize = 4096;
 
-/// Steps of times that were rounded to 32 bits may be off by so many units in the last place, since the usual step is
-/// off by one itself, ...
+/// Largest error of a step between times rounded to 32 bits, in units in the last place.
+///
+/// The usual step has an error of one unit itself.
 const UNITS: f64 = 2.0;
 
-/// ... as long as that is no larger part of a step: beyond, a sample could be missing.
+/// Largest such error as a fraction of the step; beyond it a sample could be missing.
 const MOST: f64 = 0.25;
 
-/// Checks that times are uniform, one after the other, and tells the sampling frequency.
+/// Checks that successive times are uniform, and computes the sampling frequency.
 #[derive(Debug, Default)]
 pub(super) struct Clock {
     samples: usize,
     first: f64,
     last: f64,
-    /// The first times with the lines of the file on which they stand, until the usual step is told
-    /// from them.
+    /// First times with their lines in the file, until the usual step is known.
     beginning: Vec<(f64, Option<usize>)>,
-    /// The usual step.
+    /// Usual step.
     expected: Option<f64>,
-    /// The first step that is not the usual one.
+    /// First step that differs from the usual one.
     bad: Option<Problem>,
 }
 
 impl Clock {
-    /// Takes the next time, s.
+    /// Adds the next time, s.
     pub(super) fn push(&mut self, time: f64, line: Option<usize>) {
         if self.samples == 0 {
             self.first = time;
@@ -49,10 +49,10 @@ impl Clock {
         }
     }
 
-    /// The sampling frequency (Hz), from the mean step.
+    /// Sampling frequency (Hz), from the mean step.
     ///
     /// # Errors
-    /// Fewer than two samples, or the first step that is not the usual one.
+    /// Fewer than two samples, or a step that differs from the usual one.
     pub(super) fn frequency(mut self, file: &str) -> Result<f64, Error> {
         if self.expected.is_none() {
             self.settle();
@@ -64,7 +64,7 @@ impl Clock {
         }
     }
 
-    /// Checks that a run has samples enough to have a frequency.
+    /// Checks that a run has enough samples for a frequency.
     pub(super) fn check_count(samples: usize, file: &str) -> Result<(), Error> {
         let message = match samples {
             0 => "the run is empty",
@@ -77,13 +77,13 @@ impl Clock {
             .into())
     }
 
-    /// Tells the usual step from the beginning and checks the beginning by it.
+    /// Determines the usual step from the first times, and checks these.
     fn settle(&mut self) {
         let beginning = std::mem::take(&mut self.beginning);
         let pairs = || beginning.windows(2);
         let mut steps: Vec<f64> = pairs().map(|pair| pair[1].0 - pair[0].0).collect();
         steps.sort_by(f64::total_cmp);
-        // The median stays right when samples are missing; the mean would not.
+        // The median is robust against missing samples, unlike the mean.
         let Some(expected) = steps.get(steps.len() / 2) else {
             return;
         };
@@ -103,7 +103,7 @@ impl Clock {
             true => rounding.max(STEP_TOLERANCE * expected),
             false => STEP_TOLERANCE * expected,
         };
-        // Written so that a step that is not a number counts as bad.
+        // Also false for NaN.
         let uniform = expected > 0.0 && (step - expected).abs() <= tolerance;
         if uniform || self.bad.is_some() {
             return;
@@ -128,7 +128,7 @@ impl Clock {
     }
 }
 
-/// The unit in the last place of times, if they are numbers of 32 bits; else 0.
+/// Unit in the last place of times that are 32-bit numbers; else 0.
 fn rounding(times: [f64; 2]) -> f64 {
     let is_single = |time: f64| time == f64::from(time as f32);
     let largest = times
@@ -140,7 +140,7 @@ fn rounding(times: [f64; 2]) -> f64 {
     }
 }
 
-/// A step with nine decimals, or with all of them where these would be zero.
+/// A step with nine decimals, or with all of them if these were zero.
 fn shown(step: f64) -> String {
     if step.abs() < 1e-6 {
         format!("{step}")
@@ -154,7 +154,7 @@ mod tests {
     use super::Clock;
     use crate::error::Error;
 
-    /// The frequency told from times 1 ms apart from `start` on, of which each is changed.
+    /// Frequency from changed times that start at `start` and are 1 ms apart.
     fn frequency(start: f64, change: impl Fn(f64) -> f64) -> Result<f64, Error> {
         let mut clock = Clock::default();
         let times = (0..6000).map(|sample| start + 1e-3 * f64::from(sample));
@@ -167,7 +167,7 @@ mod tests {
         let single = |time: f64| f64::from(time as f32);
         let found = frequency(100.0, single).expect("uniform");
         assert!((found - 1000.0).abs() < 0.01, "{found}");
-        // The same steps in numbers of 64 bits are not: something else shook them.
+        // The same steps in 64-bit numbers are not rounding errors.
         assert!(frequency(100.0, |time| single(time) + 1e-9).is_err());
     }
 

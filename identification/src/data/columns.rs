@@ -1,7 +1,7 @@
-//! The columns of all files of a run, by the names that a mapping gives them.
+//! Finds the columns of all files of a run by the names of a mapping.
 //!
-//! A column is called by its name, by its number through all files (`$1` is the first one of the first
-//! file), or by `file2.NAME`, where several files have the name.
+//! A column is named by its name, or by its number through all files: `$1` is the first one of the
+//! first file. If several files have the name, it is `file2.NAME`.
 
 use super::{
     expression::Expression,
@@ -11,36 +11,35 @@ use super::{
 use crate::error::{Error, Problem, suggestion};
 use overact::Code;
 
-/// Where a column is: number of the file, place in it.
+/// Position of a column: number of the table, index in it.
 type Place = (usize, usize);
 
-/// The columns that were asked for.
+/// The requested columns.
 pub(super) struct Found {
-    /// Those of each file, with the names by which they were asked for first.
+    /// Columns of each file, with the name of the first request.
     pub(super) columns: Vec<Vec<(usize, String)>>,
-    /// Of each column, in the order in which they were found, its place among those of all files one after
-    /// the other.
+    /// For each column in order of request, its index among the columns of all files.
     pub(super) places: Vec<usize>,
 }
 
-/// The tables of a run, and the file of each, counted from 1: a file may have several.
+/// The tables of a run, and the file of each, counted from 1; a file may have several tables.
 pub(super) type Tables<'a> = (&'a [Table], &'a [usize]);
 
-/// Columns that have been asked for so far.
+/// Columns requested so far.
 pub(super) struct Columns<'a> {
     /// The run as the caller named it.
     run: &'a str,
     tables: &'a [Table],
-    /// The file of each table, counted from 1.
+    /// File of each table, counted from 1.
     numbers: &'a [usize],
-    /// Those that were found, each with the name by which it was asked for first.
+    /// Columns found, each with the name of the first request.
     found: Vec<(Place, String)>,
     missing: Vec<String>,
     problems: Vec<Problem>,
 }
 
 impl<'a> Columns<'a> {
-    /// No column has been asked for.
+    /// No columns requested.
     pub(super) const fn new(run: &'a str, (tables, numbers): Tables<'a>) -> Self {
         Self {
             run,
@@ -52,8 +51,9 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// What a text of the mapping stands for: a column, or an expression of columns. What is wrong is kept
-    /// for [`finish`](Self::finish).
+    /// Resolves a text of the mapping to a column, or an expression of columns.
+    ///
+    /// Errors are collected for [`finish`](Self::finish).
     pub(super) fn ask(&mut self, text: &str) -> Expression {
         let nothing = Expression::Number(f64::NAN);
         match self.find(text) {
@@ -75,7 +75,7 @@ impl<'a> Columns<'a> {
                 }
                 nothing
             }
-            // Names may have parentheses, as around a unit.
+            // Names may contain parentheses, as around a unit.
             Err(_) if self.is_near(text) => {
                 self.is_missing(text);
                 nothing
@@ -87,7 +87,7 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// Whether a column has nearly this name, of which parentheses are a part.
+    /// Whether a column has a similar name that contains parentheses.
     fn is_near(&self, text: &str) -> bool {
         let mut tables = self.tables.iter();
         text.ends_with([')', ']'])
@@ -97,7 +97,7 @@ impl<'a> Columns<'a> {
             })
     }
 
-    /// What is said of a text that is no expression.
+    /// The problem of a text that is no expression.
     fn broken(&self, text: &str, why: &str) -> Problem {
         let message = format!(
             "`{}` is neither a column nor an expression of columns: {why}",
@@ -109,7 +109,7 @@ impl<'a> Columns<'a> {
         problem.help(way_out(text))
     }
 
-    /// What is said of a column with a unit behind it.
+    /// The problem of a column name followed by a unit.
     fn with_unit(&self, text: &str) -> Option<Problem> {
         let (name, unit) = text.trim().rsplit_once(char::is_whitespace)?;
         let name = name.trim();
@@ -147,7 +147,7 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// What a name in an expression stands for.
+    /// Resolves a name in an expression.
     fn named(&mut self, name: &str) -> Expression {
         let mut tables = self.tables.iter();
         if let Some([value]) = tables.find_map(|table| table.variable(name)) {
@@ -161,7 +161,7 @@ impl<'a> Columns<'a> {
         Expression::Number(f64::NAN)
     }
 
-    /// Where a column is.
+    /// Position of a column.
     fn find(&self, name: &str) -> Result<Option<Place>, Problem> {
         let mut places: Vec<Place> = Vec::new();
         for (file, table) in self.tables.iter().enumerate() {
@@ -178,7 +178,7 @@ impl<'a> Columns<'a> {
         Ok(place)
     }
 
-    /// Where a column is that is called by its number, or by that of its file.
+    /// Position of a column given by its number, or with the number of its file.
     fn numbered(&self, name: &str) -> Result<Option<Place>, Problem> {
         if let Some(number) = name.strip_prefix('$') {
             let Some(mut left) = number.parse().ok().and_then(|k: usize| k.checked_sub(1)) else {
@@ -209,7 +209,7 @@ impl<'a> Columns<'a> {
         Ok(places.first().copied())
     }
 
-    /// Checks that a name has one place at most.
+    /// Checks that a name is unique.
     fn is_one(&self, name: &str, places: &[Place]) -> Result<(), Problem> {
         let [first, second, ..] = *places else {
             return Ok(());
@@ -231,7 +231,7 @@ impl<'a> Columns<'a> {
         Err(problem.help(format!("call it `{one}` or `{other}`{way}")))
     }
 
-    /// The tables of which columns were found, in the order in which they were asked for.
+    /// Tables of the columns found, in order of request.
     pub(super) fn tables(&self) -> Vec<usize> {
         let mut tables = Vec::new();
         for ((table, _), _) in &self.found {
@@ -242,7 +242,7 @@ impl<'a> Columns<'a> {
         tables
     }
 
-    /// The column at a place.
+    /// The column at a position.
     fn column(&mut self, place: Place, name: &str) -> Expression {
         let known = self.found.iter().position(|(other, _)| *other == place);
         Expression::Column(known.unwrap_or_else(|| {
@@ -263,10 +263,10 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// The columns that were asked for.
+    /// The requested columns.
     ///
     /// # Errors
-    /// All that was wrong.
+    /// All problems so far.
     pub(super) fn finish(mut self) -> Result<Found, Error> {
         if !self.missing.is_empty() {
             let problem = self.missing();
@@ -287,7 +287,7 @@ impl<'a> Columns<'a> {
         })
     }
 
-    /// What is said of columns that are not there.
+    /// The problem of missing columns.
     fn missing(&self) -> Problem {
         let missing: Vec<&str> = self.missing.iter().map(String::as_str).collect();
         let problem = match self.tables {
@@ -325,7 +325,7 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// What is said of columns that none of several files has: those that there are, each with its file.
+    /// The problem of columns missing in several files; lists the existing ones with their file.
     fn missing_in_several(&self, missing: &[&str]) -> Problem {
         let (mut bare, mut full, mut columns) = (Vec::new(), Vec::new(), 0);
         for (table, number) in self.tables.iter().zip(self.numbers) {
@@ -354,7 +354,7 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// The way out where a name speaks of a file that was not given.
+    /// Help for a name that refers to a missing file.
     fn missing_file(&self, missing: &[&str]) -> Option<String> {
         let files = self.numbers.iter().max().copied().unwrap_or(0);
         let of = |name: &&str| -> Option<usize> {
@@ -368,7 +368,7 @@ impl<'a> Columns<'a> {
         ))
     }
 
-    /// The way out where a file without names is asked for a name.
+    /// Help for a name in a file without names.
     fn without_names(&self, missing: &[&str]) -> Option<String> {
         let mut first = 1;
         for (table, number) in self.tables.iter().zip(self.numbers) {
@@ -387,7 +387,7 @@ impl<'a> Columns<'a> {
         None
     }
 
-    /// The way out where a text has one column only, whose name is many.
+    /// Help for a text with a single column whose name contains separators.
     fn one_column(&self) -> Option<String> {
         let is_many = |name: &&str| name.contains([':', '|', '/', '!']);
         self.tables.iter().find_map(|table| {
@@ -404,7 +404,7 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// The way out of a text that is no expression.
+/// Help for a text that is no expression.
 fn way_out(text: &str) -> String {
     let angle = ["deg2rad(", "radians(", "rad("];
     let back = ["rad2deg(", "degrees(", "deg("];

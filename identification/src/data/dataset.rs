@@ -1,4 +1,4 @@
-//! The runs of an identification.
+//! Runs and other data of an identification.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -6,29 +6,31 @@ use overact::Model;
 
 use super::{Log, Scales};
 
-/// The data of an identification.
+/// Data of an identification.
 #[derive(Debug, Clone, Copy)]
 pub struct Dataset<'a> {
-    /// Runs to identify from.
+    /// Training runs.
     pub runs: &'a [Log],
-    /// Runs to cross-validate on.
+    /// Validation runs.
     pub validation: &'a [Log],
-    /// Values of the standard parameters by name, where they are known (virtual runs, weighed
-    /// payloads). Names that the robot does not have are ignored.
+    /// Known values of standard parameters by name (virtual runs, weighed payloads).
+    ///
+    /// Names that the robot does not have are ignored.
     pub true_values: Option<&'a BTreeMap<String, f64>>,
-    /// The robot with other lengths, one by one: whether the torques speak of such a length is asked. Where
-    /// loops close, their closure tells much more.
+    /// The robot with each length changed, to test the length with the torques.
+    ///
+    /// In closed loops, the closure determines lengths far better.
     pub variants: &'a [Variant<'a>],
-    /// What the description says of sizes and limits, by which units are judged.
+    /// Described sizes and limits, for the check of units.
     pub scales: Option<&'a Scales>,
 }
 
-/// The robot with one length that is a little longer than described.
+/// The robot with one length slightly longer than described.
 #[derive(Clone, Copy)]
 pub struct Variant<'a> {
     /// Name of the length.
     pub length: &'a str,
-    /// By how much it is longer, m; small beside it.
+    /// Increase of the length, m; small compared with it.
     pub step: f64,
     /// The robot, with the same parameters in the same order.
     pub model: &'a dyn Model,

@@ -1,30 +1,36 @@
-//! Columns as expressions of columns: coupled motors, other units, torques that are known beforehand.
+//! Expressions of columns: coupled motors, other units, known torques.
 //!
-//! An expression has numbers, `pi`, columns by name (`q_1`, `data.q`, `q(:,2)`) or number (`$3`), names of any
-//! other kind between single quotation marks (`'motor 1 [deg]'`), the signs + - * / ^ with parentheses, and
-//! functions: sin, cos, tan, asin, acos, atan, atan2, sqrt, abs, exp, sign, and `poly(x, c0, c1, …)`, the
-//! polynomial c0 + c1 x + …. As in mathematics -x^2 is -(x^2), and x^y^z is x^(y^z).
+//! An expression contains:
+//!
+//! - numbers and `pi`;
+//! - columns by name (`q_1`, `data.q`, `q(:,2)`) or number (`$3`);
+//! - other names in single quotation marks (`'motor 1 [deg]'`);
+//! - the operators + - * / ^ and parentheses;
+//! - the functions sin, cos, tan, asin, acos, atan, atan2, sqrt, abs, exp, sign;
+//! - `poly(x, c0, c1, …)`, the polynomial c0 + c1 x + ….
+//!
+//! As in mathematics, -x^2 is -(x^2) and x^y^z is x^(y^z).
 
 use std::{iter::Peekable, str::CharIndices};
 
-/// Depth of parentheses and signs, at most.
+/// Largest depth of parentheses and signs.
 const LARGEST_DEPTH: usize = 64;
 
-/// Bytes of an expression, at most: its terms are evaluated one inside the other.
+/// Largest length of an expression in bytes, since evaluation is recursive.
 const LONGEST: usize = 4096;
 
 /// An expression of columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Expression {
     Number(f64),
-    /// A column by its place.
+    /// A column by its index.
     Column(usize),
     Negative(Box<Self>),
     Binary(Operator, Box<Self>, Box<Self>),
     Function(Function, Vec<Self>),
 }
 
-/// What stands between two expressions.
+/// A binary operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Operator {
     Plus,
@@ -34,7 +40,7 @@ pub(super) enum Operator {
     Power,
 }
 
-/// A function of expressions.
+/// A function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Function {
     Sin,
@@ -48,11 +54,11 @@ pub(super) enum Function {
     Abs,
     Exp,
     Sign,
-    /// A polynomial of its first argument, whose coefficients rise from the constant on.
+    /// A polynomial of the first argument; coefficients start with the constant.
     Poly,
 }
 
-/// The functions with the number of their arguments; a polynomial has any number.
+/// Functions with the number of their arguments; `poly` has any number.
 const FUNCTIONS: [(&str, Function, usize); 12] = [
     ("sin", Function::Sin, 1),
     ("cos", Function::Cos, 1),
@@ -69,10 +75,10 @@ const FUNCTIONS: [(&str, Function, usize); 12] = [
 ];
 
 impl Expression {
-    /// Reads an expression; `column` gives the expression that a name stands for.
+    /// Parses an expression; `column` resolves a name to an expression.
     ///
     /// # Errors
-    /// What is wrong with the text, in one sentence; or what `column` says.
+    /// A sentence on the error in the text, or the error of `column`.
     pub(super) fn parse(
         text: &str,
         column: &mut dyn FnMut(&str) -> Result<Self, String>,
@@ -93,7 +99,7 @@ impl Expression {
         }
     }
 
-    /// Gives every column the place that `places` has for it.
+    /// Replaces the index of each column by its entry in `places`.
     pub(super) fn renumber(&mut self, places: &[usize]) {
         match self {
             Self::Number(_) => {}
@@ -109,7 +115,7 @@ impl Expression {
         }
     }
 
-    /// The value, of the numbers in the columns.
+    /// Value for the given values of the columns.
     pub(super) fn evaluate(&self, columns: &[f64]) -> f64 {
         match self {
             Self::Number(value) => *value,
@@ -151,7 +157,7 @@ impl Expression {
     }
 }
 
-/// A power; of small whole numbers by multiplication.
+/// A power; small integer exponents use multiplication.
 fn power(base: f64, exponent: f64) -> f64 {
     if exponent.fract() == 0.0 && exponent.abs() <= 64.0 {
         base.powi(exponent as i32)
@@ -160,7 +166,7 @@ fn power(base: f64, exponent: f64) -> f64 {
     }
 }
 
-/// Reads an expression from left to right.
+/// Recursive-descent parser of an expression.
 struct Parser<'a> {
     text: &'a str,
     rest: Peekable<CharIndices<'a>>,
@@ -169,7 +175,7 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    /// The next character that is no blank.
+    /// The next non-blank character.
     fn peek(&mut self) -> Option<char> {
         while self.rest.next_if(|(_, c)| c.is_whitespace()).is_some() {}
         self.rest.peek().map(|(_, c)| *c)
@@ -180,7 +186,7 @@ impl<'a> Parser<'a> {
         self.peek() == Some(wanted) && self.rest.next().is_some()
     }
 
-    /// Takes what must come next.
+    /// Takes the required next character.
     fn expect(&mut self, wanted: char) -> Result<(), String> {
         match self.peek() {
             Some(found) if found == wanted => {
@@ -220,7 +226,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// A power with a sign before it.
+    /// A power with an optional sign.
     fn signed(&mut self) -> Result<Expression, String> {
         self.depth += 1;
         if self.depth > LARGEST_DEPTH {
@@ -243,7 +249,7 @@ impl<'a> Parser<'a> {
         Ok(signed)
     }
 
-    /// A number, a column, a function, or something in parentheses.
+    /// A number, a column, a function, or an expression in parentheses.
     fn primary(&mut self) -> Result<Expression, String> {
         match self.peek() {
             None => Err(String::from("something is missing at the end")),
@@ -272,14 +278,14 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Place of the next character in the text.
+    /// Index of the next character in the text.
     fn place(&mut self) -> usize {
         self.rest
             .peek()
             .map_or(self.text.len(), |(place, _)| *place)
     }
 
-    /// The next characters as long as they are of a kind.
+    /// Takes characters while they satisfy `is`.
     fn while_is(&mut self, is: impl Fn(char) -> bool) -> &'a str {
         let start = self.place();
         while self.rest.next_if(|(_, c)| is(*c)).is_some() {}
@@ -291,7 +297,7 @@ impl<'a> Parser<'a> {
         let start = self.place();
         self.while_is(|c| c.is_ascii_digit() || c == '.');
         let mut end = self.place();
-        // An exponent is one only where digits follow.
+        // `e` starts an exponent only if digits follow.
         let mut ahead = self.rest.clone();
         if ahead.next_if(|(_, c)| matches!(c, 'e' | 'E')).is_some() {
             ahead.next_if(|(_, c)| matches!(c, '+' | '-'));
@@ -307,7 +313,7 @@ impl<'a> Parser<'a> {
         Ok(Expression::Number(value))
     }
 
-    /// A function, a constant or a column, with the part of a matrix that is meant.
+    /// A function, a constant, or a column with an optional matrix index.
     fn named(&mut self) -> Result<Expression, String> {
         let start = self.place();
         self.while_is(|c| c.is_alphanumeric() || c == '_' || c == '.');
@@ -322,7 +328,7 @@ impl<'a> Parser<'a> {
             };
         }
         let Some(&(_, function, count)) = known else {
-            // A column of a matrix: all up to the parenthesis that closes.
+            // A matrix column: everything up to the closing parenthesis.
             let place = self.while_is(|c| c != ')');
             if place.contains(|c: char| c.is_alphabetic() || c == '$' || c == '\'') {
                 let known: Vec<&str> = FUNCTIONS.iter().map(|(name, ..)| *name).collect();
@@ -357,7 +363,7 @@ impl<'a> Parser<'a> {
 mod tests {
     use super::Expression;
 
-    /// The value of an expression of a = 2, b = 3 and the column $4 = 4.
+    /// Value of an expression for a = 2, b = 3 and the column $4 = 4.
     fn value(text: &str) -> Result<f64, String> {
         let mut column = |name: &str| match name {
             "a" => Ok(Expression::Column(0)),

@@ -1,4 +1,4 @@
-//! What kind of file a log is: told from its first bytes, never from its name.
+//! Recognises the format of a log from its first bytes, never from its name.
 
 use overact::Code;
 use std::io::Read;
@@ -6,23 +6,23 @@ use std::io::Read;
 use super::{medium::Medium, problems::unreadable};
 use crate::error::{Error, Problem};
 
-/// Bytes that tell the format.
+/// Number of bytes that determine the format.
 const BEGINNING: usize = 4096;
 
-/// Formats that are read.
+/// Supported formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     /// Lines of numbers.
     Text,
-    /// MATLAB's versions 5 to 7.2.
+    /// MATLAB versions 5 to 7.2.
     Mat,
     /// NumPy's `.npy`.
     Array,
     /// Parquet.
     Parquet,
-    /// A zip archive, perhaps NumPy's `.npz`.
+    /// A zip archive, possibly NumPy's `.npz`.
     Archive,
-    /// HDF5, and with it MATLAB's version 7.3.
+    /// HDF5, including MATLAB version 7.3.
     #[cfg(feature = "hdf5")]
     Hdf5,
     /// MCAP.
@@ -30,7 +30,7 @@ pub(super) enum Format {
     Mcap,
 }
 
-/// What is read by features: beginnings, what they are the beginnings of, the feature, and the way out without it.
+/// Formats of optional features: magic bytes, description, feature, and help without it.
 const OPTIONAL: [(&[u8], &str, &str, &str); 3] = [
     (
         b"MATLAB 7.3",
@@ -50,7 +50,7 @@ const OPTIONAL: [(&[u8], &str, &str, &str); 3] = [
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
-/// A beginning, what it is the beginning of, and the way out.
+/// Unsupported formats: magic bytes, description, and help.
 const REFUSED: [(&[u8], &str, &str); 9] = [
     (
         b"#ROSBAG",
@@ -99,15 +99,15 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
     ),
 ];
 
-/// Tells the format of a file.
+/// Recognises the format of a file.
 ///
 /// # Errors
-/// A file that can't be read, or one that is named and not read.
+/// A file that cannot be read, or of an unsupported format.
 pub(super) fn recognise(file: &str, medium: &Medium) -> Result<Format, Error> {
     if let Some(path) = medium.path()
         && path.metadata().is_ok_and(|found| !found.is_file())
     {
-        // A log is read several times; a pipe can't be, and a device may have no end.
+        // A log is read several times, which pipes and endless devices do not allow.
         let message = "the log is no regular file";
         let problem = Problem::new(Code::UNREADABLE_LOG, message).file(file);
         return Err(problem.help("write it to a file first").into());
@@ -120,7 +120,7 @@ pub(super) fn recognise(file: &str, medium: &Medium) -> Result<Format, Error> {
     of(&beginning).map_err(|problem| problem.file(file).into())
 }
 
-/// Tells the format from the first bytes.
+/// Recognises the format from the first bytes.
 fn of(beginning: &[u8]) -> Result<Format, Problem> {
     let mut refused = REFUSED.iter();
     if let Some((_, what, help)) = refused.find(|(magic, ..)| beginning.starts_with(magic)) {
@@ -143,7 +143,7 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
             "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
         )));
     }
-    // The header of a `.mat` file ends with its version and the order of its bytes.
+    // The header of a `.mat` file ends with its version and byte order.
     let is_mat = matches!(beginning.get(124..128), Some(b"\x00\x01IM" | b"\x01\x00MI"));
     if is_mat || beginning.starts_with(b"MATLAB 5.0") {
         return Ok(Format::Mat);

@@ -1,18 +1,18 @@
-//! What a run carries, as columns of the model are asked for it.
+//! Payload of a run, for the columns of a model.
 
 /// A payload, or none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Load<'a> {
     /// No payload.
     Nothing,
-    /// Whatever payload there is: of random states, or of robots with one payload.
+    /// Any payload: for random states, or robots with one payload.
     Any,
-    /// The payload of this name.
+    /// The payload with this name.
     Named(&'a str),
 }
 
 impl Load<'_> {
-    /// Whether there is one.
+    /// Whether there is a payload.
     #[must_use]
     pub fn is_some(self) -> bool {
         self != Self::Nothing

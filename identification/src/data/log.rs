@@ -1,5 +1,6 @@
-//! One run: uniformly sampled positions and torques of all actuators, in memory or in a file that is
-//! read block by block whenever it is gone through.
+//! One run: uniformly sampled positions and torques of all actuators.
+//!
+//! It is in memory, or in a file that is read block by block.
 
 use overact::Code;
 use std::sync::Arc;
@@ -25,39 +26,40 @@ pub struct Log {
     actuators: usize,
     samples: usize,
     source: Source,
-    /// What is subtracted from the position of each actuator of the source.
+    /// Offset subtracted from the position of each actuator of the source.
     offsets: Vec<f64>,
-    /// By what the torque of each actuator of the source is multiplied.
+    /// Factor of the torque of each actuator of the source.
     torque_factors: Vec<f64>,
     payload: bool,
-    /// Name of the payload, where there are several.
+    /// Name of the payload, if there are several.
     payload_name: Option<Arc<str>>,
     instruments: Option<Box<Log>>,
-    /// What was done to the samples that a user should know.
+    /// Note to the user on changes of the samples.
     note: Option<String>,
     /// Whether positions were logged within one turn and are unwrapped.
     is_unwrapped: bool,
 }
 
-/// Where the numbers are.
+/// Source of the samples.
 #[derive(Debug, Clone, PartialEq)]
 enum Source {
-    /// Positions, torques and velocities, samples x n each; no velocities where they were not measured.
+    /// Positions, torques and velocities, samples × n each; no velocities if not measured.
     Memory([Arc<[f64]>; 3]),
-    /// Files that have been looked through before.
+    /// Files that have been checked before.
     Files(Box<Files>),
-    /// At each sample the mean position of the other periods of a run.
+    /// At each sample, the mean position of the other periods of a run.
     Others(Box<Log>, Arc<Periods>),
 }
 
 impl Log {
-    /// Makes a run of `actuators` actuators from `positions` (m, rad) and `torques` (N, N m), both
-    /// samples x n and row-major, sampled at `sampling_frequency` (Hz). `payload` tells whether the
-    /// platform carried the payload.
+    /// Creates a run from positions (m, rad) and torques (N, N m), samples × n, row-major.
+    ///
+    /// It has `actuators` actuators and is sampled at `sampling_frequency` (Hz). `payload` says
+    /// whether the platform carried the payload.
     ///
     /// # Errors
-    /// An empty run, arrays of different or broken lengths, numbers that are not finite, a
-    /// frequency that is not positive.
+    /// An empty run, arrays of wrong lengths, values that are not finite, a frequency that is not
+    /// positive.
     pub fn new(
         name: impl Into<String>,
         sampling_frequency: f64,
@@ -109,9 +111,10 @@ impl Log {
         })
     }
 
-    /// The same run, if it is in memory, with measured velocities of the actuators (m/s, rad/s), samples x n
-    /// and row-major. They are used in place of differences of the positions. Others than as many as
-    /// positions are not taken.
+    /// Adds measured velocities of the actuators (m/s, rad/s), samples × n, row-major.
+    ///
+    /// They replace differences of the positions. Only runs in memory accept them, and only as many
+    /// as positions.
     #[must_use]
     pub fn with_velocities(mut self, velocities: Vec<f64>) -> Self {
         if let Source::Memory([positions, _, own]) = &mut self.source
@@ -132,41 +135,45 @@ impl Log {
         }
     }
 
-    /// The same run with a word on what was done to its samples.
+    /// Adds a note on changes of the samples.
     pub(super) fn with_note(mut self, note: Option<String>) -> Self {
         self.note = note;
         self
     }
 
-    /// What was done to the samples that a user should know: of files with clocks of their own, which of them
-    /// were interpolated.
+    /// Note on changes of the samples.
+    ///
+    /// For files with separate clocks, it names those that were interpolated.
     #[must_use]
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
     }
 
-    /// The same run with a motion that goes with its own sample by sample, but not with the errors of its
-    /// positions: that of the simulated robot, as instruments of the estimate. Torques are not used.
+    /// Adds the motion of the simulated robot, for instrumental variables.
+    ///
+    /// It corresponds sample by sample to this run but has no position errors. Its torques are not
+    /// used.
     #[must_use]
     pub fn with_instruments(mut self, instruments: Self) -> Self {
         self.instruments = Some(Box::new(instruments));
         self
     }
 
-    /// The simulated motion beside the run.
+    /// The simulated motion of the run.
     #[must_use]
     pub fn instruments(&self) -> Option<&Self> {
         self.instruments.as_deref()
     }
 
-    /// The run whose positions are, at each sample, the mean of this run at the same phase of the other
-    /// periods. Its torques are those of this run.
+    /// The run with the mean positions of the other periods at the same phase.
+    ///
+    /// Its torques are those of this run.
     #[must_use]
     pub fn others(&self, periods: Periods) -> Self {
         Self {
             source: Source::Others(Box::new(self.clone()), Arc::new(periods)),
-            // The other periods are this run's, whose offsets are subtracted and whose torques are
-            // multiplied already.
+            // The other periods belong to this run, so offsets and torque factors are already
+            // applied.
             offsets: vec![0.0; self.actuators],
             torque_factors: vec![1.0; self.actuators],
             ..self.clone()
@@ -196,7 +203,7 @@ impl Log {
         }
     }
 
-    /// The same run with a word on whether positions were logged within one turn and are unwrapped.
+    /// Sets whether positions were logged within one turn and are unwrapped.
     pub(super) fn with_unwrapped(mut self, is_unwrapped: bool) -> Self {
         self.is_unwrapped = is_unwrapped;
         self
@@ -214,7 +221,7 @@ impl Log {
         &self.name
     }
 
-    /// f_m, Hz.
+    /// Sampling frequency f_m, Hz.
     #[must_use]
     pub const fn sampling_frequency(&self) -> f64 {
         self.sampling_frequency
@@ -226,7 +233,7 @@ impl Log {
         self.samples
     }
 
-    /// n, number of actuators.
+    /// Number of actuators, n.
     #[must_use]
     pub const fn actuators(&self) -> usize {
         self.actuators
@@ -238,26 +245,26 @@ impl Log {
         self.payload
     }
 
-    /// Whether the numbers are in memory, not in a file that is read again and again.
+    /// Whether the samples are in memory, not in a file.
     #[must_use]
     pub const fn in_memory(&self) -> bool {
         matches!(self.source, Source::Memory(..))
     }
 
-    /// Name of the payload that the platform carried, where there are several.
+    /// Name of the payload that the platform carried, if there are several.
     #[must_use]
     pub fn payload_name(&self) -> Option<&str> {
         self.payload_name.as_deref().filter(|_| self.payload)
     }
 
-    /// What the platform carried.
+    /// The payload that the platform carried.
     #[must_use]
     pub fn carried(&self) -> Load<'_> {
         let own = self.payload_name().map(Load::Named);
         own.unwrap_or(Load::from(self.payload))
     }
 
-    /// The same run with a payload of this name: payloads of different names are different bodies.
+    /// The same run with a payload of this name; different names are different bodies.
     #[must_use]
     pub fn with_payload_name(mut self, name: &str) -> Self {
         self.payload = true;
@@ -265,21 +272,21 @@ impl Log {
         self
     }
 
-    /// The same run under another name, for one whose file has a name that nobody gave it.
+    /// The same run under another name.
     #[must_use]
     pub fn with_name(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
 
-    /// The same run under the opposite label of its payload.
+    /// The same run with another payload label.
     #[must_use]
     pub fn with_payload(mut self, payload: bool) -> Self {
         self.payload = payload;
         self
     }
 
-    /// The same run with encoder offsets (rad, m) subtracted from its positions, one for each actuator.
+    /// The same run with encoder offsets (rad, m) subtracted, one for each actuator.
     #[must_use]
     pub fn without_offsets(mut self, offsets: &[f64]) -> Self {
         for (own, more) in self.offsets.iter_mut().zip(offsets) {
@@ -331,10 +338,10 @@ impl Log {
         })
     }
 
-    /// Goes through the run from its first sample on.
+    /// A reader of the run from its first sample.
     ///
     /// # Errors
-    /// A file that can't be opened any more.
+    /// A file that cannot be opened any more.
     pub fn reader(&self) -> Result<Reader<'_>, Error> {
         let rows = match &self.source {
             Source::Memory(all) => Rows::Memory(all.each_ref().map(|own| &**own)),
@@ -355,7 +362,7 @@ impl Log {
         })
     }
 
-    /// All positions (m, rad) and all torques (N, N m), samples x n each, row-major.
+    /// All positions (m, rad) and torques (N, N m), samples × n each, row-major.
     ///
     /// # Errors
     /// As [`Log::reader`] and [`Reader::next`].
@@ -370,25 +377,25 @@ impl Log {
     }
 }
 
-/// A run that is gone through.
+/// Reads a run block by block.
 #[derive(Debug)]
 pub struct Reader<'a> {
     rows: Rows<'a>,
     name: &'a str,
-    /// What is subtracted from the position of each actuator.
+    /// Offset subtracted from the position of each actuator.
     offsets: &'a [f64],
-    /// By what the torque of each actuator is multiplied.
+    /// Factor of the torque of each actuator.
     torque_factors: &'a [f64],
-    /// Samples that have not been given out.
+    /// Number of samples left.
     left: usize,
 }
 
-/// The rest of the numbers.
+/// Remaining rows of the source.
 #[derive(Debug)]
 enum Rows<'a> {
     Memory([&'a [f64]; 3]),
     Files(Box<rows::Rows<'a>>),
-    /// Numbers in a temporary file, and how many samples have been taken.
+    /// A temporary file, and the number of samples read.
     Spilled(&'a Spill, usize),
     Others(Box<Reader<'a>>, periods::Others<'a>),
 }
@@ -397,7 +404,7 @@ impl Reader<'_> {
     /// The next block of samples, or `None` at the end.
     ///
     /// # Errors
-    /// A file that can't be read any more, or that has changed since it was looked through.
+    /// A file that cannot be read any more, or has changed since it was checked.
     #[expect(clippy::should_implement_trait, reason = "an iterator has no errors")]
     pub fn next(&mut self) -> Result<Option<Samples>, Error> {
         let count = BLOCK_ROWS.min(self.left);
@@ -419,13 +426,13 @@ impl Reader<'_> {
         Ok(Some(block))
     }
 
-    /// The next samples as the source has them.
+    /// The next samples as stored in the source.
     fn block(&mut self, count: usize) -> Result<Samples, Error> {
         let size = count * self.offsets.len();
         match &mut self.rows {
             Rows::Memory(all) => {
                 let [positions, torques, velocities] = all.each_mut().map(|rest| {
-                    // Velocities may be none at all.
+                    // Velocities may be absent.
                     let (now, later) = rest.split_at(size.min(rest.len()));
                     *rest = later;
                     now.to_vec()

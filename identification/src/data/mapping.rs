@@ -1,4 +1,4 @@
-//! Which columns of a file hold the time, the positions and the torques, and their units.
+//! Columns of time, positions and torques in a file, and their units.
 
 use overact::Code;
 use overact::Info;
@@ -17,48 +17,55 @@ pub enum Gain {
     Variable(String),
 }
 
-/// How the samples of a run follow one another.
+/// Timing of the samples of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Time {
-    /// The column of the time, s, which steps uniformly.
+    /// The column of the time, s, with uniform steps.
     Column(String),
-    /// No column: one sample after the other at this frequency, Hz.
+    /// No column: uniform samples at this frequency, Hz.
     Frequency(f64),
 }
 
-/// Columns of a text by name or number (`$1` is the first one), or variables of a `.mat` file (`q` for a vector, `q(:,2)` for a column
-/// of a matrix, counted from 1 as in MATLAB).
+/// Assignment of columns to time, positions and torques.
+///
+/// Columns of a text have names or numbers (`$1` is the first one). Variables of a `.mat` file are
+/// `q` for a vector and `q(:,2)` for a matrix column, counted from 1 as in MATLAB.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mapping {
-    /// How the samples follow one another.
+    /// Timing of the samples.
     pub time: Time,
     /// Positions of the n actuators.
     pub positions: Vec<String>,
     /// Torques, forces or drive signals of the n actuators.
     pub torques: Vec<String>,
-    /// Velocities of the n actuators in the units of their positions and s, where they were measured; else
-    /// empty. They take the place of differences of the positions.
+    /// Measured velocities of the n actuators, or empty.
+    ///
+    /// In the units of the positions per second. They replace differences of the positions.
     #[serde(default)]
     pub velocities: Vec<String>,
     /// Factors to rad or m, one per actuator (π/180 for degrees).
     pub position_scale: Vec<f64>,
-    /// What is subtracted from the positions after that, rad or m, one per actuator: the offset of an
-    /// encoder. Empty where all are zero.
+    /// Offsets subtracted from the scaled positions, rad or m, one per actuator.
+    ///
+    /// Empty if all are zero.
     #[serde(default)]
     pub position_offset: Vec<f64>,
     /// Factors to N m or N, one per actuator.
     pub torque_gain: Vec<Gain>,
-    /// The rate of uniform times at which the run is resampled, Hz; absent if its time is uniform.
+    /// Rate for resampling a non-uniform run, Hz; `None` if its time is uniform.
     #[serde(default)]
     pub resample: Option<f64>,
-    /// Where the columns are those of motors, the matrix T of their positions θ = T q, a row for each motor;
-    /// their torques are τ = Tᵀ τ_θ at the joints. Empty where the columns are those of the actuated joints.
+    /// Transmission matrix T if the columns are those of motors, one row per motor.
+    ///
+    /// Motor positions are θ = T q, and joint torques τ = Tᵀ τ_θ. Empty if the columns are those of
+    /// the actuated joints.
     #[serde(default)]
     pub transmission: Vec<Vec<f64>>,
-    /// Whether each position is that of a rotating joint or motor: where it was logged within one turn, it is
-    /// unwrapped. Empty where no position is to be unwrapped.
+    /// Whether each position is that of a rotating joint or motor.
+    ///
+    /// Rotating positions logged within one turn are unwrapped. Empty if none is to be unwrapped.
     #[serde(default)]
     pub rotating: Vec<bool>,
 }
@@ -87,7 +94,7 @@ impl Mapping {
         }
     }
 
-    /// Checks that the lists have one entry per actuator and that factors are numbers.
+    /// Checks the lengths of the lists and the factors.
     ///
     /// # Errors
     /// Every list of a wrong length and every factor that is zero or not finite.
@@ -150,7 +157,7 @@ impl Mapping {
         Error::check(problems)
     }
 
-    /// A rate that is none, or for which there is no time.
+    /// The problem of an invalid rate, or of a rate without a time column.
     fn bad_rate(&self) -> Option<Problem> {
         let rate = self.resample?;
         let problem = |message: String| Problem::new(Code::DATA_TABLE, message).column("resample");
@@ -165,7 +172,7 @@ impl Mapping {
         })
     }
 
-    /// Factors that lose a signal.
+    /// The problems of factors that are zero or not finite.
     fn bad_factors(&self) -> Vec<Problem> {
         let gains = self.torque_gain.iter().filter_map(|gain| match gain {
             Gain::Value(value) => Some(("torque_gain", *value)),

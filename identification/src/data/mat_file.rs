@@ -1,4 +1,4 @@
-//! MATLAB's `.mat` files up to version 7: numeric vectors, matrices, fields of structures, and scalars for gains.
+//! MATLAB's `.mat` files up to version 7: numeric arrays, fields of structures, and scalars.
 
 use overact::Code;
 
@@ -10,7 +10,7 @@ use crate::error::{Error, Problem};
 /// Reads all arrays of a file.
 ///
 /// # Errors
-/// A file that can't be read.
+/// A file that cannot be read.
 pub(super) fn open(file: String, medium: &Medium) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
@@ -23,7 +23,7 @@ pub(super) fn open(file: String, medium: &Medium) -> Result<Arrays, Error> {
     MatFile::parse(header).map_err(|error| broken(error.to_string()))?;
     let mut arrays = Arrays::new(file.clone());
     let mut budget = Budget::of_file(&bytes);
-    // Small integers take more memory as numbers than they do unpacked.
+    // Small integers need more memory as floats than unpacked.
     let mut of_numbers = Budget::of_file(&bytes);
     let read = structures::arrays(&bytes, &mut budget, &mut |one| {
         let mat = match MatFile::parse(one.file) {
@@ -51,7 +51,7 @@ fn push(arrays: &mut Arrays, name: &str, array: &Array) {
     arrays.push(name, (rows, columns), &values);
 }
 
-/// The real parts of an array, in MATLAB's column-major order.
+/// Real parts of an array, in MATLAB's column-major order.
 fn values(data: &NumericData) -> Vec<f64> {
     match data {
         NumericData::Int8 { real, .. } => real.iter().map(|&x| f64::from(x)).collect(),

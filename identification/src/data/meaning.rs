@@ -1,6 +1,7 @@
-//! Whether the columns of a run can be what they are said to be: positions and torques that were exchanged, one
-//! column for two things, velocities that are none. All of it is told from the numbers, and only where they
-//! leave no doubt.
+//! Checks whether columns can be the signals that the mapping assigns to them.
+//!
+//! It finds swapped positions and torques, one column with two meanings, and wrong velocities. The
+//! checks use the numbers only, and only fail in clear cases.
 
 use overact::Code;
 
@@ -11,42 +12,44 @@ use crate::{
     significant,
 };
 
-/// Samples at the beginning of a run that are looked at.
+/// Number of samples at the start of a run that are checked.
 const LOOKED_AT: usize = 1 << 16;
 
-/// Noise of positions by their deviation, from which on they are no smooth motion of a body.
+/// Noise of positions, by their standard deviation, that no smooth motion has.
 const ROUGH: f64 = 1e-3;
 
-/// How many times rougher positions are than torques where the two are exchanged. Torques hold the accelerations
-/// of the positions, so that they are the rougher ones: by 500 to 20000 times in measured logs.
+/// Ratio of the positions' roughness to the torques' that proves a swap.
+///
+/// Torques contain the accelerations, so they are rougher: by 500 to 20000 times in measured logs.
 const ROUGHER: f64 = 100.0;
 
-/// Two columns are one where a factor and an offset turn one into the other up to this part.
+/// Two columns are equal if a factor and an offset transform one into the other to this fraction.
 const SAME: f64 = 1e-9;
 
-/// Pieces of a run over which velocities are summed up, and how many of them tell something.
+/// Pieces of a run over which velocities are integrated, and the fewest for a check.
 const PIECES: usize = 1000;
 const LEAST_PIECES: usize = 20;
 
-/// Steps of positions over these pieces have to exceed their noise so many times.
+/// Smallest ratio of the steps of positions over these pieces to their noise.
 const ABOVE_NOISE: f64 = 20.0;
 
-/// Velocities whose sums go with the steps of the positions by less than this correlation are none of them.
+/// Correlation with the steps of the positions below which velocities are wrong.
 const UNLIKE: f64 = 0.5;
 
-/// From this correlation on their factor is sure.
+/// Correlation from which on the factor between both is certain.
 const LIKE: f64 = 0.95;
 
-/// A factor between both beyond which velocities have another unit.
+/// Factor between both beyond which velocities have another unit.
 const OTHER_UNIT: f64 = 1.5;
 
 impl Log {
-    /// Checks that positions, torques and velocities of the `actuators`, which are called so, can be what they
-    /// are said to be.
+    /// Checks that positions, torques and velocities can be what the mapping says.
+    ///
+    /// `actuators` are the names of the actuators.
     ///
     /// # Errors
-    /// Positions and torques that look exchanged, columns that serve two purposes, velocities that are not those
-    /// of the positions; a file that can't be read any more.
+    /// Positions and torques that look swapped, columns with two meanings, velocities that do not
+    /// belong to the positions; a file that cannot be read any more.
     pub fn check_meaning(&self, actuators: &[&str]) -> Result<(), Error> {
         let wanted = LOOKED_AT.min(self.samples());
         let mut samples = Samples::default();
@@ -71,7 +74,7 @@ impl Log {
     }
 }
 
-/// Signals that stand side by side, one by one.
+/// Splits interleaved signals.
 fn columns(values: &[f64], width: usize) -> Vec<Vec<f64>> {
     if values.is_empty() {
         return Vec::new();
@@ -80,18 +83,18 @@ fn columns(values: &[f64], width: usize) -> Vec<Vec<f64>> {
     (0..width).map(column).collect()
 }
 
-/// The signals of a run.
+/// Signals of a run.
 struct Columns {
     positions: Vec<Vec<f64>>,
     torques: Vec<Vec<f64>>,
     velocities: Vec<Vec<f64>>,
     names: Vec<String>,
-    /// f_m, Hz.
+    /// Sampling frequency f_m, Hz.
     frequency: f64,
 }
 
 impl Columns {
-    /// What speaks against the names of the signals.
+    /// Contradictions to the assigned meanings.
     fn problems(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
         let same = self.all(&self.torques, |place| {
@@ -110,14 +113,14 @@ impl Columns {
         problems
     }
 
-    /// The actuators of which something is so, in words; empty where of none, or without such signals.
+    /// Names of the actuators for which `is_so` holds; empty without such signals.
     fn all(&self, signals: &[Vec<f64>], is_so: impl Fn(usize) -> bool) -> String {
         let places = (0..signals.len().min(self.positions.len())).filter(|place| is_so(*place));
         let names = places.filter_map(|place| self.names.get(place).map(String::as_str));
         names.collect::<Vec<_>>().join(", ")
     }
 
-    /// Positions that are noise beside torques that are smooth, for every actuator.
+    /// The problem if positions are noise and torques are smooth, for every actuator.
     fn exchanged(&self) -> Option<Problem> {
         let pairs = self.positions.iter().zip(&self.torques);
         let rough: Option<Vec<(f64, f64)>> = pairs
@@ -144,7 +147,7 @@ impl Columns {
         )
     }
 
-    /// Velocities whose sums are not the steps of the positions.
+    /// The problems of velocities whose integrals are not the steps of the positions.
     fn velocities_of_others(&self) -> Vec<Problem> {
         let tell = |names: &str, message: String, help: &str| {
             let problem = Problem::new(Code::LOG_COLUMNS, message).column("velocities");
@@ -194,14 +197,14 @@ impl Columns {
     }
 }
 
-/// How velocities go with positions.
+/// Relation of velocities to positions.
 struct Fit {
     correlation: f64,
-    /// Velocities by rates of the positions.
+    /// Velocities divided by rates of the positions.
     factor: f64,
 }
 
-/// How sums of velocities go with the steps of positions; none where the steps are hardly more than noise.
+/// Fits integrated velocities to steps of positions; `None` if the steps are mostly noise.
 fn fit(positions: &[f64], velocities: &[f64], frequency: f64) -> Option<Fit> {
     let length = (positions.len() / PIECES).max(8);
     let pieces = positions.len().checked_sub(1)? / length;
@@ -212,7 +215,7 @@ fn fit(positions: &[f64], velocities: &[f64], frequency: f64) -> Option<Fit> {
     for piece in 0..pieces {
         let (first, behind) = (piece * length, (piece + 1) * length);
         let step = positions[behind] - positions[first];
-        // The trapezoidal rule.
+        // Trapezoidal rule.
         let inside: f64 = velocities[first + 1..behind].iter().sum();
         let sum = (inside + 0.5 * (velocities[first] + velocities[behind])) / frequency;
         steps += step * step;
@@ -233,7 +236,7 @@ fn fit(positions: &[f64], velocities: &[f64], frequency: f64) -> Option<Fit> {
     })
 }
 
-/// The deviation of white noise in a signal, from its third differences, in which a smooth motion is hardly left.
+/// Standard deviation of white noise in a signal, from third differences.
 fn noise(signal: &[f64]) -> f64 {
     // Squares of the binomial coefficients 1, 3, 3, 1.
     const GAIN: f64 = 20.0;
@@ -244,7 +247,7 @@ fn noise(signal: &[f64]) -> f64 {
     (sum / GAIN / signal.len().max(1) as f64).sqrt()
 }
 
-/// Noise by deviation; none of a signal that hardly varies or is short.
+/// Noise by standard deviation; `None` for a constant or short signal.
 fn roughness(signal: &[f64]) -> Option<f64> {
     let deviation = (squares(signal) / signal.len() as f64).sqrt();
     (signal.len() >= 100 && deviation > 0.0).then(|| noise(signal) / deviation)
@@ -254,13 +257,13 @@ fn mean(signal: &[f64]) -> f64 {
     signal.iter().sum::<f64>() / signal.len().max(1) as f64
 }
 
-/// Squares of what a signal differs from its mean, summed up.
+/// Sum of squared deviations from the mean.
 fn squares(signal: &[f64]) -> f64 {
     let mean = mean(signal);
     signal.iter().map(|one| (one - mean).powi(2)).sum()
 }
 
-/// Whether two signals that vary are one column, but for a factor and an offset.
+/// Whether two varying signals are equal up to a factor and an offset.
 fn is_same(one: &[f64], other: &[f64]) -> bool {
     let (own, theirs) = (mean(one), mean(other));
     let (varies, other_varies) = (squares(one), squares(other));
@@ -277,7 +280,7 @@ fn is_same(one: &[f64], other: &[f64]) -> bool {
 mod tests {
     use super::Log;
 
-    /// A run of 4 s at 1 kHz of two actuators; torques have noise.
+    /// A run of 4 s at 1 kHz with two actuators and noisy torques.
     fn run(change: impl Fn([f64; 3], usize) -> [f64; 3]) -> Result<(), String> {
         let (mut positions, mut torques, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
         let mut state = 1_u64;
@@ -309,7 +312,7 @@ mod tests {
     #[test]
     fn columns_are_what_they_are_called() {
         assert_eq!(run(|own, _| own), Ok(()));
-        // A robot at rest says nothing.
+        // A robot at rest allows no conclusion.
         assert_eq!(run(|_, _| [0.25, 3.0, 0.0]), Ok(()));
     }
 

@@ -1,4 +1,4 @@
-//! Where the bytes of a file are: on a disk, or in memory where there is no disk, as in a browser.
+//! Source of a file's bytes: a disk, or memory, as in a browser.
 
 use std::{
     fs::{self, File},
@@ -13,12 +13,12 @@ use parquet::{
     file::reader::{ChunkReader, Length},
 };
 
-/// Where the bytes of a file are.
+/// Source of a file's bytes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Medium {
     /// In a file of this path.
     Disk(PathBuf),
-    /// In memory, shared by all who read them.
+    /// Shared bytes in memory.
     Memory(Arc<[u8]>),
 }
 
@@ -35,10 +35,10 @@ impl Medium {
         Self::Disk(path.to_owned())
     }
 
-    /// Begins to read.
+    /// Opens the file for reading.
     ///
     /// # Errors
-    /// A file that can't be opened.
+    /// A file that cannot be opened.
     pub(super) fn open(&self) -> Result<Opened> {
         Ok(match self {
             Self::Disk(path) => Opened::Disk(File::open(path)?),
@@ -46,10 +46,10 @@ impl Medium {
         })
     }
 
-    /// All bytes.
+    /// Reads all bytes.
     ///
     /// # Errors
-    /// A file that can't be read.
+    /// A file that cannot be read.
     pub(super) fn read(&self) -> Result<Vec<u8>> {
         match self {
             Self::Disk(path) => fs::read(path),
@@ -67,10 +67,10 @@ impl Medium {
 }
 
 impl Opened {
-    /// The same file at the same position.
+    /// Another handle at the same position.
     ///
     /// # Errors
-    /// A file that can't be opened once more.
+    /// A file that cannot be opened again.
     pub(super) fn try_clone(&self) -> Result<Self> {
         Ok(match self {
             Self::Disk(file) => Self::Disk(file.try_clone()?),

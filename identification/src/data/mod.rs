@@ -1,13 +1,15 @@
-//! Measured runs: a [`Log`] holds the actuator positions and torques of one run, uniformly sampled, and
-//! velocities where they were measured;
-//! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
+//! Measured runs.
 //!
-//! Text, MATLAB's `.mat` files up to version 7, NumPy's files and Parquet are read, told apart by their first bytes.
-//! Text may separate its columns by commas, semicolons, tabs or blanks, have decimal commas, a header, names in a
-//! comment or none. Readers report every missing column, every cell that is not a number (up to twenty, equal
-//! ones of a column as one) and the first step of a time that is not uniform. A large file stays on the disk and
-//! is read block by block whenever its run is gone through; the numbers of a text are kept in a temporary file for
-//! that.
+//! A [`Log`] has the actuator positions and torques of one run, uniformly sampled, and velocities
+//! if measured. A [`Mapping`] assigns the columns of a file to them and converts these to SI units.
+//!
+//! Text, MATLAB's `.mat` files up to version 7, NumPy's files and Parquet are recognised by their
+//! first bytes. Columns of text are separated by commas, semicolons, tabs or blanks. Decimal
+//! commas, a header, names in a comment or no names are supported.
+//!
+//! Readers report every missing column, every cell that is not a number, and the first non-uniform
+//! time step. At most twenty different cell problems of a file are listed. Large files stay on disk
+//! and are read block by block. The numbers of a large text are cached in a temporary file.
 
 mod archive;
 mod arrays;
@@ -73,8 +75,9 @@ use problems::display_name;
 use source::Files;
 use table::Table;
 
-/// The files of a run: `a.csv+b.csv` are two that are joined, sample by sample or by their times, unless there
-/// is a file of this name.
+/// Splits a path into the files of a run.
+///
+/// `a.csv+b.csv` joins two files, sample by sample or by time, unless a file has this name.
 #[must_use]
 pub fn parts(path: &Path) -> Vec<&Path> {
     let text = path.to_str().filter(|_| !path.exists());
@@ -90,17 +93,17 @@ pub fn parts(path: &Path) -> Vec<&Path> {
     }
 }
 
-/// Reads a run from a file, whatever its format, or from several that are joined ([`parts`]).
+/// Reads a run from a file of any supported format, or from several joined files ([`parts`]).
 ///
 /// # Errors
-/// A file that can't be read or is of no format that is, missing columns, expressions that are none, cells
-/// that are not finite numbers, a time that is not uniform, files of different lengths or of different times, or a
-/// mapping that is not right.
+/// A file that cannot be read or of an unsupported format, missing columns, invalid expressions,
+/// cells that are not finite numbers, a non-uniform time, files of different lengths or times, or
+/// an invalid mapping.
 pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
     read_telling(path, mapping, payload, &|_| {})
 }
 
-/// Reads a run from a file; `advance` is told every now and then how many bytes more have been read.
+/// Reads a run; `advance` gets the number of bytes read since its last call.
 fn read_telling(
     path: &Path,
     mapping: &Mapping,
@@ -113,7 +116,7 @@ fn read_telling(
     looked_through(files, mapping, payload, advance)
 }
 
-/// Reads a run that is in memory, as arrays of a file would be read: `name` is what messages call it.
+/// Reads a run from arrays in memory, like arrays of a file; `name` is for messages.
 ///
 /// # Errors
 /// As [`read`].
@@ -132,7 +135,7 @@ pub fn read_arrays(
     looked_through(files, mapping, payload, &|_| {})
 }
 
-/// Reads a run from the bytes of a file, whatever its format: `name` is what messages call it.
+/// Reads a run from the bytes of a file of any supported format; `name` is for messages.
 ///
 /// # Errors
 /// As [`read`].
@@ -147,7 +150,7 @@ pub fn read_bytes(
     looked_through(files, mapping, payload, &|_| {})
 }
 
-/// The run of files that are open.
+/// Reads the run of open files once to check it.
 fn looked_through(
     mut files: Files,
     mapping: &Mapping,
@@ -184,15 +187,16 @@ fn looked_through(
         .without_offsets(&mapping.position_offset))
 }
 
-/// Reads several runs at once, each with a word on its payload. `progress` is told the part of all bytes
-/// that has been read, from 0 to 1.
+/// Reads several runs in parallel, each with its payload label.
+///
+/// `progress` gets the fraction of all bytes read, from 0 to 1.
 #[must_use]
 pub fn read_all(
     files: &[(&Path, bool)],
     mapping: &Mapping,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Vec<Result<Log, Error>> {
-    // A file that can't be asked for its size can't be read either, which is told then.
+    // A file without a readable size fails later, with a message.
     let size = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
     let parts = files.iter().flat_map(|(path, _)| parts(path));
     let total: u64 = parts.map(size).sum();

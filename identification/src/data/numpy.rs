@@ -1,8 +1,8 @@
 //! NumPy's files: `.npy`, one array, and `.npz`, a zip archive of such files.
 //!
-//! An array is a header, the text of a Python dictionary, and numbers. Headers and archives are read here
-//! rather than by a library: what libraries bring along to read any Python literal and any archive takes
-//! longer to build than all other readers together.
+//! An array has a header, which is the text of a Python dictionary, and numbers. Headers and
+//! archives are parsed here: libraries for arbitrary Python literals and archives take longer to
+//! build than all other readers.
 
 use super::{
     archive,
@@ -14,13 +14,13 @@ use super::{
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// What a `.npy` file starts with.
+/// Magic bytes of a `.npy` file.
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// Reads the array of a `.npy` file, whose columns are called by their numbers.
+/// Reads the array of a `.npy` file, whose columns are numbered.
 ///
 /// # Errors
-/// A file that can't be read or is broken, or an array that is not of numbers.
+/// A file that cannot be read or is broken, or an array without numbers.
 pub(super) fn open_array(file: String, medium: &Medium) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let mut arrays = Arrays::new(file.clone());
@@ -32,11 +32,10 @@ pub(super) fn open_array(file: String, medium: &Medium) -> Result<Arrays, Error>
     Ok(arrays)
 }
 
-/// Reads all arrays of a `.npz` file.
+/// Reads all arrays of a `.npz` file; skips arrays without numbers.
 ///
 /// # Errors
-/// A file that can't be read, is broken, or has nothing that NumPy wrote. Arrays that are not of numbers
-/// are left out.
+/// A file that cannot be read, is broken, or contains nothing from NumPy.
 pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
@@ -79,10 +78,10 @@ pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Erro
     Ok(arrays)
 }
 
-/// Adds an array, of all bytes of its file.
+/// Adds an array from the bytes of its file.
 ///
 /// # Errors
-/// What is wrong, in words behind `but`.
+/// A description of the defect, to follow `but`.
 fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
     let broken = || String::from("it is cut off");
     let version = *file.get(6).ok_or_else(broken)?;
@@ -120,7 +119,7 @@ fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
         _ => return Err(format!("the array has {} dimensions", header.shape.len())),
     };
     if values.is_empty() {
-        // One of the sizes is zero, and the other may be any.
+        // An empty array, of any other size.
         arrays.push(name, (0, 0), &values);
     } else if header.is_by_columns || shape.1 <= 1 {
         arrays.push(name, shape, &values);
@@ -140,7 +139,7 @@ fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// What is said of an array before its numbers.
+/// Header of an array.
 struct Header {
     number: Number,
     is_by_columns: bool,
@@ -188,17 +187,17 @@ impl Header {
     }
 }
 
-/// How a number is written.
+/// Encoding of a number.
 struct Number {
     is_little: bool,
-    /// `f`, `i`, `u`, or `b` for true and false.
+    /// `f`, `i`, `u`, or `b` for booleans.
     kind: u8,
-    /// Its bytes.
+    /// Size in bytes.
     size: usize,
 }
 
 impl Number {
-    /// Of NumPy's name, such as `<f8`.
+    /// Parses NumPy's name, such as `<f8`.
     fn of(name: &str) -> Option<Self> {
         let (order, rest) = name.as_bytes().split_first()?;
         let (kind, size) = rest.split_first()?;
@@ -231,7 +230,7 @@ impl Number {
             (b'f', 4) => f64::from(f32::from_bits(bits as u32)),
             (b'f', _) => f64::from_bits(bits),
             (b'i', size) => {
-                // The sign stands in the number's highest bit.
+                // Sign extension from the number's highest bit.
                 let unused = 64 - 8 * size as u32;
                 (((bits << unused) as i64) >> unused) as f64
             }

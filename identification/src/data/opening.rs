@@ -1,5 +1,4 @@
-//! Opens the files of a run: finds their columns, compares their clocks, and says what is done where these differ
-//! or the run is resampled.
+//! Opens the files of a run: finds columns, compares clocks, and decides on resampling.
 
 use overact::Code;
 
@@ -13,7 +12,7 @@ impl Files {
     /// Opens the files of the run `name`, each with its own name, and finds their columns.
     ///
     /// # Errors
-    /// A mapping that is not right, files that can't be read, missing columns.
+    /// An invalid mapping, files that cannot be read, missing columns.
     pub(super) fn new(
         name: String,
         files: &[(String, Medium)],
@@ -39,7 +38,7 @@ impl Files {
     /// The run `name` of tables, each with the number of its file.
     ///
     /// # Errors
-    /// A mapping that is not right, missing columns.
+    /// An invalid mapping, missing columns.
     pub(super) fn of_tables(
         name: String,
         (mut tables, mut numbers): (Vec<Table>, Vec<usize>),
@@ -74,7 +73,7 @@ impl Files {
         Ok(files)
     }
 
-    /// The usual step of the run's samples as they are, s: of the first file where clocks differ.
+    /// Usual step of the run's samples, s: that of the first file if clocks differ.
     fn usual_step(&self) -> Result<f64, Error> {
         if let Some((_, _, step)) = self.clocks.first() {
             return Ok(*step);
@@ -82,14 +81,14 @@ impl Files {
         let mut joined = Joined::new(self)?;
         let mut row = vec![0.0; self.width()];
         let times = std::iter::from_fn(|| {
-            // What is wrong with a row is told where the run is gone through.
+            // Errors in a row are reported when the run is read.
             joined.next(&mut row).ok().filter(|goes_on| *goes_on)?;
             self.signals.times(&row).next()
         });
         Ok(resampling::usual_step(times))
     }
 
-    /// Rates that are too far from those of the samples, and files without times where others have their own.
+    /// The problems of rates too far from those of the samples, and of files without times.
     fn unfit_rates(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
         let run = (self.name.clone(), self.resample.map(|(_, step)| step));
@@ -144,7 +143,7 @@ impl Files {
         problems
     }
 
-    /// The clocks of the files, unless they agree.
+    /// Clocks of the files; empty if they agree.
     fn differing_clocks(&self) -> Result<Vec<(usize, usize, f64)>, Error> {
         let columns: Vec<_> = self.signals.columns().collect();
         let open = |&(file, place): &(usize, usize)| {
@@ -163,7 +162,7 @@ impl Files {
         clocks.iter().map(with_step).collect()
     }
 
-    /// What is said of a run that was resampled, and of files that are joined by time.
+    /// Note on resampling, and on files joined by time.
     pub(super) fn note(&self, samples: usize, left_out: usize) -> Option<String> {
         let labels = |clocks: &[(usize, usize, f64)]| {
             let labels = clocks.iter().map(|(table, ..)| self.tables[*table].label());
@@ -212,7 +211,7 @@ impl Files {
     }
 }
 
-/// What is said of one file that is to be joined with itself.
+/// The problem of a file joined with itself.
 fn twice(files: &[(String, Medium)]) -> Option<Problem> {
     let places: Vec<_> = files
         .iter()
@@ -230,13 +229,14 @@ fn twice(files: &[(String, Medium)]) -> Option<Problem> {
     )
 }
 
-/// A rate with as many digits as matter.
+/// Rounds a rate for display.
 fn round(rate: f64) -> f64 {
     (rate * 1e6).round() / 1e6
 }
 
-/// The tables of a run without those parts of files, as topics are, that have none of its signals; the others
-/// are put in the order in which the mapping names them, with the number of each one's file.
+/// Removes parts of files, such as topics, without signals of the run.
+///
+/// The remaining parts are in the order of the mapping, with the number of their file.
 fn used(
     name: &str,
     (tables, numbers): (Vec<Table>, Vec<usize>),
@@ -282,7 +282,7 @@ mod tests {
         let log = Log::in_files(files, 10.0, 100, false);
         let (positions, torques) = log.load().expect("numbers");
         assert_eq!((positions[99], torques[50]), (99.0, 100.0));
-        // Cut while it is gone through.
+        // The file is truncated while it is read.
         fs::write(&path, &lines[..100]).expect("written");
         let error = log.load().expect_err("shorter").to_string();
         assert!(error.contains("log.csv"), "{error}");

@@ -1,17 +1,17 @@
-//! What is said of files that can't be used.
+//! Problems of files that cannot be used.
 
 use overact::Code;
 use std::path::Path;
 
 use crate::error::{Problem, suggestion};
 
-/// Cells that are reported one by one; a file of text would else fill the screen.
+/// Largest number of cells reported individually.
 pub(super) const LARGEST_NUMBER_OF_PROBLEMS: usize = 20;
 
-/// Problems of a file's lines, of which equal ones are told once: a column of words has one on every line.
+/// Problems of a file's lines; equal ones are reported once with their number.
 #[derive(Default)]
 pub(super) struct Collected {
-    /// Each with the number of lines further down that have it, too.
+    /// Each problem with the number of later lines that have it, too.
     all: Vec<(Problem, usize)>,
 }
 
@@ -20,7 +20,7 @@ impl Collected {
         self.all.is_empty()
     }
 
-    /// How many different ones there are.
+    /// Number of different problems.
     pub(super) fn len(&self) -> usize {
         self.all.len()
     }
@@ -41,7 +41,7 @@ impl Collected {
         }
     }
 
-    /// What is said of them.
+    /// The merged problems.
     pub(super) fn told(self) -> Vec<Problem> {
         let told = |(mut problem, more): (Problem, usize)| {
             match more {
@@ -55,16 +55,16 @@ impl Collected {
     }
 }
 
-/// Names that are listed, at most.
+/// Largest number of listed names.
 const LARGEST_NUMBER_OF_NAMES: usize = 40;
 
-/// Characters of a cell or a name that are shown, at most.
+/// Largest number of displayed characters of a cell or a name.
 const LONGEST_SHOWN: usize = 40;
 
-/// Characters of a library's reason that are shown, at most.
+/// Largest number of displayed characters of a library's message.
 const LONGEST_REASON: usize = 200;
 
-/// A piece of a file as it can be shown in a terminal: short, and without control characters.
+/// Text from a file for a terminal: short, and without control characters.
 pub(super) fn shown(piece: &str) -> String {
     let mut text: String = piece
         .chars()
@@ -77,7 +77,7 @@ pub(super) fn shown(piece: &str) -> String {
     text
 }
 
-/// What a library says of a file, as it can be shown in a terminal.
+/// A library's message for a terminal.
 pub(super) fn legible(why: &str) -> String {
     let letters = why.chars().take(LONGEST_REASON);
     letters
@@ -85,12 +85,12 @@ pub(super) fn legible(why: &str) -> String {
         .collect()
 }
 
-/// The name by which a file is called in messages: as the caller gave it.
+/// Name of a file in messages, as the caller gave it.
 pub(super) fn display_name(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// A file that can't be opened or read.
+/// The problem of a file that cannot be opened or read.
 pub(super) fn unreadable(file: &str, error: &std::io::Error) -> Problem {
     let problem = Problem::new(
         Code::UNREADABLE_LOG,
@@ -104,7 +104,7 @@ pub(super) fn unreadable(file: &str, error: &std::io::Error) -> Problem {
     }
 }
 
-/// The way out where there is no file of a name: pieces of it may be files.
+/// Help for a missing file, whose name may be a list of files.
 fn not_found(file: &str) -> String {
     if file == "-" {
         return String::from("standard input can't be joined with files: write it to a file first");
@@ -123,7 +123,7 @@ fn not_found(file: &str) -> String {
     String::from("check the path; it is taken from the folder in which the program was started")
 }
 
-/// Several names between marks of quotation.
+/// A list of quoted names.
 pub(super) fn quoted<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let all: Vec<String> = names
         .into_iter()
@@ -138,10 +138,10 @@ pub(super) fn quoted<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// The place of the column `name` among the `names` of a file's columns, if it is there.
+/// Index of the column `name` among `names`, if it exists.
 ///
 /// # Errors
-/// Two columns of one name: nobody knows which one is meant.
+/// Two columns of this name.
 pub(super) fn only<'a>(
     file: &str,
     name: &str,
@@ -163,17 +163,16 @@ pub(super) fn only<'a>(
     }
 }
 
-/// What a file has in the way of columns.
+/// Existing columns of a file.
 pub(super) struct Existing<'a> {
     pub(super) names: Vec<&'a str>,
-    /// Number of columns, of which all or none have a name.
+    /// Number of columns; all or none have a name.
     pub(super) columns: usize,
-    /// What a column is called in this format.
+    /// Word for a column in this format.
     pub(super) what: &'static str,
 }
 
-/// The error that names all columns that are missing and all that are there, in one file or several
-/// that are joined.
+/// The problem of missing columns, with all existing ones, for one file or several joined ones.
 pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<'_>) -> Problem {
     let Existing {
         names,
@@ -205,7 +204,7 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
     }
 }
 
-/// The error that names columns that are missing, and what there is in their place.
+/// The problem of missing columns, with the text `existing`.
 pub(super) fn no_columns(file: &str, (missing, what): (&[&str], &str), existing: &str) -> Problem {
     let (is, s) = match missing.len() {
         1 => ("is", ""),
@@ -220,7 +219,7 @@ pub(super) fn no_columns(file: &str, (missing, what): (&[&str], &str), existing:
     }
 }
 
-/// Names that may have been meant by those that are missing.
+/// Suggests existing names for missing ones.
 pub(super) fn guesses(missing: &[&str], names: &[&str]) -> Option<String> {
     let near = missing.iter().filter_map(|name| {
         let near = suggestion(name, names.iter().copied())?;

@@ -1,5 +1,6 @@
-//! A run that is gone through: the rows of its files, joined sample by sample or by time, at their own times or
-//! at uniform ones, as positions, torques and velocities.
+//! Reads a run: the rows of its files, joined sample by sample or by time.
+//!
+//! They are read at their own or at uniform times, as positions, torques and velocities.
 
 use super::{
     resampling::{Place, Resampled, apart},
@@ -11,30 +12,30 @@ use super::{
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// The rest of a file.
+/// The remaining rows of a file.
 #[derive(Debug)]
 struct Part<'a> {
     rows: UnwrappedRows<'a>,
-    /// The number of its columns that are read.
+    /// Number of its requested columns.
     columns: usize,
-    /// The file at other times than its own.
+    /// State of resampling, if the file is read at other times than its own.
     resampled: Option<Resampled>,
 }
 
-/// The rest of the files of a run.
+/// The remaining rows of the files of a run.
 #[derive(Debug)]
 pub(super) struct Joined<'a> {
     files: &'a Files,
     parts: Vec<Part<'a>>,
-    /// Number of rows that have been read.
+    /// Number of rows read.
     count: usize,
-    /// The first and the last time of the first file, where others are joined by time.
+    /// First and last time of the first file, if others are joined by time.
     range: Option<(f64, f64)>,
     /// Whether nothing more can be read.
     has_ended: bool,
 }
 
-/// What came of the next row.
+/// Result of reading the next row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
     Row,
@@ -44,10 +45,10 @@ enum Step {
 }
 
 impl<'a> Joined<'a> {
-    /// Goes to the first rows.
+    /// Starts at the first rows.
     ///
     /// # Errors
-    /// A file that can't be read any more.
+    /// A file that cannot be read any more.
     pub(super) fn new(files: &'a Files) -> Result<Self, Error> {
         let mut parts = Vec::new();
         for (table, own) in files.tables.iter().zip(files.signals.columns()) {
@@ -66,7 +67,7 @@ impl<'a> Joined<'a> {
         })
     }
 
-    /// Reads the next row of files that have one clock; `false` at the end.
+    /// Reads the next row of files with a common clock; `false` at the end.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -74,8 +75,9 @@ impl<'a> Joined<'a> {
         Ok(self.advance(values, None)? == Step::Row)
     }
 
-    /// The first of some uniform times at which all files have numbers: the time at which the first file begins, and
-    /// how many steps after that; none where a file is empty.
+    /// First of the uniform times at which all files have values; `None` if a file is empty.
+    ///
+    /// It is given by the start of the first file, and the number of steps after it.
     fn begin(&mut self, rate: f64) -> Result<Option<(f64, u64)>, Error> {
         let (mut start, mut latest) = (None, f64::NEG_INFINITY);
         for part in &mut self.parts {
@@ -93,11 +95,11 @@ impl<'a> Joined<'a> {
         Ok(start.map(|start| (start, steps(start, latest, rate))))
     }
 
-    /// Reads the next row of all files into `values`, at a time that is given or at that of the first file.
+    /// Reads the next row of all files into `values`, at a given time or that of the first file.
     ///
     /// # Errors
-    /// Every cell of the row that is no finite number, a file that can't be read on or that ends before
-    /// the others.
+    /// Every cell of the row that is no finite number, a file that cannot be read further, or one
+    /// that ends before the others.
     fn advance(&mut self, values: &mut [f64], given: Option<f64>) -> Result<Step, Error> {
         if let ([part], None, []) = (&mut self.parts[..], given, &self.files.clocks[..])
             && part.resampled.is_none()
@@ -124,10 +126,10 @@ impl<'a> Joined<'a> {
                         true
                     })
                 }
-                // The file with the times has none.
+                // The file that defines the times has ended.
                 (Some(_), None) => continue,
             };
-            // A file of which nothing is read has no part in the run.
+            // A file without requested columns is ignored.
             match read {
                 _ if own.is_empty() => {}
                 Ok(true) => goes_on = Some(number),
@@ -183,7 +185,7 @@ impl<'a> Joined<'a> {
         }
     }
 
-    /// What is said of files that have no time in common.
+    /// The problem of files without a common time.
     fn apart(&self) -> Option<Problem> {
         let (first, ..) = self.files.clocks.first()?;
         let name = |number: usize| self.files.tables[number].file();
@@ -197,7 +199,7 @@ impl<'a> Joined<'a> {
         ranges.find(outside).map(|file| apart(first, file))
     }
 
-    /// What is said of a file that ends while another one goes on.
+    /// The problem of a file that ends before another one.
     fn shorter(&self, ended: usize, on: usize) -> Problem {
         let file = |number: usize| self.files.tables[number].file();
         let message = format!(
@@ -211,7 +213,7 @@ impl<'a> Joined<'a> {
     }
 }
 
-/// How many steps at a rate lead from a time to the first one that is not before another time.
+/// Number of steps from `start` to the first time not before `end`.
 fn steps(start: f64, end: f64, rate: f64) -> u64 {
     ((end - start) * rate - 1e-9).ceil().max(0.0) as u64
 }
@@ -224,30 +226,30 @@ struct Uniform {
     next: u64,
 }
 
-/// The rest of a run.
+/// The remaining rows of a run.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     files: &'a Files,
     joined: Joined<'a>,
-    /// The whole run at other times than its own.
+    /// State of resampling, if the whole run is read at other times than its own.
     resampled: Option<Resampled>,
-    /// The times at which it is resampled, once they have begun.
+    /// Resampling times, once they have started.
     times: Option<Uniform>,
-    /// The numbers of a row, in the columns that are read.
+    /// Values of a row, for the requested columns.
     pub(super) values: Vec<f64>,
     /// Unwraps positions that are no columns.
     unwrapper: Unwrapper,
-    /// Number of samples that have been read.
+    /// Number of samples read.
     pub(super) samples: usize,
-    /// Samples of the first file at which another one, which is joined by time, has none.
+    /// Samples of the first file at which a file joined by time has no values.
     pub(super) left_out: usize,
 }
 
 impl<'a> Rows<'a> {
-    /// Goes to the first sample.
+    /// Starts at the first sample.
     ///
     /// # Errors
-    /// A file that can't be read any more.
+    /// A file that cannot be read any more.
     pub(super) fn new(files: &'a Files) -> Result<Self, Error> {
         Ok(Self {
             files,
@@ -263,15 +265,15 @@ impl<'a> Rows<'a> {
 
     /// Whether nothing more can be read.
     pub(super) const fn has_ended(&self) -> bool {
-        // What is resampled is read ahead.
+        // A resampled run is read ahead.
         self.joined.has_ended && self.resampled.is_none()
     }
 
     /// Appends the next sample; `false` at the end.
     ///
     /// # Errors
-    /// Every cell of the row that is no finite number, a file that can't be read on or that ends before
-    /// the others.
+    /// Every cell of the row that is no finite number, a file that cannot be read further, or one
+    /// that ends before the others.
     pub(super) fn next(&mut self, samples: &mut Samples) -> Result<bool, Error> {
         loop {
             let step = match self.files.resample {
@@ -327,7 +329,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Appends the numbers of a row to `samples`.
+    /// Appends the values of a row to `samples`.
     fn take(&mut self, samples: &mut Samples) -> Result<(), Error> {
         let n = self.files.actuators;
         let values = self.files.signals.values(&self.values);
@@ -366,7 +368,7 @@ impl<'a> Rows<'a> {
         .into())
     }
 
-    /// The columns and positions that were logged within one turn, of those that are not unwrapped.
+    /// Columns and positions that were logged within one turn and are not yet unwrapped.
     pub(super) fn wraps(&self) -> Vec<(WrapSource, Wrap)> {
         let parts = self.joined.parts.iter().enumerate();
         let of_tables = parts.flat_map(|(table, part)| {
@@ -379,7 +381,7 @@ impl<'a> Rows<'a> {
             .collect()
     }
 
-    /// What is said at the end of files that have no time in common.
+    /// The problem of files without a common time, at the end.
     pub(super) fn apart(&self) -> Option<Problem> {
         if self.samples > 0 {
             return None;
@@ -387,7 +389,7 @@ impl<'a> Rows<'a> {
         self.joined.apart()
     }
 
-    /// What is said if the last row has, in another file, a time that is off by half a `step` or more.
+    /// The problem if times of the last row in two files differ by half a `step` or more.
     pub(super) fn other_time(&self, step: f64) -> Option<Problem> {
         let mut times = self.files.signals.times(&self.values);
         let first = times.next()?;
@@ -402,7 +404,7 @@ impl<'a> Rows<'a> {
         ))
     }
 
-    /// Line of the last sample, where the run is one file that has lines.
+    /// Line of the last sample, if the run is one file with lines.
     pub(super) fn line(&self) -> Option<usize> {
         match &self.joined.parts[..] {
             [part] if self.files.resample.is_none() => part.rows.logged().line(),
@@ -410,7 +412,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Bytes of all files that have been read.
+    /// Number of bytes of all files read.
     pub(super) fn bytes(&self) -> u64 {
         let parts = self.joined.parts.iter();
         parts.map(|part| part.rows.logged().bytes()).sum()

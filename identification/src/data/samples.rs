@@ -1,18 +1,18 @@
-//! Samples as readers hand them on.
+//! Samples as returned by readers.
 
 /// Some successive samples of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Samples {
-    /// Positions, samples x n, row-major (m, rad).
+    /// Positions, samples × n, row-major (m, rad).
     pub positions: Vec<f64>,
-    /// Torques, samples x n, row-major (N, N m).
+    /// Torques, samples × n, row-major (N, N m).
     pub torques: Vec<f64>,
-    /// Measured velocities, samples x n, row-major (m/s, rad/s); empty where there are none.
+    /// Measured velocities, samples × n, row-major (m/s, rad/s); empty if not measured.
     pub velocities: Vec<f64>,
 }
 
 impl Samples {
-    /// Forgets all numbers.
+    /// Removes all samples.
     pub(super) fn clear(&mut self) {
         self.positions.clear();
         self.torques.clear();

@@ -1,4 +1,4 @@
-//! What a description says of sizes and limits.
+//! Sizes and limits of a description.
 
 /// Sizes and limits of a description, by which the units of a log are judged.
 ///
@@ -9,24 +9,25 @@
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scales {
-    /// Reach, m: the largest sum of lengths along a leg, distance between bases of legs or between their ends; 0
-    /// for a description without lengths.
+    /// Reach, m; 0 for a description without lengths.
+    ///
+    /// The largest sum of lengths along a leg, or distance between the legs' bases or ends.
     pub length: f64,
     /// Sampling frequency of the virtual experiment, Hz.
     pub sampling: Option<f64>,
-    /// Largest torque of each actuator, N m or N; empty where it is not described.
+    /// Largest torque of each actuator, N m or N; empty if not described.
     pub torque: Vec<f64>,
-    /// Largest displacement of each actuator from home, rad or m; empty where it is not described.
+    /// Largest displacement of each actuator from home, rad or m; empty if not described.
     pub travel: Vec<f64>,
-    /// Largest speed of each actuator, rad/s or m/s; empty where it is not described.
+    /// Largest speed of each actuator, rad/s or m/s; empty if not described.
     pub velocity: Vec<f64>,
 }
 
-/// A reach is at least so long (m).
+/// Smallest reach (m).
 const SHORTEST: f64 = 0.1;
 
 impl Scales {
-    /// The reach, m; none for a description without lengths.
+    /// Reach, m; `None` for a description without lengths.
     pub(crate) fn reach(&self) -> Option<f64> {
         (self.length > 0.0).then(|| self.length.max(SHORTEST))
     }

@@ -1,5 +1,4 @@
-//! What a mapping asks of the files of a run: which columns are read, and how they become time, positions,
-//! torques and velocities.
+//! Signals of a mapping: requested columns, and their conversion to time and SI units.
 
 use super::{
     columns::{Columns, Found, Tables},
@@ -12,10 +11,10 @@ use super::{
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// A column or an expression of columns, and the factor to SI units.
+/// A column or an expression of columns, with the factor to SI units.
 #[derive(Debug, Clone, PartialEq)]
 struct Signal {
-    /// As the mapping writes it.
+    /// Text in the mapping.
     text: String,
     expression: Expression,
     scale: f64,
@@ -35,22 +34,22 @@ impl Signal {
     }
 }
 
-/// What is read of the files.
+/// Requested columns and signals.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Signals {
-    /// Of each file the columns that are read, with the names by which they were asked for.
+    /// For each file the requested columns, with the names of the request.
     columns: Vec<Vec<(usize, String)>>,
-    /// The time in each file that has a column of it.
+    /// Time in each file with a time column.
     times: Vec<Expression>,
-    /// Positions, then torques, then velocities, if there are some.
+    /// Positions, then torques, then velocities, if measured.
     signals: Vec<Signal>,
 }
 
 impl Signals {
-    /// Finds what the mapping asks for in the files of `run`.
+    /// Finds the columns of the mapping in the files of `run`.
     ///
     /// # Errors
-    /// All columns that are not there, expressions that are none, or gains that are no numbers.
+    /// All missing columns, invalid expressions and gains that are no numbers.
     pub(super) fn new(run: &str, tables: Tables<'_>, mapping: &Mapping) -> Result<Self, Error> {
         let gains = gains(run, tables.0, mapping)?;
         let mut columns = Columns::new(run, tables);
@@ -82,10 +81,10 @@ impl Signals {
         })
     }
 
-    /// The tables that have signals of the mapping, in the order in which it names them.
+    /// Tables that contain signals of the mapping, in its order.
     ///
     /// # Errors
-    /// All columns that are not there.
+    /// All missing columns.
     pub(super) fn used(
         run: &str,
         tables: Tables<'_>,
@@ -100,13 +99,14 @@ impl Signals {
         columns.finish().map(|_| used)
     }
 
-    /// Of each file the columns that are read, with their names.
+    /// For each file the requested columns, with their names.
     pub(super) fn columns(&self) -> impl Iterator<Item = Vec<(usize, &str)>> {
         self.columns.iter().map(|own| named(own))
     }
 
-    /// The files that have a column of the time, where several do: their numbers, and the places of these columns
-    /// among those that are read of the file.
+    /// Files with a time column, if several have one.
+    ///
+    /// Each with the index of this column among the requested ones of the file.
     pub(super) fn clocks(&self) -> Vec<(usize, usize)> {
         let place = |time: &Expression| {
             let &Expression::Column(mut place) = time else {
@@ -124,7 +124,7 @@ impl Signals {
         if clocks.len() > 1 { clocks } else { Vec::new() }
     }
 
-    /// The columns that may hold a position within one turn, where these positions are of rotating joints.
+    /// Columns that may contain a wrapped angle of a rotating joint.
     pub(super) fn rotations(&self, rotating: &[bool]) -> Vec<Rotation> {
         let names: Vec<&str> = self
             .columns
@@ -151,7 +151,7 @@ impl Signals {
         all
     }
 
-    /// The positions of rotating joints that are no linear functions of their columns, by their places.
+    /// Positions of rotating joints that are nonlinear functions of their columns, by index.
     pub(super) fn rotating_values(&self, rotating: &[bool]) -> Vec<Rotation> {
         let width = self.columns.iter().map(Vec::len).sum();
         let own = self.signals.iter().zip(rotating).enumerate();
@@ -160,22 +160,22 @@ impl Signals {
             .collect()
     }
 
-    /// The first of the times.
+    /// The first time signal.
     pub(super) fn first_time(&self) -> Option<&Expression> {
         self.times.first()
     }
 
-    /// The times of a row in all files that have one, s.
+    /// Times of a row in all files with a time column, s.
     pub(super) fn times<'a>(&'a self, columns: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         self.times.iter().map(|time| time.evaluate(columns))
     }
 
-    /// Positions, torques and velocities in SI units, of the numbers in the columns that are read.
+    /// Positions, torques and velocities in SI units, from the requested columns.
     pub(super) fn values<'a>(&'a self, columns: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         self.signals.iter().map(|signal| signal.value(columns))
     }
 
-    /// The first signal that has a value that nothing measures, as the mapping writes it, with the value.
+    /// The first signal with an impossible value, as in the mapping, with the value.
     pub(super) fn immeasurable(&self, columns: &[f64]) -> Option<(&str, f64)> {
         let all = self.signals.iter();
         let mut all = all.map(|signal| (signal.text.as_str(), signal.value(columns)));
@@ -183,15 +183,15 @@ impl Signals {
     }
 }
 
-/// The largest value of a position, velocity or torque that is taken for measured: beyond what a counter of 64 bits has.
+/// Largest plausible value of a signal; larger than any 64-bit counter.
 const LARGEST: f64 = 1e20;
 
-/// Whether a value can have been measured: a finite number that is not beyond anything.
+/// Whether a value is finite and plausible.
 pub(super) fn is_measurable(value: f64) -> bool {
     value.abs() <= LARGEST
 }
 
-/// Columns with their names, borrowed.
+/// Borrows columns with their names.
 fn named(columns: &[(usize, String)]) -> Vec<(usize, &str)> {
     let columns = columns.iter();
     columns
@@ -199,7 +199,7 @@ fn named(columns: &[(usize, String)]) -> Vec<(usize, &str)> {
         .collect()
 }
 
-/// The gains as numbers, read from the files where the mapping names them.
+/// Gains as numbers; named ones are read from the files.
 fn gains(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Vec<f64>, Error> {
     let mut problems = Vec::new();
     let mut gains = Vec::new();
@@ -234,7 +234,7 @@ fn gains(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Vec<f64>, Err
     Ok(gains)
 }
 
-/// What is said of a gain that no file has.
+/// The problem of a gain that no file contains.
 fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
     let with_variables = tables.iter().find(|table| table.has_variables());
     match with_variables.map(Table::existing) {

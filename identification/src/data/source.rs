@@ -1,4 +1,4 @@
-//! The files of a run: their tables, what is read of them, and at which times.
+//! Files of a run: tables, requested columns, and times.
 
 use super::{
     expression::Expression,
@@ -11,16 +11,16 @@ use super::{
 };
 use crate::error::Error;
 
-/// Where a wrapped position was found.
+/// Location of a wrapped position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum WrapSource {
-    /// In a column of the table of this number.
+    /// A column of the table with this number.
     Table(usize),
-    /// Among the positions.
+    /// A computed position.
     Position,
 }
 
-/// The files of a run and what their columns mean.
+/// Files of a run, with the meaning of their columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Files {
     /// The run as the caller named it.
@@ -29,27 +29,28 @@ pub(super) struct Files {
     pub(super) signals: Signals,
     pub(super) actuators: usize,
     pub(super) has_velocities: bool,
-    /// Where several files have clocks that differ, each of them with the place of its clock and its usual step,
-    /// s. The first one's times are those of the run.
+    /// For files with different clocks: table, index of its clock, and usual step, s.
+    ///
+    /// The times of the first one are those of the run. Empty if clocks agree.
     pub(super) clocks: Vec<(usize, usize, f64)>,
-    /// From motors to joints, where the columns are those of motors.
+    /// Transformation from motors to joints, if the columns are those of motors.
     pub(super) transmission: Option<Transmission>,
-    /// The columns that may hold a position within one turn, and the positions that may be angles within one turn.
+    /// Columns, and computed positions, that may be wrapped angles.
     pub(super) rotations: Vec<Rotation>,
     pub(super) rotating_values: Vec<Rotation>,
-    /// The rate of uniform times at which the run is resampled, Hz, and the usual step before, s.
+    /// Resampling rate, Hz, and usual step before, s.
     pub(super) resample: Option<(f64, f64)>,
-    /// The numbers of the run, where it is large and its files are slow to read.
+    /// Cached samples of a large run whose files are slow to read.
     pub(super) spill: Option<Spill>,
 }
 
 impl Files {
-    /// Number of columns that are read of all files.
+    /// Number of requested columns of all files.
     pub(super) fn width(&self) -> usize {
         self.signals.columns().map(|own| own.len()).sum()
     }
 
-    /// What is read at other times than its own: the table where clocks differ, else the whole run.
+    /// Resampling state of a table if clocks differ, or of the whole run.
     pub(super) fn resampled(&self, table: Option<usize>) -> Option<Resampled> {
         let Some(table) = table else {
             let (rate, step) = self.resample.filter(|_| self.clocks.is_empty())?;
@@ -61,7 +62,7 @@ impl Files {
                 (step, rate),
             ));
         };
-        // The first file is read at its own times, unless the run is resampled.
+        // The first file keeps its own times, unless the run is resampled.
         let mut clocks = self
             .clocks
             .iter()
@@ -81,7 +82,7 @@ impl Files {
         ))
     }
 
-    /// The columns of a table that may hold a position within one turn, by their places in the table.
+    /// Columns of a table that may be wrapped angles, by index in the table.
     pub(super) fn rotations_of(&self, table: usize) -> Vec<Rotation> {
         let mut widths = self.signals.columns().map(|own| own.len());
         let before = widths.by_ref().take(table).sum();
@@ -92,10 +93,10 @@ impl Files {
             .collect()
     }
 
-    /// Unwraps columns, or positions, that were found to wrap.
+    /// Marks columns, or positions, that were found to be wrapped.
     ///
     /// # Errors
-    /// Steps of which the direction is not known.
+    /// Steps of ambiguous direction.
     pub(super) fn unwrap(&mut self, wraps: &[(WrapSource, Wrap)]) -> Result<(), Error> {
         let mut problems = Vec::new();
         for (source, wrap) in wraps {
@@ -113,7 +114,7 @@ impl Files {
             own.into_iter()
                 .for_each(|own| own.period = Some(wrap.period));
         }
-        // Of the others it is known that they do not wrap.
+        // The others are known not to be wrapped.
         self.rotations.retain(|own| own.period.is_some());
         self.rotating_values.retain(|own| own.period.is_some());
         Error::check(problems)

@@ -1,8 +1,7 @@
-//! The numbers of a large run whose files are slow to read, in a temporary file: a text is then read once, however
-//! often its run is gone through.
+//! Samples of a large run in a temporary file, so that a text is parsed only once.
 //!
-//! The file has no name where the system allows it, and is gone with the run. Where there is no room for it, or no
-//! folder for such files, the run's own files are read again.
+//! The file has no name if the system supports that, and is deleted with the run. Without space or
+//! a temporary folder, the run's own files are read again.
 
 #[cfg(not(target_family = "wasm"))]
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -16,12 +15,12 @@ use super::samples::Samples;
 /// Bytes of a number.
 const BYTES: usize = size_of::<f64>();
 
-/// Numbers in a temporary file: positions, torques and velocities of one sample after the other.
+/// Samples in a temporary file: positions, torques and velocities of each sample.
 #[derive(Debug, Clone)]
 pub(super) struct Spill {
-    /// Readers share it, and go to their own places.
+    /// Shared by readers, each with its own position.
     file: Arc<Mutex<File>>,
-    /// Numbers of positions of a sample, as many of torques, and of velocities if there are some.
+    /// Values per sample of positions, torques, and velocities if measured.
     parts: [usize; 3],
 }
 
@@ -32,7 +31,7 @@ impl PartialEq for Spill {
 }
 
 impl Spill {
-    /// A file for runs of so many actuators; none where there can't be one.
+    /// A file for runs with `actuators` actuators; `None` if it cannot be created.
     #[cfg(not(target_family = "wasm"))]
     pub(super) fn new(actuators: usize, has_velocities: bool) -> Option<Self> {
         let file = tempfile::tempfile().ok()?;
@@ -43,13 +42,13 @@ impl Spill {
         })
     }
 
-    /// There are no files.
+    /// Without a file system.
     #[cfg(target_family = "wasm")]
     pub(super) fn new(_actuators: usize, _has_velocities: bool) -> Option<Self> {
         None
     }
 
-    /// Adds samples; `false` where there is no room for them.
+    /// Adds samples; `false` if there is no space.
     #[cfg(not(target_family = "wasm"))]
     pub(super) fn write(&self, samples: &Samples) -> bool {
         let all = [&samples.positions, &samples.torques, &samples.velocities];
@@ -69,16 +68,16 @@ impl Spill {
         file.seek(SeekFrom::End(0)).is_ok() && file.write_all(&bytes).is_ok()
     }
 
-    /// There are no files.
+    /// Without a file system.
     #[cfg(target_family = "wasm")]
     pub(super) fn write(&self, _samples: &Samples) -> bool {
         false
     }
 
-    /// So many samples from number `first` on.
+    /// Reads `count` samples from number `first` on.
     ///
     /// # Errors
-    /// A file that can't be read.
+    /// A file that cannot be read.
     pub(super) fn read(&self, first: usize, count: usize) -> std::io::Result<Samples> {
         let mut bytes = vec![0; count * self.width() * BYTES];
         self.fill(first, &mut bytes)?;
@@ -106,13 +105,13 @@ impl Spill {
         file.read_exact(bytes)
     }
 
-    /// There are no files.
+    /// Without a file system.
     #[cfg(target_family = "wasm")]
     fn fill(&self, _first: usize, _bytes: &mut [u8]) -> std::io::Result<()> {
         Err(std::io::ErrorKind::Unsupported.into())
     }
 
-    /// Numbers of a sample.
+    /// Values per sample.
     fn width(&self) -> usize {
         self.parts.iter().sum()
     }

@@ -1,94 +1,94 @@
-//! Files that stay on the disk: what is asked of every format whose columns are read block by block.
+//! Interface of file formats that are read block by block from disk.
 
 use std::fmt::Debug;
 
 use super::problems::Existing;
 use crate::error::{Error, Problem};
 
-/// A file, or a part of one, that has been opened and whose columns are read again and again.
+/// An open file, or a part of one, whose columns are read repeatedly.
 pub(super) trait Stored: Debug + Send + Sync {
     /// The file as the caller named it.
     fn file(&self) -> &str;
 
-    /// What it is called where a file may have several parts.
+    /// Name in messages, if a file may have several parts.
     fn label(&self) -> String {
         self.file().to_owned()
     }
 
-    /// The name of a column that no other part of the file has.
+    /// Name of a column that is unique among the parts of the file.
     fn full_name(&self, column: &str) -> String {
         column.to_owned()
     }
 
-    /// What a file of this format is called.
+    /// Name of the format.
     fn what(&self) -> &'static str;
 
-    /// Whether it is one of several parts of its file, which are used only where their columns are.
+    /// Whether it is one of several parts of its file, which are used only if requested.
     fn is_part(&self) -> bool {
         false
     }
 
-    /// Number of columns that can be called by number.
+    /// Number of columns that can be selected by number.
     fn columns(&self) -> usize;
 
-    /// The place of a column that is called by its name.
+    /// Index of the column with this name.
     ///
     /// # Errors
-    /// Several columns of this name.
+    /// Several columns with this name.
     fn find(&self, name: &str) -> Result<Option<usize>, Problem>;
 
-    /// Whether a column has numbers.
+    /// Checks that a column contains numbers.
     ///
     /// # Errors
-    /// What it has in their place.
+    /// Description of its values otherwise.
     fn check(&self, _place: usize) -> Result<(), Problem> {
         Ok(())
     }
 
-    /// What instants are counted from, s since 1970; none where there are no instants.
+    /// Origin of instants, s since 1970; `None` without instants.
     fn origin(&self) -> Option<i64> {
         None
     }
 
-    /// Says what instants are counted from, so that those of several files go together.
+    /// Sets the origin of instants, to be common to several files.
     fn set_origin(&mut self, _origin: i64) {}
 
-    /// The values of a variable that is a single number.
+    /// Value of a scalar variable.
     fn variable(&self, _name: &str) -> Option<&[f64]> {
         None
     }
 
-    /// Whether single numbers can stand in the file.
+    /// Whether the format supports scalar variables.
     fn has_variables(&self) -> bool {
         false
     }
 
-    /// The first column of a matrix that is called as if it were a vector.
+    /// First column of a matrix that is named like a vector.
     fn first_column(&self, _name: &str) -> Option<&str> {
         None
     }
 
-    /// What columns there are.
+    /// The existing columns.
     fn existing(&self) -> Existing<'_>;
 
-    /// Goes through some columns, whose names are for messages, from the first row on.
+    /// Reads some columns from the first row on; the names are for messages.
     ///
     /// # Errors
-    /// A file that can't be read any more, or that was written anew; columns of different lengths.
+    /// A file that cannot be read any more, or was changed; columns of different lengths.
     fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error>;
 }
 
-/// The rest of a file.
+/// The remaining rows of a file.
 pub(super) trait StoredRows: Debug {
-    /// Puts the numbers of the next row into `values`; `false` at the end.
+    /// Writes the next row to `values`; `false` at the end.
     ///
     /// # Errors
-    /// Every cell of the row that is no finite number, or a file that can't be read on.
+    /// Every cell of the row that is no finite number, or a file that cannot be read further.
     fn next(&mut self, values: &mut [f64]) -> Result<bool, Error>;
 
     /// Whether nothing more can be read.
     fn is_broken(&self) -> bool;
 
-    /// Bytes of the file that have been read.
+    /// Number of bytes of the file read.
     fn bytes(&self) -> u64;
 }

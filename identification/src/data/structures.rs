@@ -1,7 +1,7 @@
-//! Structures in MATLAB's `.mat` files: their numeric fields as arrays named `STRUCTURE.FIELD`.
+//! Structures in MATLAB's `.mat` files: numeric fields as arrays named `STRUCTURE.FIELD`.
 //!
-//! A field stands in its structure as an array stands in a file, except that it has no name. With one, and
-//! with the file's header before it, it is a file of one array, which the reader of arrays takes.
+//! A field is stored like an array of a file, except for its name. With a name and the file's
+//! header, it becomes a file of one array for the array reader.
 
 use std::io::Read;
 
@@ -12,37 +12,38 @@ use super::budget::Budget;
 /// Bytes of a file before its first element.
 pub(super) const HEADER: usize = 128;
 
-/// Structures inside of structures, at most.
+/// Largest depth of nested structures.
 const LARGEST_DEPTH: usize = 8;
 
 /// Types of elements.
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
-/// Class of an array that is a structure.
+/// Class of structures.
 const STRUCTURE: u8 = 2;
 
-/// Classes of arrays of numbers.
+/// Classes of numeric arrays.
 const NUMBERS: std::ops::RangeInclusive<u8> = 6..=15;
 
-/// Bytes of an array from which its class and size are read.
+/// Bytes of an array that determine its class and size.
 const BEGINNING: usize = 72;
 
 /// An array of a file, as a file of that array alone.
 pub(super) struct OneArray<'a> {
-    /// The name of a field, `STRUCTURE.FIELD`; none of arrays that have their own.
+    /// Name of a field, `STRUCTURE.FIELD`; `None` for arrays with names of their own.
     pub(super) name: Option<&'a str>,
-    /// Whether it is packed in the file that it is from.
+    /// Whether it is compressed in the original file.
     pub(super) is_packed: bool,
-    /// The file.
+    /// Content of the file.
     pub(super) file: &'a mut dyn Read,
 }
 
-/// Gives all arrays of numbers in a file to `take`: those of its own, and the fields of its structures. Other arrays
-/// are left out, packed ones without unpacking them.
+/// Passes all numeric arrays of a file to `take`, including fields of structures.
+///
+/// Other arrays are skipped, compressed ones without unpacking.
 ///
 /// # Errors
-/// A sentence about what is broken, what unpacks to more than the budget, or what `take` says.
+/// A sentence on a defect or on an exceeded budget, or the error of `take`.
 pub(super) fn arrays(
     file: &[u8],
     budget: &mut Budget,
@@ -96,7 +97,7 @@ pub(super) fn arrays(
             (ArrayKind::Other, _) => {}
         }
         for (name, field) in &fields {
-            // Fields that are no numbers are left out, as other variables that are none.
+            // Fields that are not numeric are skipped like other variables.
             let beginning = &field[HEADER..field.len().min(HEADER + BEGINNING)];
             if matches!(order.kind(beginning), Ok(ArrayKind::Numbers)) {
                 let (name, file) = (Some(name.as_str()), &mut field.as_slice());
@@ -108,24 +109,24 @@ pub(super) fn arrays(
             }
         }
     }
-    // What follows the last element may fill the file up.
+    // Padding may follow the last element.
     if content[read..].iter().any(|byte| *byte != 0) {
         return Err(cut_off());
     }
     Ok(())
 }
 
-/// What is wrong with packed bytes.
+/// Message for broken compressed bytes.
 const BROKEN: &str = "it is broken";
 
-/// What an array holds.
+/// Content of an array.
 enum ArrayKind {
     Numbers,
     Structure,
     Other,
 }
 
-/// The first bytes of a packed array.
+/// Unpacks the first bytes of a compressed array.
 fn beginning(packed: &[u8]) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let unpacked = Decoder::new(packed).map_err(|_| String::from(BROKEN))?;
@@ -138,11 +139,11 @@ fn beginning(packed: &[u8]) -> Result<Vec<u8>, String> {
 struct Element<'a> {
     kind: u32,
     data: &'a [u8],
-    /// With its tag and what fills it up.
+    /// The element with its tag and padding.
     whole: &'a [u8],
 }
 
-/// The order of the bytes of a number.
+/// Byte order of a number.
 #[derive(Clone, Copy)]
 struct Order {
     is_little: bool,
@@ -158,15 +159,15 @@ impl Order {
         })
     }
 
-    /// The class of an array, of the data of its flags.
+    /// Class of an array, from the data of its flags.
     fn class(self, flags: &[u8]) -> Option<u8> {
         self.number(flags).map(|flags| flags.to_le_bytes()[0])
     }
 
-    /// What an array holds, from its first bytes.
+    /// Content of an array, from its first bytes.
     ///
     /// # Errors
-    /// A sentence about an array of numbers whose size is none.
+    /// A sentence on a numeric array with an invalid size.
     fn kind(self, beginning: &[u8]) -> Result<ArrayKind, String> {
         if self.number(beginning) != Some(MATRIX) {
             return Ok(ArrayKind::Other);
@@ -190,7 +191,7 @@ impl Order {
         }
     }
 
-    /// The elements that follow one another.
+    /// Successive elements.
     fn elements<'a>(self, mut rest: &'a [u8]) -> impl Iterator<Item = Element<'a>> {
         std::iter::from_fn(move || {
             let kind = self.number(rest)?;
@@ -204,7 +205,7 @@ impl Order {
                 (_, COMPRESSED) => start + size,
                 _ => start + size.next_multiple_of(8),
             };
-            // The last element of a file may not be filled up.
+            // The last element of a file may lack its padding.
             let (whole, behind) = rest.split_at(end.min(rest.len()));
             rest = behind;
             Some(Element { kind, data, whole })
@@ -249,7 +250,7 @@ impl Order {
         Some(())
     }
 
-    /// An array that stands alone needs a name, which those in structures do not have.
+    /// Adds a name to an array, since those in structures have none.
     fn named(self, array: &[u8]) -> Option<Vec<u8>> {
         let bytes = |number: u32| match self.is_little {
             true => number.to_le_bytes(),
@@ -258,7 +259,7 @@ impl Order {
         let mut elements = self.elements(array);
         let (flags, size) = (elements.next()?.whole, elements.next()?.whole);
         let nameless = flags.len() + size.len() + elements.next()?.whole.len();
-        // A small element: one byte of the type of texts.
+        // A small element: one byte of type text.
         let name = [bytes(1 << 16 | 1), *b"x\0\0\0"].concat();
         let array = [flags, size, &name, array.get(nameless..)?].concat();
         let tag = [bytes(MATRIX), bytes(u32::try_from(array.len()).ok()?)].concat();
@@ -278,7 +279,7 @@ mod tests {
         [&kind.to_le_bytes()[..], &size.to_le_bytes(), data].concat()
     }
 
-    /// A file of one packed array of this class and this many bytes of zeros.
+    /// A file of one compressed array with this class and number of zero bytes.
     fn packed(class: u8, bytes: usize) -> Vec<u8> {
         let flags = element(6, &[class, 0, 0, 0, 0, 0, 0, 0]);
         let rows = i32::try_from(bytes / 8).expect("a size").to_le_bytes();
@@ -298,7 +299,7 @@ mod tests {
         file
     }
 
-    /// How many bytes are unpacked of the array of a file.
+    /// Number of bytes unpacked from the array of a file.
     fn unpacked(file: &[u8], budget: &mut Budget) -> Result<usize, String> {
         let mut bytes = Vec::new();
         arrays(file, budget, &mut |one| {
@@ -321,7 +322,7 @@ mod tests {
         let mut budget = Budget::with(40_000);
         let refused = unpacked(&file, &mut budget).expect_err("too large");
         assert!(refused.contains("unpacked it has more than"), "{refused}");
-        // Texts are not unpacked at all.
+        // Text is not unpacked.
         let mut budget = Budget::with(0);
         assert_eq!(unpacked(&packed(TEXT, 80_000), &mut budget), Ok(0));
     }

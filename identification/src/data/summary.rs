@@ -1,4 +1,4 @@
-//! A run is gone through once before it is used, to check and count everything.
+//! First pass over a run, which checks and counts everything.
 
 use super::{
     clock::Clock,
@@ -14,36 +14,36 @@ use super::{
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// Numbers of one run that are kept in memory (8 MB); arrays are in memory anyhow.
+/// Largest number of values of one run in memory (8 MB).
 const LARGEST_IN_MEMORY: usize = 1 << 20;
 
-/// Numbers of positions that are put into a temporary file at once (256 kB).
+/// Positions written to the temporary file at once (256 kB).
 const SPILLED: usize = 1 << 15;
 
-/// Bytes after which progress is told.
+/// Bytes between reports of progress.
 const STEP: u64 = 1 << 18;
 
-/// What is known of a run that has been gone through.
+/// Result of the first pass over a run.
 pub(super) struct Summary {
-    /// f_m, Hz.
+    /// Sampling frequency f_m, Hz.
     pub(super) frequency: f64,
     pub(super) count: usize,
-    /// All samples, where they are few enough to be kept.
+    /// All samples, if they fit in memory.
     pub(super) samples: Option<Samples>,
-    /// All samples in a temporary file, where they are not kept and their files are slow to read.
+    /// All samples in a temporary file, if they do not fit and their files are slow to read.
     pub(super) spill: Option<Spill>,
-    /// Samples of the first file at which another one, which is joined by time, has none.
+    /// Samples of the first file at which a file joined by time has no values.
     pub(super) left_out: usize,
-    /// Columns and positions that were logged within one turn and have not been unwrapped.
+    /// Columns and positions that were logged within one turn and are not yet unwrapped.
     pub(super) wraps: Vec<(WrapSource, Wrap)>,
 }
 
 impl Files {
-    /// Goes through the whole run; `advance` is told every now and then how many bytes more have been read.
+    /// Reads the whole run; `advance` gets the number of bytes read since its last call.
     ///
     /// # Errors
-    /// Cells that are not finite numbers, a time that is not uniform, fewer than two samples, files of
-    /// different lengths or with different times.
+    /// Cells that are not finite numbers, a non-uniform time, fewer than two samples, files of
+    /// different lengths or times.
     pub(super) fn look_through(
         &self,
         time: &Time,
@@ -72,7 +72,8 @@ impl Files {
                 }
                 Ok(false) => break,
                 Err(error) => {
-                    // A line too many or too few makes files end apart; it has been told itself.
+                    // A missing or additional line makes file lengths differ; it has its own
+                    // message.
                     let follows =
                         |one: &Problem| !problems.is_empty() && one.code == Code::LOG_FILES;
                     let own: Vec<Problem> = error

@@ -1,4 +1,4 @@
-//! One file as a table of columns, whatever its format.
+//! A file of any format as a table of columns.
 
 use std::sync::Arc;
 
@@ -20,12 +20,12 @@ use super::{
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// A file that has been opened, or one of its parts.
+/// An open file, or one of its parts.
 #[derive(Debug, Clone)]
 pub(super) enum Table {
-    /// Lines of numbers, which are read again and again.
+    /// Lines of numbers, read repeatedly.
     Text(Text),
-    /// Columns that are read again and again, block by block.
+    /// Columns, read repeatedly in blocks.
     Stored(Arc<dyn Stored>),
     /// Arrays in memory.
     Arrays(Arrays),
@@ -47,10 +47,10 @@ impl PartialEq for Table {
 }
 
 impl Table {
-    /// Opens a file, whatever its format: one table, or one for each of its parts.
+    /// Opens a file of any format: one table, or one for each of its parts.
     ///
     /// # Errors
-    /// A file that can't be read, or whose format isn't.
+    /// A file that cannot be read, or of an unsupported format.
     pub(super) fn open(file: String, medium: &Medium) -> Result<Vec<Self>, Error> {
         let one = match format::recognise(&file, medium)? {
             Format::Text => Self::Text(Text::open(file, medium)?),
@@ -81,7 +81,7 @@ impl Table {
         }
     }
 
-    /// What it is called where a file may have several parts.
+    /// Name in messages, if a file may have several parts.
     pub(super) fn label(&self) -> String {
         match self {
             Self::Stored(stored) => stored.label(),
@@ -89,7 +89,7 @@ impl Table {
         }
     }
 
-    /// The name of a column that no other part of the file has.
+    /// Name of a column that is unique among the parts of the file.
     pub(super) fn full_name(&self, column: &str) -> String {
         match self {
             Self::Stored(stored) => stored.full_name(column),
@@ -97,22 +97,22 @@ impl Table {
         }
     }
 
-    /// Whether it is one of several parts of its file, which are used only where their columns are.
+    /// Whether it is one of several parts of its file, which are used only if requested.
     pub(super) fn is_part(&self) -> bool {
         matches!(self, Self::Stored(stored) if stored.is_part())
     }
 
-    /// Whether the numbers are in memory already.
+    /// Whether the numbers are in memory.
     pub(super) const fn in_memory(&self) -> bool {
         matches!(self, Self::Arrays(_))
     }
 
-    /// Whether each number has to be read digit by digit.
+    /// Whether numbers must be parsed from text.
     pub(super) const fn is_text(&self) -> bool {
         matches!(self, Self::Text(_))
     }
 
-    /// Number of columns that can be called by number.
+    /// Number of columns that can be selected by number.
     pub(super) fn columns(&self) -> usize {
         match self {
             Self::Text(text) => text.columns(),
@@ -121,10 +121,10 @@ impl Table {
         }
     }
 
-    /// The place of a column that is called by its name.
+    /// Index of the column with this name.
     ///
     /// # Errors
-    /// Several columns of this name.
+    /// Several columns with this name.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
         match self {
             Self::Text(text) => text.find(name),
@@ -133,19 +133,19 @@ impl Table {
         }
     }
 
-    /// Whether a column can be read as numbers.
+    /// Checks that a column contains numbers.
     ///
     /// # Errors
-    /// What it holds in their place.
+    /// Description of its values otherwise.
     pub(super) fn check(&self, place: usize) -> Result<(), Problem> {
         match self {
-            // Cells of a text are looked at one by one; other arrays than those of numbers are left out.
+            // Cells of a text are checked one by one; arrays contain numbers only.
             Self::Text(_) | Self::Arrays(_) => Ok(()),
             Self::Stored(stored) => stored.check(place),
         }
     }
 
-    /// What the instants of a file are counted from, s since 1970, where it has instants.
+    /// Origin of instants, s since 1970; `None` without instants.
     pub(super) fn origin(&self) -> Option<i64> {
         match self {
             Self::Text(_) | Self::Arrays(_) => None,
@@ -153,7 +153,7 @@ impl Table {
         }
     }
 
-    /// Says what instants are counted from, as long as the table is nobody else's.
+    /// Sets the origin of instants, unless the table is shared.
     pub(super) fn set_origin(&mut self, origin: i64) {
         if let Self::Stored(stored) = self
             && let Some(stored) = Arc::get_mut(stored)
@@ -162,7 +162,7 @@ impl Table {
         }
     }
 
-    /// What is said of a text without a line.
+    /// The problem of a text without a line.
     pub(super) fn without_lines(&self) -> Option<Problem> {
         let Self::Text(text) = self else {
             return None;
@@ -172,7 +172,7 @@ impl Table {
         (text.columns() == 0).then(|| problem.help(help))
     }
 
-    /// What a file of this format is called.
+    /// Name of the format.
     pub(super) fn what(&self) -> &'static str {
         match self {
             Self::Text(_) => "a text",
@@ -181,7 +181,7 @@ impl Table {
         }
     }
 
-    /// Whether variables that are single numbers can stand in the file.
+    /// Whether the format supports scalar variables.
     pub(super) fn has_variables(&self) -> bool {
         match self {
             Self::Text(_) => false,
@@ -190,7 +190,7 @@ impl Table {
         }
     }
 
-    /// The values of a variable, which may be a single number; only arrays are variables.
+    /// Values of a variable, possibly a scalar; only arrays are variables.
     pub(super) fn variable(&self, name: &str) -> Option<&[f64]> {
         match self {
             Self::Text(_) => None,
@@ -199,7 +199,7 @@ impl Table {
         }
     }
 
-    /// What columns there are.
+    /// The existing columns.
     pub(super) fn existing(&self) -> Existing<'_> {
         match self {
             Self::Text(text) => text.existing(),
@@ -208,7 +208,7 @@ impl Table {
         }
     }
 
-    /// The first column of a matrix that is called as if it were a vector.
+    /// First column of a matrix that is named like a vector.
     pub(super) fn first_column(&self, name: &str) -> Option<&str> {
         match self {
             Self::Text(_) => None,
@@ -217,10 +217,10 @@ impl Table {
         }
     }
 
-    /// Goes through some columns, whose names are for messages, from the first sample on.
+    /// Reads some columns from the first sample on; the names are for messages.
     ///
     /// # Errors
-    /// A file that can't be read any more, or columns of different lengths.
+    /// A file that cannot be read any more, or columns of different lengths.
     pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
         Ok(match self {
             Self::Text(text) => Rows::Text(text.rows(wanted)?),
@@ -230,7 +230,7 @@ impl Table {
     }
 }
 
-/// The path of a file whose format is read from a disk alone.
+/// Path of a file whose format can only be read from disk.
 #[cfg(any(feature = "hdf5", feature = "mcap"))]
 fn on_disk<'m>(file: &str, medium: &'m Medium) -> Result<&'m std::path::Path, Error> {
     medium.path().ok_or_else(|| {
@@ -242,7 +242,7 @@ fn on_disk<'m>(file: &str, medium: &'m Medium) -> Result<&'m std::path::Path, Er
     })
 }
 
-/// The rest of a table.
+/// The remaining rows of a table.
 #[derive(Debug)]
 pub(super) enum Rows<'a> {
     Text(text::Rows<'a>),
@@ -251,10 +251,10 @@ pub(super) enum Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Puts the numbers of the next sample into `values`; `false` at the end.
+    /// Writes the next sample to `values`; `false` at the end.
     ///
     /// # Errors
-    /// Numbers that are not finite, or a file that can't be read on.
+    /// Numbers that are not finite, or a file that cannot be read further.
     pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         match self {
             Self::Text(rows) => rows.next(values),
@@ -263,7 +263,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Line of the last sample, where the file has lines.
+    /// Line of the last sample, if the file has lines.
     pub(super) const fn line(&self) -> Option<usize> {
         match self {
             Self::Text(rows) => Some(rows.line()),
@@ -280,7 +280,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Bytes of the file that have been read.
+    /// Number of bytes of the file read.
     pub(super) fn bytes(&self) -> u64 {
         match self {
             Self::Text(rows) => rows.bytes(),

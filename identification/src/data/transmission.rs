@@ -1,4 +1,4 @@
-//! Positions, velocities and torques of motors as those of joints, where a log has the motors'.
+//! Converts motor positions, velocities and torques to those of the joints.
 
 use nalgebra::{DMatrix, DVector};
 use overact::Code;
@@ -6,20 +6,20 @@ use overact::Code;
 use super::samples::Samples;
 use crate::error::Problem;
 
-/// The matrix T of the motors' positions θ = T q.
+/// Transmission matrix T, with motor positions θ = T q.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Transmission {
-    /// Tᵀ, which takes torques to the joints.
+    /// Tᵀ, for torques.
     transposed: DMatrix<f64>,
-    /// T^-1, which takes positions and velocities there.
+    /// T^-1, for positions and velocities.
     inverse: DMatrix<f64>,
 }
 
 impl Transmission {
-    /// From the rows of T; none where there are no rows.
+    /// Constructs it from the rows of T; `None` without rows.
     ///
     /// # Errors
-    /// A matrix that is not square, has other numbers than the actuators, or is singular.
+    /// A matrix that is singular, or not square with the number of actuators.
     pub(super) fn new(rows: &[Vec<f64>], actuators: usize) -> Result<Option<Self>, Problem> {
         if rows.is_empty() {
             return Ok(None);
@@ -43,7 +43,7 @@ impl Transmission {
         }
     }
 
-    /// Turns the last sample from the motors' coordinates into the joints'.
+    /// Converts the last sample from motor to joint coordinates.
     pub(super) fn to_joints(&self, samples: &mut Samples) {
         let turn = |matrix: &DMatrix<f64>, values: &mut Vec<f64>| {
             let Some(start) = values.len().checked_sub(matrix.nrows()) else {
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn power_is_the_same_in_both_coordinates() {
-        // The second motor turns the sum of both joints.
+        // The second motor moves by the sum of both joints.
         let rows = [vec![45.0, 0.0], vec![-32.0, -32.0]];
         let both = Transmission::new(&rows, 2).expect("a regular matrix");
         let both = both.expect("a transmission");

@@ -1,11 +1,11 @@
-//! Base parameters: the fewest parameters from which the model can be computed, by QR without
-//! pivoting in the symmetric order (43), section 4.1 of the paper.
+//! Base parameters, by QR without pivoting in the symmetric order (43), section 4.1 of the paper.
 //!
-//! The columns are taken platform first, then for each body and symbol those of all legs together,
-//! so that what stays is alike for like legs. The rank is decided on random states without noise,
-//! not on measured data: it is a property of the robot. The payload's columns are a block of their
-//! own, independent of the robot's, when loaded and unloaded runs are at hand (49); with loaded
-//! runs alone they are regrouped into the platform's.
+//! Columns are ordered platform first, then by body and symbol for all legs together, so that equal
+//! legs keep equal parameters. The rank is determined on random states without noise: it is a
+//! property of the robot, not of the data.
+//!
+//! With loaded and unloaded runs, the payload columns are an independent block (49). With loaded
+//! runs only, they are regrouped into the platform's.
 //!
 //! A deleted column d is W_d = Σ_k c_dk W_k, so the base parameter k is χ_k + Σ_d c_dk χ_d.
 
@@ -25,25 +25,25 @@ use crate::{
     },
 };
 
-/// A column is dependent when the part of it outside the kept ones is below this part of its norm.
+/// A column is dependent if its part outside the kept ones is below this fraction of its norm.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-9;
 
-/// How the payload's columns take part.
+/// Treatment of the payload columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PayloadUse {
     /// No run carries the payload.
     Absent,
-    /// Some runs carry it and some do not: a block of its own (49).
+    /// Some runs carry it and some do not: an independent block (49).
     Separate,
-    /// All runs carry it: it can't be told from the platform.
+    /// All runs carry it: it cannot be separated from the platform.
     Regrouped,
 }
 
 impl PayloadUse {
-    /// How the payload takes part in the runs.
+    /// Determines how the runs carry the payload.
     ///
     /// # Errors
-    /// No run, or runs with a payload that the model does not have.
+    /// No run, or runs with a payload that the model lacks.
     pub(crate) fn of(info: &Info<'_>, runs: &[Log]) -> Result<Self, Error> {
         if runs.is_empty() {
             return Err(
@@ -87,7 +87,7 @@ impl PayloadUse {
     }
 }
 
-/// The base parameters of a column set.
+/// Base parameters of a column set.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct BaseParameters {
@@ -97,13 +97,12 @@ pub struct BaseParameters {
     pub regroupings: Vec<Vec<(usize, f64)>>,
     /// Columns that have no effect on the model.
     pub without_effect: Vec<usize>,
-    /// Names: the kept parameter's, with the suffix `R` where others are regrouped into it.
+    /// Names of the kept parameters, with the suffix `R` if others are regrouped into them.
     pub names: Vec<String>,
 }
 
 impl BaseParameters {
-    /// The values of the base parameters that standard parameters (by name) give; `None` where one
-    /// of the values is not known.
+    /// Base parameters from standard parameters by name; `None` if a required value is missing.
     #[must_use]
     pub fn regrouped(
         &self,
@@ -126,8 +125,9 @@ impl BaseParameters {
     }
 }
 
-/// The value of one column's parameter. Split friction has fv for both directions, and fs with the
-/// offset added or taken off.
+/// Value of a column's parameter.
+///
+/// With friction split by direction, both directions have fv, and fs plus or minus the offset.
 fn true_value(column: &Column, values: &BTreeMap<String, f64>) -> Option<f64> {
     if let Some(value) = values.get(&column.name) {
         return Some(*value);
@@ -153,7 +153,7 @@ fn true_value(column: &Column, values: &BTreeMap<String, f64>) -> Option<f64> {
 /// Finds the base parameters of a model's columns on random states drawn with `seed`.
 ///
 /// # Errors
-/// A model that can't be evaluated near its home pose, or one without any parameter.
+/// A model that cannot be evaluated near its home pose, or one without parameters.
 pub fn base_parameters(
     model: &dyn Model,
     columns: &ColumnSet,
@@ -183,15 +183,16 @@ pub fn base_parameters(
     Ok(base)
 }
 
-/// The columns of which another one is a combination; none where it is independent of all.
+/// Columns that a column is a linear combination of; `None` if it is independent of all others.
 pub(crate) type Combination = Option<Vec<usize>>;
 
-/// Finds the base parameters of the columns that are not among `known`, and of each known one the columns
-/// of which its own is a combination: none where it lies outside of their span, so that data tell its
-/// contribution from theirs.
+/// Base parameters of the columns not in `known`, and the combination of each known column.
+///
+/// The combination is `None` if the known column is outside the span of the others. Data then
+/// separate its contribution from theirs.
 ///
 /// # Errors
-/// A model that can't be evaluated near its home pose.
+/// A model that cannot be evaluated near its home pose.
 pub(crate) fn base_parameters_beside(
     model: &dyn Model,
     (columns, payload): (&ColumnSet, PayloadUse),
@@ -219,7 +220,8 @@ pub(crate) fn base_parameters_beside(
                 let is_load = columns.indices(true).contains(&column);
                 *place = match found.zero.contains(&column) {
                     true => Some(Vec::new()),
-                    // It is told beside the payload that is always there, whose own is not.
+                    // It is relative to the payload that is always present, which has no column of
+                    // its own.
                     false if several && is_load => Some(columns.loads().concat()),
                     false => others,
                 };
@@ -232,13 +234,13 @@ pub(crate) fn base_parameters_beside(
     Ok((base, combinations))
 }
 
-/// The columns in the symmetric order, in blocks that are independent of each other.
+/// Columns in the symmetric order, in blocks that are independent of each other.
 fn blocks(columns: &ColumnSet, payload: PayloadUse) -> Vec<Vec<usize>> {
     let robot = symmetric_order(columns, columns.indices(false));
     let loads = columns.loads().into_iter();
     let mut loads: Vec<Vec<usize>> = loads.map(|own| symmetric_order(columns, own)).collect();
     if payload == PayloadUse::Regrouped {
-        // One payload is always there: what the others have more is told beside it.
+        // One payload is always present; the others are relative to it.
         let always = loads.pop().unwrap_or_default();
         loads.insert(0, [robot, always].concat());
     } else {
@@ -247,8 +249,9 @@ fn blocks(columns: &ColumnSet, payload: PayloadUse) -> Vec<Vec<usize>> {
     loads
 }
 
-/// Of payloads of which one is always there, the parameters less those of the last one, which is regrouped into
-/// the robot.
+/// Makes payload parameters relative to the last payload, if one is always present.
+///
+/// The last payload is regrouped into the robot.
 fn relative(base: &mut BaseParameters, columns: &ColumnSet) {
     let mut loads = columns.loads();
     let always = loads.pop().unwrap_or_default();
@@ -274,7 +277,7 @@ fn relative(base: &mut BaseParameters, columns: &ColumnSet) {
     }
 }
 
-/// Names of the payloads that runs carry, in the order of the runs; none where they have no names.
+/// Names of the payloads that runs carry, in the order of the runs; empty without names.
 pub(crate) fn payload_names(runs: &[Log]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for name in runs.iter().filter_map(Log::payload_name) {
@@ -285,7 +288,7 @@ pub(crate) fn payload_names(runs: &[Log]) -> Vec<String> {
     names
 }
 
-/// Adds what one block yields to the base parameters.
+/// Adds the result of one block to the base parameters.
 fn collect(base: &mut BaseParameters, columns: &ColumnSet, found: Elimination) {
     for kept in found.kept {
         let regrouping: Vec<(usize, f64)> = found
@@ -310,8 +313,7 @@ fn collect(base: &mut BaseParameters, columns: &ColumnSet, found: Elimination) {
     base.without_effect.extend(found.zero);
 }
 
-/// The columns sorted as in eq. (43): platform, then by body, symbol and direction with the legs of
-/// one shape side by side, then the payload.
+/// Sorts columns as in eq. (43): platform, body, symbol, direction, equal legs, payload.
 fn symmetric_order(columns: &ColumnSet, mut indices: Vec<usize>) -> Vec<usize> {
     indices.sort_by_key(|&index| {
         columns.as_slice().get(index).map(|column| {
@@ -326,9 +328,10 @@ fn symmetric_order(columns: &ColumnSet, mut indices: Vec<usize>) -> Vec<usize> {
     indices
 }
 
-/// The regressor on random states, (states r) x columns. The rows of a state are scaled by their
-/// largest entry, so that a state next to a singularity does not outweigh the others: relations
-/// between columns hold row by row.
+/// Regressor on random states, (states r) × columns.
+///
+/// The rows of a state are divided by their largest entry, so that states near a singularity do not
+/// dominate. Relations between columns hold in each row, so this does not change them.
 fn random_regressor(
     model: &dyn Model,
     columns: &ColumnSet,

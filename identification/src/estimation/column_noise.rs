@@ -1,16 +1,17 @@
-//! How noise of the positions changes the columns of the regressor.
+//! Effect of position noise on the columns of the regressor.
 //!
-//! The columns come from measured positions q + δ, so a column holds W(q) and the change ΔW that the noise δ makes.
-//! The change is found by adding more noise of the same size to the beginning of some runs, which then pass filters,
-//! differences and forward kinematics as the measured positions do:
+//! The columns are computed from measured positions q + δ, so they contain W(q) and the change ΔW
+//! from the noise δ. To estimate ΔW, noise δ' of the same size is added to the start of some runs.
+//! The noisy positions then pass filters, differences and forward kinematics like the measured
+//! ones:
 //!
 //! ```text
 //! ΔW = W(q + δ') - W(q),   N = ΔWᵀ Λ² ΔW.
 //! ```
 //!
-//! With R of the weighted columns, the eigenvalues λ of R^-T N R^-1 say which part of a direction of W is noise
-//! (W. Fuller, *Measurement Error Models*, 1987): least squares lose the part λ of what the true motion says of it.
-//! A direction with λ near 1 holds no motion at all.
+//! With R of the weighted columns, the eigenvalues λ of R^-T N R^-1 are the noise fractions of the
+//! directions of W (W. Fuller, *Measurement Error Models*, 1987). Least squares underestimates a
+//! direction by the fraction λ. A direction with λ near 1 contains no motion.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -25,13 +26,13 @@ use crate::{
     },
 };
 
-/// Samples of a run that are looked at beyond those that the filters need.
+/// Samples of a run that are used in addition to those that the filters need.
 const SAMPLES: usize = 4096;
 
-/// Equations of each line that are made of them, at least, where the run has so many.
+/// Fewest equations of each line, if the run is long enough.
 const EQUATIONS: usize = 256;
 
-/// Runs that are looked at.
+/// Number of runs that are used.
 const RUNS: usize = 4;
 
 /// R factors of ΔW of one projection.
@@ -40,23 +41,24 @@ pub(crate) struct ColumnNoise {
     lines: Vec<Factor>,
 }
 
-/// The directions of weighted columns, by how much of them is noise.
+/// Directions of weighted columns, with their noise fractions.
 #[derive(Debug, Clone)]
 pub(crate) struct Directions {
     /// λ of each direction.
     pub(crate) noise: Vec<f64>,
-    /// What a step of one deviation of the residual along each direction changes in each parameter: parameters x
-    /// directions.
+    /// Change of each parameter for a step along each direction, parameters × directions.
+    ///
+    /// The step changes the weighted equations by one standard deviation of the residual.
     pub(crate) steps: DMatrix<f64>,
-    /// The estimates along each direction, in the same unit.
+    /// Estimate along each direction, in the same unit.
     pub(crate) sizes: DVector<f64>,
 }
 
 impl ColumnNoise {
-    /// Those of all projections of an observer; none of a projection without equations.
+    /// Column noise of all projections of an observer; `None` for one without equations.
     ///
     /// # Errors
-    /// A log that can't be read any more.
+    /// A log cannot be read any more.
     pub(crate) fn all(observer: &Observer<'_>, runs: &[Log]) -> Result<Vec<Option<Self>>, Error> {
         let parameters = observer.base.len();
         let lines = observer.model.info().sizes.dof;
@@ -67,7 +69,7 @@ impl ColumnNoise {
             let used = SAMPLES.max(EQUATIONS * settings.decimation);
             let piece = log.beginning(settings.samples_needed() + used)?;
             let noisy = shaken(&piece)?;
-            // Noise that leads out of the workspace leaves this run out.
+            // Skip this run if the noise leaves the workspace.
             let both = (&piece, Some(&noisy));
             let Ok((observed, _)) = observer.run(number, both, (0, None), &|_, _| {}) else {
                 continue;
@@ -103,8 +105,9 @@ impl ColumnNoise {
         }
     }
 
-    /// The directions of the columns `selected` of a weighted system with their `values`; none of columns that are
-    /// dependent.
+    /// Directions of the columns `selected` of a weighted system, with their `values`.
+    ///
+    /// `None` for linearly dependent columns.
     pub(crate) fn directions(
         &self,
         system: &System,

@@ -1,11 +1,11 @@
 //! Least-squares estimation from the R factors of the lines, section 4.2 of the paper.
 //!
-//! χ minimises ||Y - W χ|| (44). With the residual's deviation σ_ρ (46) the covariance of χ is
-//! σ_ρ² (Wᵀ W)^-1 = σ_ρ² R^-1 R^-T (47). Weighted least squares divides the equations of each line j
-//! by the deviation of the residual that this line has on its own (48); lines in different units
-//! (N and N m) become comparable.
+//! χ minimises ||Y - W χ|| (44). With the residual's standard deviation σ_ρ (46), the covariance of
+//! χ is σ_ρ² (Wᵀ W)^-1 = σ_ρ² R^-1 R^-T (47). Weighted least squares divides the equations of each
+//! line j by the standard deviation of that line's own residual (48). Lines in N and N m then
+//! become comparable.
 //!
-//! Residuals, relative errors and the condition number are those of the unweighted system.
+//! Residuals, relative residuals and the condition number are those of the unweighted system.
 
 use nalgebra::DMatrix;
 use overact::Code;
@@ -21,10 +21,10 @@ use crate::{
     settings::{Normalisation, Settings},
 };
 
-/// A line whose residual is below this part of its norm is exact but for rounding.
+/// A line whose residual is below this fraction of its norm is exact up to rounding.
 const EXACT: f64 = 1e-9;
 
-/// Estimated parameters and how good they are.
+/// Least-squares estimate with its standard deviations and residuals.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Estimation {
@@ -40,15 +40,15 @@ pub struct Estimation {
     pub relative_error_percent: f64,
     /// Condition number of W, neither weighted nor scaled.
     pub condition_number: f64,
-    /// r_c, number of equations.
+    /// Number of equations, r_c.
     pub equations: usize,
-    /// σ_ρ of the system that was solved: about 1 when it was weighted.
+    /// σ_ρ of the solved system: about 1 if it was weighted.
     pub residual_deviation: f64,
-    /// Each line of Γ.
+    /// Residual of each line of Γ.
     pub lines: Vec<LineError>,
     /// Weight of each line's equations.
     pub weights: Vec<f64>,
-    /// R^-1 of the weighted system: its rows have the norms of the deviations but for σ_ρ.
+    /// R^-1 of the weighted system; σ_ρ times its row norms are the standard deviations.
     pub(crate) inverse: DMatrix<f64>,
 }
 
@@ -67,7 +67,7 @@ impl Estimation {
     }
 }
 
-/// How well one line of Γ, or one torque, is reproduced.
+/// Residual of one line of Γ, or of one torque.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LineError {
     /// Name of the coordinate or actuator.
@@ -83,7 +83,7 @@ pub struct LineError {
 }
 
 impl LineError {
-    /// The errors of a line from its norms.
+    /// Computes the relative residual from the norms.
     #[must_use]
     pub fn new(name: &str, residual_norm: f64, measured_norm: f64, equations: usize) -> Self {
         Self {
@@ -96,7 +96,7 @@ impl LineError {
     }
 }
 
-/// 100 part/whole, 0 when both vanish.
+/// 100 part/whole; 0 if both are zero.
 pub(crate) fn percent(part: f64, whole: f64) -> f64 {
     if part == 0.0 {
         0.0
@@ -105,7 +105,7 @@ pub(crate) fn percent(part: f64, whole: f64) -> f64 {
     }
 }
 
-/// The errors of given parameters on every line of a system.
+/// Residuals of given parameters for every line of a system.
 #[must_use]
 pub(crate) fn line_errors(system: &System, selected: &[usize], values: &[f64]) -> Vec<LineError> {
     system
@@ -148,15 +148,16 @@ pub fn estimate(
     Ok(estimation)
 }
 
-/// The condition number of the columns `selected`, neither weighted nor scaled.
+/// Condition number of the columns `selected`, neither weighted nor scaled.
 pub(crate) fn condition(system: &System, selected: &[usize]) -> f64 {
     let ones = vec![1.0; system.lines.len()];
     let reduced = Factor::reduced_together(&system.lines, &ones, selected);
     condition_number(&reduced.triangle)
 }
 
-/// [`estimate`] without the condition number, which costs most and which the steps of an elimination
-/// do not need; it is not a number.
+/// [`estimate`] without the condition number, which is NaN.
+///
+/// The condition number dominates the cost, and steps of an elimination do not need it.
 pub(crate) fn fit(
     system: &System,
     selected: &[usize],
@@ -170,8 +171,9 @@ pub(crate) fn fit(
     )
 }
 
-/// [`fit`] with lines that are weighted or not, and one of the rules for σ_ρ, of equations that were made of so many
-/// samples each.
+/// [`fit`] with explicit weighting and rule for σ_ρ.
+///
+/// `decimation` is the number of samples of an equation; it only serves the error message.
 pub(crate) fn fit_with(
     system: &System,
     selected: &[usize],
@@ -243,7 +245,7 @@ pub(crate) fn fit_with(
 /// A least-squares solution.
 struct Solution {
     values: Vec<f64>,
-    /// R_1^-1, whose rows have the norms of the deviations but for σ_ρ (47).
+    /// R_1^-1; σ_ρ times its row norms are the standard deviations (47).
     inverse: DMatrix<f64>,
     residual_norm: f64,
 }
@@ -271,8 +273,9 @@ fn solve(lines: &[Factor], weights: &[f64], selected: &[usize]) -> Result<Soluti
     }
 }
 
-/// σ_ρ of a system of equations in unknowns from the norm of its residual and the sum over it, (46) or
-/// the sample variance.
+/// σ_ρ from the norm and the sum of the residual.
+///
+/// Either (46), or the sample variance.
 fn residual_deviation(
     (equations, unknowns): (usize, usize),
     norm: f64,
@@ -287,11 +290,12 @@ fn residual_deviation(
     square.sqrt()
 }
 
-/// The weight of each line: the inverse of the deviation that its equations leave on their own (48).
-/// A line need not determine all parameters; only its independent columns count then.
+/// Weight of each line: the inverse standard deviation of the line's own residual (48).
+///
+/// Only the independent columns of a line count, since a line need not determine all parameters.
 fn weights(system: &System, selected: &[usize]) -> Vec<f64> {
     let deviation = |line: &Factor, norm: f64| norm / (line.equations().max(1) as f64).sqrt();
-    // Exact lines get a common floor, so that rounding does not choose between them.
+    // A common floor for exact lines, so that rounding does not choose between them.
     let floor = system
         .lines
         .iter()
@@ -307,7 +311,7 @@ fn weights(system: &System, selected: &[usize]) -> Vec<f64> {
             1.0 / deviation.max(floor)
         })
         .collect();
-    // Data without any torque have no deviation to weight with.
+    // Without any torque there is no standard deviation.
     if weights.iter().all(|weight| weight.is_finite()) {
         weights
     } else {

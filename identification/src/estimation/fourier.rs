@@ -1,4 +1,4 @@
-//! The discrete Fourier transform of real signals, padded with zeros to a power of two.
+//! Discrete Fourier transform of real signals, zero-padded to a power of two.
 
 use std::f64::consts::PI;
 
@@ -6,18 +6,19 @@ use nalgebra::DMatrix;
 #[cfg(target_arch = "x86_64")]
 use pulp::NullaryFnOnce;
 
-/// A transform of one length, planned once.
+/// Transform of one length, with its twiddle factors.
 #[derive(Debug, Clone)]
 pub(crate) struct Fourier {
     size: usize,
-    /// cos and sin of π k/half for k below half, for half = 1, 2, 4 … below size, one behind the other.
+    /// cos and sin of π k/half for k < half, concatenated for half = 1, 2, 4 … below size.
     cosines: Vec<f64>,
     sines: Vec<f64>,
 }
 
 impl Fourier {
-    /// A transform that signals of `samples` values fit into twice, so that products of spectra are
-    /// correlations without wrapping round.
+    /// A transform of at least twice `samples` values.
+    ///
+    /// The zero padding makes products of spectra linear correlations.
     pub(crate) fn for_correlation(samples: usize) -> Self {
         let size = (2 * samples.max(1)).next_power_of_two();
         let turn = |k: usize| {
@@ -38,14 +39,15 @@ impl Fourier {
         }
     }
 
-    /// A transform of signals that return after `size` values, a power of two.
+    /// A transform of periodic signals of `size` values, a power of two.
     pub(crate) fn circular(size: usize) -> Self {
         debug_assert!(size.is_power_of_two() && size > 1);
         Self::for_correlation(size / 2)
     }
 
-    /// Real and imaginary parts of the spectra of whole periods, which are not padded: values x signals in,
-    /// frequencies x signals out.
+    /// Real and imaginary parts of the spectra of whole periods, without padding.
+    ///
+    /// Input: values × signals; output: frequencies × signals.
     pub(crate) fn whole(&self, signals: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
         let (last, count) = (self.size / 2, signals.ncols());
         let mut parts = [
@@ -53,7 +55,7 @@ impl Fourier {
             DMatrix::zeros(last + 1, count),
         ];
         for first in (0..count).step_by(2) {
-            // Two signals are the real and the imaginary part of one: even and odd parts of its spectrum.
+            // Two signals form one complex signal; their spectra are its even and odd parts.
             let column = |index: usize| match index < count {
                 true => signals.column(index).iter().copied().collect(),
                 false => vec![0.0; self.size],
@@ -89,11 +91,11 @@ impl Fourier {
         self.size / 2 + 1
     }
 
-    /// Real and imaginary parts of the spectra of two signals at all frequencies, Σ x_k exp(-i ω k).
+    /// Spectra of two signals at all frequencies, Σ x_k exp(-i ω k).
     pub(crate) fn pair(&self, first: &[f64], second: &[f64]) -> [Spectrum; 2] {
         let (mut real, mut imaginary) = (self.started(first), self.started(second));
         self.finish(&mut real, &mut imaginary, 2);
-        // The signals are the real and the imaginary part: even and odd parts of the spectrum.
+        // The signals form one complex signal; their spectra are its even and odd parts.
         let parts = |values: &[f64], of: fn(f64, f64) -> f64| {
             let half = self.size / 2;
             let mut parts = Vec::with_capacity(half + 1);
@@ -116,8 +118,9 @@ impl Fourier {
         ]
     }
 
-    /// A part of a padded signal in the order of the transform, its first step done: the other value of each pair
-    /// is one of the zeros behind the signal.
+    /// Copies a padded signal in bit-reversed order and performs the first step.
+    ///
+    /// The other value of each pair is a zero of the padding.
     fn started(&self, signal: &[f64]) -> Vec<f64> {
         debug_assert!(2 * signal.len() <= self.size);
         let mut values = Vec::with_capacity(self.size);
@@ -146,7 +149,7 @@ impl Fourier {
         spectra.take(signals.ncols()).collect()
     }
 
-    /// Sums Σ_k x_k x_(k+l) of a signal with the given squared magnitudes, for lags l below `lags`.
+    /// Autocorrelations Σ_k x_k x_(k+l) for lags l < `lags`, from the power spectrum.
     pub(crate) fn correlations(&self, squares: &[f64], lags: usize) -> Vec<f64> {
         let mut real = vec![0.0; self.size];
         let mut imaginary = vec![0.0; self.size];
@@ -154,20 +157,20 @@ impl Fourier {
             real[k] = *square;
             real[(self.size - k) % self.size] = *square;
         }
-        // Even in frequency: forwards and backwards are the same.
+        // The spectrum is even, so the inverse transform equals the forward one.
         self.transform(&mut real, &mut imaginary);
         real.truncate(lags);
         real.iter().map(|sum| sum / self.size as f64).collect()
     }
 
-    /// cos and sin of π k/half for k below half.
+    /// cos and sin of π k/half for k < half.
     #[inline(always)]
     fn turns(&self, half: usize) -> [&[f64]; 2] {
-        // The angles of the coarser steps stand before these, half - 1 in all.
+        // The half - 1 angles of the smaller steps come first.
         [&self.cosines, &self.sines].map(|parts| &parts[half - 1..2 * half - 1])
     }
 
-    /// The transform in place, radix two.
+    /// In-place radix-2 transform.
     fn transform(&self, real: &mut [f64], imaginary: &mut [f64]) {
         let bits = self.size.trailing_zeros();
         for k in 0..self.size {
@@ -180,7 +183,7 @@ impl Fourier {
         self.finish(real, imaginary, 1);
     }
 
-    /// The steps from pairs of transforms of `half` values on.
+    /// The steps from transforms of `half` values upwards.
     fn finish(&self, real: &mut [f64], imaginary: &mut [f64], half: usize) {
         let work = Butterflies {
             fourier: self,
@@ -197,12 +200,12 @@ impl Fourier {
     }
 }
 
-/// The steps of a transform whose values have been put in order.
+/// Steps of a transform after bit reversal.
 struct Butterflies<'a> {
     fourier: &'a Fourier,
     real: &'a mut [f64],
     imaginary: &'a mut [f64],
-    /// Values of the transforms that are there already.
+    /// Length of the finished transforms.
     half: usize,
 }
 
@@ -235,11 +238,11 @@ impl Butterflies<'_> {
             }
             half *= 2;
         }
-        // Two steps at a time go through memory once.
+        // Two steps in one pass over the memory.
         while half < fourier.size {
             let turns = [fourier.turns(half), fourier.turns(2 * half)];
             let parts = [&mut *real, &mut *imaginary];
-            // Short loops are unrolled where their length is known.
+            // Constant lengths let the compiler unroll short loops.
             match half {
                 1 => two_steps(turns, parts, 1),
                 2 => two_steps(turns, parts, 2),
@@ -251,7 +254,7 @@ impl Butterflies<'_> {
     }
 }
 
-/// Makes transforms of `2 half` values of pairs of those of `half`.
+/// Combines pairs of transforms of `half` values.
 #[inline(always)]
 fn step([cosines, sines]: [&[f64]; 2], [real, imaginary]: [&mut [f64]; 2], half: usize) {
     let (cosines, sines) = (&cosines[..half], &sines[..half]);
@@ -259,7 +262,7 @@ fn step([cosines, sines]: [&[f64]; 2], [real, imaginary]: [&mut [f64]; 2], half:
     for (real, imaginary) in parts.zip(imaginary.chunks_exact_mut(2 * half)) {
         let (x, u) = real.split_at_mut(half);
         let (y, v) = imaginary.split_at_mut(half);
-        // Loops: closures that iterators call would not be compiled for wide vectors.
+        // Loops, since closures in iterators would not be vectorised.
         for k in 0..half {
             let a = cosines[k] * u[k] + sines[k] * v[k];
             let b = cosines[k] * v[k] - sines[k] * u[k];
@@ -270,7 +273,7 @@ fn step([cosines, sines]: [&[f64]; 2], [real, imaginary]: [&mut [f64]; 2], half:
     }
 }
 
-/// Makes transforms of `4 half` values of four of `half`, as two steps would.
+/// Combines four transforms of `half` values, equivalent to two steps.
 #[inline(always)]
 fn two_steps([inner, outer]: [[&[f64]; 2]; 2], [real, imaginary]: [&mut [f64]; 2], half: usize) {
     let [inner_cosines, inner_sines] = inner.map(|turns| &turns[..half]);
@@ -299,7 +302,7 @@ fn two_steps([inner, outer]: [[&[f64]; 2]; 2], [real, imaginary]: [&mut [f64]; 2
     }
 }
 
-/// Four parts of so many values.
+/// Splits into four parts of equal length.
 #[inline(always)]
 fn quarters(values: &mut [f64], quarter: usize) -> [&mut [f64]; 4] {
     let (front, back) = values.split_at_mut(2 * quarter);
@@ -308,7 +311,7 @@ fn quarters(values: &mut [f64], quarter: usize) -> [&mut [f64]; 4] {
     [first, second, third, &mut fourth[..quarter]]
 }
 
-/// The spectrum of a real signal from frequency 0 to half the sampling frequency.
+/// Spectrum of a real signal from frequency 0 to half the sampling frequency.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Spectrum {
     pub(crate) real: Vec<f64>,

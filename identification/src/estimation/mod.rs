@@ -1,14 +1,14 @@
-//! Parameters from an observation system.
+//! Estimation of parameters from an observation system.
 //!
 //! - `base`: base parameters in the symmetric order (42)-(43);
 //! - `estimate`: ordinary or weighted least squares with standard deviations (44)-(48);
-//! - `correlation`, `fourier`: deviations under residuals that are correlated over time and lines;
-//! - `returning`: how far sums stray by what returns with the motion;
-//! - `intervals`: 95 % intervals that admit all of that and what was cancelled;
+//! - `correlation`, `fourier`: standard deviations for residuals correlated over time and lines;
+//! - `returning`: variance of residual sums in periodic motion;
+//! - `intervals`: 95 % intervals that allow for correlation and elimination;
 //! - `instruments`, `total_least_squares`: estimates that allow for errors of the columns;
-//! - `column_noise`, `position_noise`: directions of the columns that only noise of the positions separates;
-//! - `essential`: backward elimination of parameters that the data do not determine;
-//! - `recommended`: the same as far as a test of the data goes.
+//! - `column_noise`, `position_noise`: effect of position noise on the columns;
+//! - `essential`: backward elimination by the paper's rule;
+//! - `recommended`: backward elimination as far as the data do not refute it.
 
 pub(crate) mod base;
 pub(crate) mod column_noise;

@@ -1,28 +1,30 @@
-//! Noise of measured positions, from differences of high order, and runs with more of it.
+//! Noise of measured positions from high-order differences, and runs with added noise.
 //!
-//! Differences of order m of white noise have the variance C(2m, m) σ²; those of a smooth motion of frequency ω at
-//! intervals T fall as (ωT)^m. So the smallest estimate over some orders is that of the noise. An encoder's steps of
-//! size s make noise of the variance s²/12, also where they hide it.
+//! Differences of order m of white noise have the variance C(2m, m) σ². Those of a smooth motion of
+//! frequency ω at intervals T decrease as (ωT)^m. The smallest estimate over some orders is
+//! therefore that of the noise. Quantisation with step s has the noise variance s²/12, even if it
+//! hides other noise.
 
 use crate::{data::Log, error::Error};
 
-/// Orders of differences.
+/// Orders of the differences.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=8;
 
 /// Variance of rounding to steps of one.
 const ROUNDING: f64 = 1.0 / 12.0;
 
-/// Deviation of noise from which on steps of one are those of rounding.
+/// Noise in steps from which on the smallest step is a resolution.
 const SEEN: f64 = 0.1;
 
-/// The deviation of the noise of a signal.
+/// Standard deviation of the noise of a signal.
 pub(crate) fn deviation(signal: &[f64]) -> f64 {
     let steps = signal.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let smallest = steps
         .filter(|step| *step > 0.0)
         .fold(f64::INFINITY, f64::min);
     let white = white(signal);
-    // The smallest step of a smooth motion is no resolution: steps of an encoder repeat values, or are noise.
+    // The smallest step of a smooth motion is no resolution. An encoder repeats values, or its step
+    // is comparable to the noise.
     let repeats = signal.windows(2).any(|pair| pair[0] == pair[1]);
     let is_rounded = smallest.is_finite() && (repeats || white > SEEN * smallest);
     if is_rounded {
@@ -32,7 +34,7 @@ pub(crate) fn deviation(signal: &[f64]) -> f64 {
     }
 }
 
-/// The deviation of white noise in a signal.
+/// Standard deviation of white noise in a signal.
 fn white(signal: &[f64]) -> f64 {
     let mut differences = signal.to_vec();
     let (mut gain, mut order) = (1.0, 0.0);
@@ -56,11 +58,13 @@ fn white(signal: &[f64]) -> f64 {
     least.sqrt()
 }
 
-/// A run in memory with white noise added to its positions, and to measured velocities, as large as that which they
-/// have. The noise is the same for the same run.
+/// A copy of a run in memory, with noise added to positions and measured velocities.
+///
+/// The added white noise has the size of the noise already present. It is the same for the same
+/// run.
 ///
 /// # Errors
-/// A file that can't be read any more.
+/// A file cannot be read any more.
 pub(crate) fn shaken(log: &Log) -> Result<Log, Error> {
     let n = log.actuators();
     let (mut positions, mut velocities, mut torques) = (Vec::new(), Vec::new(), Vec::new());
@@ -88,7 +92,7 @@ pub(crate) fn shaken(log: &Log) -> Result<Log, Error> {
     })
 }
 
-/// Pseudo-random numbers of a normal distribution, by Box and Muller from a linear congruential generator.
+/// Normal pseudo-random numbers (Box-Muller, linear congruential generator).
 struct Noise {
     state: u64,
     spare: Option<f64>,
@@ -144,7 +148,7 @@ mod tests {
         let found = deviation(&steps) / (step / 12_f64.sqrt());
         assert!((0.9..1.3).contains(&found), "{found}");
         assert_eq!(deviation(&[0.25; 100]), 0.0);
-        // A rotation at constant speed has equal steps, but no encoder's.
+        // A rotation at constant speed has equal steps, which are no quantisation.
         let steady: Vec<f64> = (0..5000).map(|sample| 0.01 * f64::from(sample)).collect();
         let found = deviation(&steady);
         assert!(found < 1e-9, "{found}");

@@ -1,56 +1,56 @@
-//! How far sums over the motion stray by what returns with it.
+//! Variance of weighted residual sums for periodic motion.
 //!
-//! A sum Σ_t z_t ρ_t over the instants t of a motion that returns, with a residual ρ that returns as
-//! well, is the same in every period: its variance does not fall with their number as that of noise
-//! does. It is told from the means over all periods, of which the phases are the instants. Over the
-//! frequencies f of their transform,
+//! A sum Σ_t z_t ρ_t over a periodic motion whose residual ρ also repeats is equal in every period.
+//! Its variance does not decrease with the number of periods. It is estimated from the means over
+//! all periods. With the Fourier transform over the M phases,
 //!
 //! ```text
-//! V = 1/M² Σ_f z_f* S_f z_f,   S_f = mean of ρ_g ρ_g*/(1 - h_g) over g near f,
+//! V = 1/M² Σ_f z_f* S_f z_f,   S_f = mean of ρ_g ρ_g*/(1 - h_g) over g near f.
 //! ```
 //!
-//! with M phases, all lines in z_f and ρ_f, and the leverage h of the fit. Noise is in the means, too, as far
-//! as so many periods leave it, so that V is the whole variance.
+//! z_f and ρ_f contain all lines, and h is the leverage of the fit. The means also contain the
+//! averaged noise, so V is the total variance.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::fourier::Fourier;
 use crate::regression::fold::Folds;
 
-/// Harmonics on either side whose mean is taken.
+/// Neighbouring harmonics on either side that are averaged.
 const NEIGHBOURS: usize = 4;
 
-/// Part of the residual that the fit leaves, at least.
+/// Smallest fraction of the residual after the fit that is corrected.
 const LEAST_LEFT: f64 = 0.2;
 
-/// One period in the mean of all, over its harmonics.
+/// Mean period of a motion, over its harmonics.
 #[derive(Debug, Clone)]
 pub(crate) struct Mean {
     phases: usize,
     lines: Vec<Line>,
 }
 
-/// The columns of a line and what it leaves; real and imaginary parts, harmonics x columns.
+/// Columns and residual of a line; real and imaginary parts, harmonics × columns.
 #[derive(Debug, Clone)]
 struct Line {
     columns: [DMatrix<f64>; 2],
     residual: [DVector<f64>; 2],
 }
 
-/// How a sum strays.
+/// Variance estimate of a weighted residual sum, with its degrees of freedom.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Stray {
     /// V.
     pub(crate) variance: f64,
     /// Σ z² over the motion.
     pub(crate) square: f64,
-    /// 1/ν of V times V².
+    /// V²/ν, with ν the degrees of freedom of V.
     scatter: f64,
 }
 
 impl Mean {
-    /// That of a motion, of which `split` tells the columns and what is left of the mean rows of each line, both
-    /// weighted; none where phases have no equations.
+    /// Mean period of a motion; `None` if phases have no equations.
+    ///
+    /// `split` converts the mean rows of a line to weighted columns and residual.
     pub(crate) fn new(
         folds: &Folds,
         split: impl Fn(usize, DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>),
@@ -68,7 +68,7 @@ impl Mean {
         (!lines.is_empty()).then_some(Self { phases, lines })
     }
 
-    /// 1 - h of each harmonic, of an estimate of the columns `selected` with this A^-1.
+    /// 1 - h of each harmonic, for an estimate of the columns `selected` with this A^-1.
     pub(crate) fn left(&self, selected: &[usize], inverse: &DMatrix<f64>) -> Vec<f64> {
         let share = (self.phases * self.lines.len()) as f64;
         let mut taken = vec![0.0; self.phases / 2 + 1];
@@ -83,8 +83,10 @@ impl Mean {
         left.collect()
     }
 
-    /// How the sums of the residual with combinations of the columns stray, columns x sums, with what the fit has
-    /// `left` of each harmonic; of a residual that is freed of `sizes` of the combinations.
+    /// Variances of residual sums weighted by combinations of the columns, columns × sums.
+    ///
+    /// `left` is 1 - h of each harmonic. `sizes` of the combinations are first subtracted from the
+    /// residual.
     pub(crate) fn strays(
         &self,
         combinations: &DMatrix<f64>,
@@ -105,8 +107,10 @@ impl Mean {
         sums.map(|sum| self.stray(&lines, left, sum)).collect()
     }
 
-    /// Σ_f |ρ_k|² |ρ_l|²/M² of two lines: the variance of Σ_t ρ_k ρ_l, of residuals that return and have nothing to do with
-    /// each other; and its square by its degrees of freedom.
+    /// Variance of Σ_t ρ_k ρ_l of two lines with independent periodic residuals, Σ_f |ρ_k|²
+    /// |ρ_l|²/M².
+    ///
+    /// The second value is its square by its degrees of freedom.
     pub(crate) fn product(&self, first: usize, second: usize) -> [f64; 2] {
         let square = |line: &Line, f: usize| {
             let [real, imaginary] = &line.residual;
@@ -119,18 +123,18 @@ impl Mean {
         let weight = |f: usize| if f == 0 || f == last { 1.0 } else { 2.0 };
         let scale = (self.phases as f64).powi(2);
         let each = (0..=last).map(|f| weight(f) * square(a, f) * square(b, f) / scale);
-        // The square of a product of two squares of complex normal numbers is four times that of its mean in the mean,
-        // its variance three times.
+        // For normal ρ, the squared product has four times the mean's square on average, and its
+        // variance is three times that.
         each.fold([0.0; 2], |[sum, scatter], one| {
             [sum + one, scatter + 0.5 * 0.75 * one * one]
         })
     }
 
-    /// How a sum strays, of lines whose columns are the sums'.
+    /// Variance of sum number `sum`, for lines whose columns belong to the sums.
     fn stray(&self, lines: &[Line], left: &[f64], sum: usize) -> Stray {
         let last = left.len() - 1;
         let mut stray = Stray::default();
-        // What the residual's square at each harmonic of each line counts, were lines independent.
+        // Coefficient of the squared residual at each harmonic and line, for independent lines.
         let mut counts = vec![0.0; (last + 1) * lines.len()];
         let twice = |harmonic: usize| match harmonic == 0 || harmonic == last {
             true => 1.0,
@@ -167,7 +171,7 @@ impl Mean {
     }
 }
 
-/// The harmonic at which a place stands on the circle of frequencies, and the sign of its imaginary part.
+/// Harmonic of a place on the circle of frequencies, and the sign of its imaginary part.
 fn folded(place: isize, last: usize) -> (usize, f64) {
     let last = last as isize;
     if place < 0 {
@@ -180,7 +184,7 @@ fn folded(place: isize, last: usize) -> (usize, f64) {
 }
 
 impl Stray {
-    /// That of independent motions together.
+    /// Sum over independent motions.
     pub(crate) fn and(self, other: Self) -> Self {
         Self {
             variance: self.variance + other.variance,
@@ -189,8 +193,10 @@ impl Stray {
         }
     }
 
-    /// The variance by that `told` of all equations, of which the square of z is `whole`, and the degrees of freedom;
-    /// of what does not return the told one is taken.
+    /// Ratio of the variance to `told`, and its degrees of freedom.
+    ///
+    /// `told` is the variance estimate of all equations, and `whole` their Σ z². The part of the
+    /// equations without periodic motion keeps the variance `told`.
     pub(crate) fn by(self, told: f64, whole: f64) -> (f64, f64) {
         let rest = (1.0 - self.square / whole).clamp(0.0, 1.0);
         let freedom = self.variance.powi(2) / self.scatter;
@@ -212,8 +218,10 @@ mod tests {
     const PERIOD: usize = 128;
     const DRAWS: u64 = 400;
 
-    /// How Σ z ρ strays over so many periods, with z the sine of the fifth harmonic, and what it is: the residual has noise
-    /// of variance 1 and an error that returns, of another variance.
+    /// Variance estimate of Σ z ρ over `periods`, and the sum itself.
+    ///
+    /// z is the sine of the fifth harmonic. The residual has noise of variance 1, and a periodic
+    /// error of variance `returning`.
     fn drawn(seed: u64, periods: usize, returning: f64) -> (Stray, f64) {
         let mut generator = Pcg64::seed_from_u64(seed);
         let mut white = || {
@@ -252,7 +260,8 @@ mod tests {
                 squares += sum * sum / DRAWS as f64;
                 freedom = stray.by(1.0, stray.square).1;
             }
-            // Σ z² over all periods, each with its own noise; what returns adds up before it is squared.
+            // Σ z² over all periods with independent noise; the periodic error adds up before
+            // squaring.
             let half = 0.5 * (periods * PERIOD) as f64;
             let expected = half * (1.0 + periods as f64 * returning);
             assert!((told / expected - 1.0).abs() < 0.05, "{told} {expected}");
@@ -260,7 +269,7 @@ mod tests {
                 (squares / expected - 1.0).abs() < 0.25,
                 "{squares} {expected}"
             );
-            // Nine harmonics, of two numbers each.
+            // Nine harmonics of two numbers each.
             assert!((freedom - 18.0).abs() < 0.5, "{freedom}");
         }
     }
@@ -270,7 +279,7 @@ mod tests {
         let (stray, _) = drawn(1, 10, 0.0);
         let half = 0.5 * (10 * PERIOD) as f64;
         assert!((stray.square - half).abs() < 1e-9 * half);
-        // The same with the sine itself in the residual, which is taken away by its size.
+        // The same with the sine itself in the residual; subtracting its size removes it.
         let motion = Return {
             samples: PERIOD,
             motion: 0,

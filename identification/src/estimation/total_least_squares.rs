@@ -1,22 +1,24 @@
-//! Total least squares, for comparison with instruments.
+//! Total least squares, for comparison with instrumental variables.
 //!
-//! Where the errors of the columns have the covariance Ω_w and that of Y has the variance Ω_y in each
-//! equation, independent of each other, the parameters that need the smallest errors are those of the
-//! vector v = [χ, -1] with the largest vᵀ Ω v/vᵀ [W Y]ᵀ [W Y] v (S. Van Huffel, J. Vandewalle, *The Total
-//! Least Squares Problem*, 1991, in its generalised form). With the R factor of [W Y] this is the largest
-//! eigenvalue of R^-T Ω R^-1, also where some columns have no errors. Ω is what the instruments leave
-//! unexplained of the columns, and what the columns' errors do not explain of the residual; that the
-//! errors of columns and Y are independent is an assumption that instruments do not need.
+//! Let the errors of the columns have the covariance Ω_w and those of Y the variance Ω_y in each
+//! equation, independently. The parameters with the smallest errors are those of the vector v =
+//! [χ, -1] with the largest vᵀ Ω v/vᵀ [W Y]ᵀ [W Y] v (S. Van Huffel, J. Vandewalle, *The Total
+//! Least Squares Problem*, 1991, generalised form). With the R factor of [W Y], this is the largest
+//! eigenvalue of R^-T Ω R^-1, even if some columns have no errors.
+//!
+//! Ω_w is the part of the columns that the instruments do not explain. Ω_y is the part of the
+//! residual that the columns' errors do not explain. Independence of both is an assumption that
+//! instrumental variables do not need.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::instruments::Instrumental;
 use crate::regression::{factor::Factor, system::System};
 
-/// The residual belongs to Y to this part at least: below it Ω would be singular.
+/// Smallest fraction of the residual assigned to Y; below it Ω would be singular.
 const LEAST_OF_OUTPUT: f64 = 0.01;
 
-/// The parameters of the columns `selected`; none where they are not determined.
+/// Estimates the columns `selected`; `None` if they are undetermined.
 pub(crate) fn total_least_squares(
     system: &System,
     selected: &[usize],

@@ -1,7 +1,7 @@
-//! A hash of a run's numbers: by it a run that was written twice is known, under whatever name, and damage.
+//! Hash of a run's numbers: detects damage, and runs that were written twice under any name.
 //!
-//! XXH3 of 128 bits finds copies and accidents. It is no protection against someone who wants two runs to
-//! look alike.
+//! 128-bit XXH3 finds copies and accidental changes. It does not protect against deliberate
+//! collisions.
 
 use twox_hash::XxHash3_128;
 
@@ -10,13 +10,12 @@ use super::{
     run::RunFactors,
 };
 
-/// The hash of a text.
+/// Hash of a text.
 pub(super) fn hash(bytes: &[u8]) -> String {
     format!("{:032x}", XxHash3_128::oneshot(bytes))
 }
 
-/// The hash of the numbers of a run: of all that its equations are, and neither of its name nor of what was
-/// told beside it.
+/// Hash of a run's equations, without its name and other metadata.
 pub(super) fn content(run: &RunFactors) -> String {
     let mut bytes = Vec::new();
     text(&mut bytes, &run.like);
@@ -49,7 +48,7 @@ pub(super) fn content(run: &RunFactors) -> String {
     hash(&bytes)
 }
 
-/// A text and where it ends.
+/// Appends a text, preceded by its length.
 fn text(bytes: &mut Vec<u8>, text: &str) {
     whole(bytes, text.len());
     bytes.extend_from_slice(text.as_bytes());

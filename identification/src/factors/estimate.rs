@@ -1,4 +1,4 @@
-//! The estimates from factors.
+//! Estimation from factors.
 
 use overact::Model;
 use serde::Serialize;
@@ -11,43 +11,47 @@ use crate::{
     settings::{Instruments, Settings},
 };
 
-/// What the factors of runs tell.
+/// Result of an estimation from the factors of runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct FromFactors {
     /// Name of the robot.
     pub robot: String,
-    /// The runs.
+    /// Runs.
     pub runs: Vec<RunSummary>,
-    /// The base parameters and what is regrouped into them.
+    /// Base parameters and their regroupings.
     pub base_parameters: Vec<BaseParameter>,
-    /// The estimates: for each model base, recommended and essential by least squares, then by ordinary ones.
+    /// Estimates of each model: base, recommended and essential parameters.
+    ///
+    /// First by weighted, then by ordinary least squares.
     pub estimates: Vec<Estimate>,
-    /// Where deviations under correlated residuals and intervals come from.
+    /// Origin of standard deviations for correlated residuals, and of intervals.
     pub deviations: Deviations,
-    /// What was left out.
+    /// Runs and files that were left out.
     pub left_out: Vec<LeftOut>,
-    /// What the user should know before trusting the numbers.
+    /// Warnings before using the result.
     pub warnings: Vec<String>,
     /// The settings used.
     pub settings: Settings,
 }
 
-/// Where deviations under correlated residuals and intervals come from.
+/// Origin of standard deviations for correlated residuals, and of intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Deviations {
-    /// From successive equations, as in one pass over the logs.
+    /// Successive equations, as with the logs themselves.
     Equations,
-    /// From the sums of parts of the runs.
+    /// Sums over parts of the runs.
     Parts,
 }
 
-/// Estimates parameters from the factors of runs. `left_out` is what was left out before.
+/// Estimates parameters from the factors of runs.
+///
+/// `left_out` lists what was excluded before.
 ///
 /// # Errors
-/// Factors that do not fit the model, data that determine no parameter; without `skip_bad` runs that lack a
-/// model other than case 2.
+/// Factors that do not fit the model, or data that determine no parameter. Without `skip_bad`, also
+/// runs that lack a model other than the actuator projection.
 pub fn identify_factors(
     model: &dyn Model,
     (runs, left_out): (&[RunFactors], &[LeftOut]),
@@ -64,7 +68,7 @@ pub fn identify_factors(
         true => Deviations::Equations,
         false => Deviations::Parts,
     };
-    // Stretches of some runs would speak for the others.
+    // Use the stretches of all runs or of none.
     let mut runs = runs.to_vec();
     if deviations == Deviations::Parts {
         let models = runs.iter_mut().flat_map(|run| &mut run.models);

@@ -1,4 +1,4 @@
-//! Factor files together: like with like, and nothing twice.
+//! Collects runs from factor files: compatible ones, each once.
 
 use overact::Code;
 use std::{
@@ -13,22 +13,24 @@ use super::{
 };
 use crate::error::{Error, Problem};
 
-/// Runs of several files, and what was left out of them.
+/// Runs of several files, and what was left out.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Gathered {
-    /// The runs, in the order of the files.
+    /// Runs, in the order of the files.
     pub runs: Vec<RunFactors>,
-    /// What is not among them.
+    /// Runs and files that were left out.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Reads factor files. A run that is there twice counts once, which is told; anything else that can't be used is
-/// left out where bad ones are to be skipped. `like` is what the runs must be like, if that is known: else they
-/// must be like most of them, and like the first of these where there are several.
+/// Reads factor files.
+///
+/// Duplicate runs are counted once and reported. Other unusable runs are left out if `skip_bad`.
+/// `like` is the required hash of description and settings. By default it is the most frequent one,
+/// or the first of equally frequent ones.
 ///
 /// # Errors
-/// What can't be used, all of it together, unless it is to be skipped; no run at all.
+/// All unusable runs and files together, unless they are skipped; no run at all.
 pub fn gather(files: &[PathBuf], like: Option<&str>, skip_bad: bool) -> Result<Gathered, Error> {
     let mut left_out = Vec::new();
     let mut found: Vec<(String, RunFactors)> = Vec::new();
@@ -98,7 +100,7 @@ fn read_into(path: &Path, found: &mut Vec<(String, RunFactors)>, left_out: &mut 
     }));
 }
 
-/// In what a run differs from one that is as it should be, as far as the files tell.
+/// Describes how a run differs from a compatible one, as far as the files show.
 fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
     let made = "it was made with another description, or with other settings of filters and model";
     let rate = run.summary.sampling_frequency;
@@ -122,7 +124,7 @@ fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
     format!("{made}: {why}")
 }
 
-/// What most runs are like; of equally many what comes first.
+/// The most frequent hash of description and settings; the first of equally frequent ones.
 fn most(found: &[(String, RunFactors)]) -> Option<String> {
     let count = |like: &str| found.iter().filter(|(_, run)| run.like == like).count();
     let mut best: Option<(usize, &str)> = None;

@@ -1,4 +1,4 @@
-//! What of factor files can't be used, and why.
+//! Unusable runs and files, with reasons.
 
 use overact::Code;
 use serde::Serialize;
@@ -9,38 +9,38 @@ use crate::error::Problem;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct LeftOut {
-    /// The file.
+    /// File.
     pub file: String,
-    /// Name of the run; none where it is the whole file.
+    /// Name of the run; `None` for the whole file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub run: Option<String>,
-    /// Why, in one word.
+    /// Reason.
     pub reason: Reason,
-    /// Why.
+    /// Reason in words.
     pub message: String,
 }
 
-/// Why something is left out.
+/// Reason for leaving out a run or a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Reason {
-    /// The file is cut off, or holds no factors.
+    /// The file is cut off, or contains no factors.
     Unreadable,
     /// The file is of another version of the format.
     OtherVersion,
-    /// Numbers that are not those that were written, or not finite.
+    /// Numbers that changed after writing, or are not finite.
     Damaged,
     /// Another description, or other settings.
     Unlike,
-    /// The run has been counted already.
+    /// The run has been counted before.
     Twice,
-    /// The run has no factors of a model that other runs have.
+    /// The run lacks factors of a model that other runs have.
     MissingModel,
 }
 
 impl LeftOut {
-    /// It as an error, with a way out.
+    /// It as an error, with a remedy.
     pub(super) fn problem(&self) -> Problem {
         let message = match &self.run {
             Some(run) => format!("run `{run}`: {}", self.message),

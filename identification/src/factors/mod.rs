@@ -1,30 +1,33 @@
-//! Runs as the R factors of their equations: kilobytes in place of a log, from which runs of many days and many
-//! robots are identified together without their logs.
+//! Runs as the R factors of their equations.
 //!
-//! The factor of [R_1; R_2] is that of the equations of both runs, so what least squares need merges without
-//! loss: estimates (44), their deviations under white residuals (46)-(47), weights of lines (48), the elimination
-//! of parameters and its cross-validation within the data are those of one pass over all logs.
+//! Factors take kilobytes instead of a log. Runs of many days and robots can be identified together
+//! without their logs. The factor of [R_1; R_2] is that of the equations of both runs, so least
+//! squares merges without loss. Estimates (44), standard deviations for white residuals (46)-(47),
+//! line weights (48), elimination and cross-validation equal those from all logs.
 //!
-//! Honest deviations need more. The residual at the merged estimate is known when all runs are together, and
-//! its correlation is that of successive equations, of which a factor has lost the order:
+//! Standard deviations for correlated residuals need more. The residual of the merged estimate is
+//! only known when all runs are together. Its correlation is that of successive equations, whose
+//! order a factor has lost:
 //!
-//! - A run keeps a factor for each of its parts, a fifth of the run. W_gᵀ ρ_g = R_gᵀ (R_g χ - ...) of a part g
-//!   follows from its factor for any χ and any weights, so that deviations from the sums of parts
-//!   (`estimation/intervals/parts.rs`) merge exactly. They take correlation within a part in, and miss what
-//!   hangs together over more than a part.
-//! - The deviations of one pass (`estimation/intervals/scores.rs`) take fourth powers and spectra of residuals;
-//!   no fixed number of sums gives these for a χ that is not known yet. A file may keep the successive equations
-//!   themselves, where logs are short; then all deviations are those of one pass.
+//! - A run keeps a factor for each of its parts, a fifth of the run. W_gᵀ ρ_g = R_gᵀ (R_g χ - …) of
+//!   a part g follows from its factor for any χ and weights. Standard deviations from sums over
+//!   parts (`estimation/intervals/parts.rs`) therefore merge exactly. They include correlation
+//!   within parts only.
+//! - Standard deviations from equations (`estimation/intervals/scores.rs`) need fourth powers and
+//!   spectra of residuals. No fixed number of sums gives these for an unknown χ. For short logs, a
+//!   file may store the successive equations, too; then all standard deviations are those from the
+//!   logs.
 //!
-//! Only like with like merges: a run says by a hash of the description and of all settings that make its
-//! equations what it is like. A hash of its numbers tells whether it has been counted already.
+//! Only compatible runs merge: a hash of the description and of the relevant settings identifies
+//! them. A hash of a run's numbers detects duplicates.
 //!
-//! - `run`: what is kept of a run; `packed`: numbers as bytes; `content`: their hash.
-//! - `observe`: from a log.
-//! - `record`: the equations of a line of a part as bytes that stand alone; `pool`, `pool_bytes`: those of many runs
-//!   gathered in bounded memory, in any order and in several places, for a database; `pooled`: its estimate.
-//! - `schema`, `write`, `read`: as Parquet, a row for each line of a part.
-//! - `left_out`: what can't be used, and why; `gather`: files together, nothing twice, nothing unlike.
+//! - `run`: content of a run; `packed`: numbers as bytes; `content`: their hash.
+//! - `observe`: from a log to factors.
+//! - `record`: equations of a line of a part as self-contained bytes.
+//! - `pool`, `pool_bytes`: records of many runs in bounded memory, in any order, for a database.
+//! - `pooled`: estimate of a pool.
+//! - `schema`, `write`, `read`: Parquet files, one row for each line of a part.
+//! - `left_out`: unusable runs; `gather`: compatible runs of several files.
 //! - `restore`, `estimate`: back to a system, and its estimates.
 
 mod content;

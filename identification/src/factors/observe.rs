@@ -1,4 +1,4 @@
-//! From logs to factors.
+//! Computes factors from logs.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -26,17 +26,18 @@ use crate::{
     settings::{Instruments, Normalisation, Settings},
 };
 
-/// What is known of runs beside their logs.
+/// Metadata of runs.
 #[derive(Debug, Clone, Default)]
 pub struct Origin {
-    /// Serial number of the robot; empty where it is not known.
+    /// Serial number of the robot; empty if unknown.
     pub serial: String,
-    /// For each run, when it began, µs since 1970 (UTC).
+    /// Start of each run, µs since 1970 (UTC).
     pub times_us: Vec<Option<i64>>,
 }
 
-/// A hash of what equations are like: the text of the description, and those settings that make the equations
-/// and not what is done with them. Ends of lines do not count, comments do.
+/// Hash of the description and of the settings that affect the equations.
+///
+/// Line ends do not count, comments do.
 #[must_use]
 pub fn likeness(description: &str, settings: &Settings) -> String {
     let settings = Settings {
@@ -55,22 +56,22 @@ pub fn likeness(description: &str, settings: &Settings) -> String {
     hash(format!("{}\n{settings:?}", lines.join("\n")).as_bytes())
 }
 
-/// Makes factors of runs one by one.
+/// Computes factors of runs one by one.
 pub struct Factory<'a> {
     model: &'a dyn Model,
     settings: &'a Settings,
     like: String,
-    /// Columns by what a run carries.
+    /// Columns for each payload.
     known: Mutex<Vec<(Load, Arc<Columns>)>>,
-    /// Values of successive equations that a run may keep; none where none are to be kept.
+    /// Number of values of successive equations that a run may keep; `None` to keep none.
     budget: Option<usize>,
 }
 
-/// What a run carries: nothing, something without a name, or something with one.
+/// Payload of a run: none, an unnamed one, or a named one.
 type Load = Option<Option<String>>;
 
 impl<'a> Factory<'a> {
-    /// One for runs of a robot with this `description`.
+    /// A factory for runs of a robot with this `description`.
     ///
     /// # Errors
     /// Settings that do not fit the model.
@@ -89,10 +90,11 @@ impl<'a> Factory<'a> {
         })
     }
 
-    /// The factors of a run of the robot with this serial number that began at this time, µs since 1970 (UTC).
+    /// Factors of a run of the robot with this serial number; `time_us` is its start (UTC, from
+    /// 1970).
     ///
     /// # Errors
-    /// A log that does not fit, or can't be used.
+    /// A log that does not fit, or is unusable.
     pub fn run(&self, log: &Log, serial: &str, time_us: Option<i64>) -> Result<RunFactors, Error> {
         kinematics::check(self.model, log, self.settings)?;
         self.factors(log, (serial, time_us), &|_| ())
@@ -114,10 +116,10 @@ impl<'a> Factory<'a> {
         made.map_err(|error| assessment::explained(self.model, log, error))
     }
 
-    /// The columns of a run, told once for all runs that carry the same.
+    /// Columns of a run, computed once for each payload.
     fn columns(&self, log: &Log, progress: &dyn Fn(Progress<'_>)) -> Result<Arc<Columns>, Error> {
         let load: Load = log.payload().then(|| log.payload_name().map(str::to_owned));
-        // A thread that panicked left whole entries behind.
+        // Entries are complete even if a thread panicked.
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, columns)) = known.iter().find(|(own, _)| *own == load) {
             return Ok(Arc::clone(columns));
@@ -130,7 +132,7 @@ impl<'a> Factory<'a> {
     }
 }
 
-/// The factors of runs; with `equations` the successive equations, too, where these are few.
+/// Factors of runs; with `equations` also successive equations, if they are few.
 ///
 /// # Errors
 /// As [`prepare`](crate::prepare); the problems of all runs together.
@@ -160,7 +162,7 @@ pub fn factor_runs(
     Ok(runs)
 }
 
-/// What a run is told beside its log.
+/// Metadata of a run.
 struct About<'a> {
     like: &'a str,
     /// Serial number and time.
@@ -168,11 +170,11 @@ struct About<'a> {
     budget: Option<usize>,
 }
 
-/// The columns of runs that carry the same.
+/// Columns of runs with the same payload.
 #[derive(Debug)]
 struct Columns {
     all: ColumnSet,
-    /// Those that may be columns of base parameters, whatever other runs carry.
+    /// Columns that may be base parameters for any payloads of other runs.
     chosen: Vec<usize>,
 }
 
@@ -190,7 +192,7 @@ impl Columns {
             Some(_) => base_parameters(model, &all, PayloadUse::Separate, seed)?.columns,
             None => base_parameters(model, &all, PayloadUse::Absent, seed)?.columns,
         };
-        // Beside runs with a payload, bodies that are always there may be told by other columns.
+        // With loaded runs, permanent bodies may have other columns.
         if load.is_none() && crate::regression::columns::has_payload(&model.info()) {
             let beside = new(true)?;
             let base = base_parameters(model, &beside, PayloadUse::Separate, seed)?;
@@ -253,7 +255,7 @@ impl Columns {
     }
 }
 
-/// What is kept of the equations of a projection.
+/// Stored equations of a projection.
 fn kept(
     (projection, lines): (&Projection, Vec<String>),
     observed: Result<Observed, Error>,
@@ -282,7 +284,7 @@ fn kept(
     }
 }
 
-/// What the raw numbers of a run are suspected of.
+/// Suspicions about the raw numbers of a run.
 fn flags((model, log): (&dyn Model, &Log), seen: Seen) -> Vec<String> {
     let checks = assessment::suspicious(model, log.name(), seen.monitor);
     let failed = checks.iter().filter(|check| !check.passed);

@@ -1,11 +1,11 @@
-//! Numbers as bytes: doubles, lowest byte first.
+//! Numbers as bytes: little-endian doubles.
 
 use nalgebra::DMatrix;
 
 /// Bytes of a number.
 const BYTES: usize = size_of::<f64>();
 
-/// The upper triangle of a square matrix, row by row.
+/// Upper triangle of a square matrix, row by row.
 pub(super) fn triangle(matrix: &DMatrix<f64>) -> Vec<u8> {
     let size = matrix.ncols();
     let places = (0..size).flat_map(|row| (row..size).map(move |column| (row, column)));
@@ -22,7 +22,7 @@ pub(super) fn rows(matrix: &DMatrix<f64>) -> Vec<u8> {
         .collect()
 }
 
-/// Numbers one after the other.
+/// A sequence of numbers.
 pub(super) fn values<'a>(values: impl IntoIterator<Item = &'a f64>) -> Vec<u8> {
     values
         .into_iter()
@@ -30,7 +30,7 @@ pub(super) fn values<'a>(values: impl IntoIterator<Item = &'a f64>) -> Vec<u8> {
         .collect()
 }
 
-/// The upper triangular matrix of [`triangle`]; none of another number of bytes.
+/// The upper triangular matrix of [`triangle`]; `None` for a wrong number of bytes.
 pub(super) fn from_triangle(bytes: &[u8], size: usize) -> Option<DMatrix<f64>> {
     let mut own = numbers(bytes, size * (size + 1) / 2)?.into_iter();
     let mut matrix = DMatrix::zeros(size, size);
@@ -42,13 +42,13 @@ pub(super) fn from_triangle(bytes: &[u8], size: usize) -> Option<DMatrix<f64>> {
     Some(matrix)
 }
 
-/// The matrix of [`rows`]; none of another number of bytes.
+/// The matrix of [`rows`]; `None` for a wrong number of bytes.
 pub(super) fn from_rows(bytes: &[u8], count: usize, width: usize) -> Option<DMatrix<f64>> {
     let own = numbers(bytes, count.checked_mul(width)?)?;
     Some(DMatrix::from_row_slice(count, width, &own))
 }
 
-/// So many numbers; none where there are more or fewer.
+/// Decodes `count` numbers; `None` for a wrong number of bytes.
 pub(super) fn numbers(bytes: &[u8], count: usize) -> Option<Vec<f64>> {
     let (own, rest) = bytes.as_chunks::<BYTES>();
     let fits = rest.is_empty() && own.len() == count;

@@ -1,14 +1,15 @@
-//! Factors of many runs gathered one by one, in any order and in several places at once: what an aggregate of a
-//! database keeps between its rows. Its size is bounded, however many runs there are.
+//! Factors of many runs in bounded memory: the state of a database aggregate.
 //!
-//! The estimate needs the sum of all factors alone. Its honest deviation needs groups that are independent of each
-//! other (`estimation/intervals/parts.rs`): the parts of the runs, as long as there are few. Beyond, parts are
-//! taken together at random, by the leading bits of a hash of run and part: sums over groups of independent parts
-//! are independent, too. Which parts go together depends on all parts alone and not on the order in which they
-//! came, so pools of several places merge into what one place would have gathered.
+//! Runs may come in any order and in several places. The estimate only needs the sum of all
+//! factors. Its standard deviation for correlated residuals needs independent groups
+//! (`estimation/intervals/parts.rs`), which are the parts of the runs while these are few.
 //!
-//! A run counts once. Where a record comes again to the same place, it is left out and counted; where two places
-//! have gathered the same record, their sums can't be told apart any more, which is an error.
+//! Later, parts are merged at random, by the leading bits of a hash of run and part. Sums over
+//! groups of independent parts are independent, too. The grouping depends on the set of parts, not
+//! on their order. Pools of several places therefore merge to the pool of a single place.
+//!
+//! A run counts once. A record that comes again to the same place is skipped and counted. If two
+//! places have the same record, their sums cannot be separated, which is an error.
 
 use std::collections::BTreeMap;
 
@@ -17,38 +18,37 @@ use twox_hash::XxHash3_128;
 use super::record::{NoRecord, Record};
 use crate::regression::{factor::Factor, projection::ModelKind};
 
-/// Kinds of factors that are kept apart, at most: who mixes more has no group in mind.
+/// Largest number of kinds of factors kept apart.
 const MOST_KINDS: usize = 8;
 
-/// What can't be gathered.
+/// Error of a pool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PoolError {
-    /// The same run has been gathered in two places.
+    /// The same run is in two pools.
     Twice,
     /// The bytes are no pool.
     Damaged,
 }
 
-/// Groups of parts that are kept apart where nobody has said how many: about as many degrees of freedom of the
-/// deviations, and as many factors in memory.
+/// Default number of groups, about equal to the degrees of freedom.
 const GROUPS: usize = 16;
 
-/// Groups that are kept apart at least.
+/// Smallest number of groups.
 const FEWEST_GROUPS: usize = 4;
 
 /// Factors of many runs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pool {
-    /// Groups of parts, at most; none where nobody has said so.
+    /// Largest number of groups; `None` for the default.
     pub(super) limit: Option<usize>,
-    /// By [`Record::kind`].
+    /// Kinds, by [`Record::kind`].
     pub(super) kinds: BTreeMap<u128, Kind>,
-    /// Records that had been counted already.
+    /// Number of duplicate records.
     pub(super) twice: u64,
-    /// Records that were not what was written, or not finite.
+    /// Number of records that were damaged or not finite.
     pub(super) damaged: u64,
-    /// Records of further kinds.
+    /// Number of records of further kinds.
     pub(super) others: u64,
 }
 
@@ -60,9 +60,11 @@ pub(super) struct Kind {
     pub(super) load: Option<String>,
     pub(super) columns: String,
     pub(super) line_names: BTreeMap<u16, String>,
-    /// Which parts and lines of which runs are in it: by the leading bits of the run's hash 8 x 8 of them.
+    /// Parts and lines of each run that are included.
+    ///
+    /// The key is from the run's hash; the value has a bit for each of 8 × 8 parts and lines.
     pub(super) seen: BTreeMap<u64, u64>,
-    /// Bits of the hash by which parts are grouped.
+    /// Bits of the hash that define the groups.
     pub(super) bits: u32,
     /// Factors of the lines of each group, by these bits.
     pub(super) groups: BTreeMap<u64, BTreeMap<u16, Factor>>,
@@ -82,7 +84,7 @@ impl Kind {
         }
     }
 
-    /// Whether a record is new, and notes it.
+    /// Whether a record is new; registers it.
     fn note(&mut self, record: &Record) -> bool {
         let (key, bit) = place(record);
         let seen = self.seen.entry(key).or_default();
@@ -110,7 +112,7 @@ impl Kind {
         true
     }
 
-    /// Takes groups together until there are few enough.
+    /// Merges groups until there are few enough.
     fn shrink(&mut self, limit: usize) {
         while self.groups.len() > limit && self.bits > 1 {
             self.coarsen(self.bits - 1);
@@ -177,7 +179,7 @@ fn add_line(lines: &mut BTreeMap<u16, Factor>, line: u16, factor: &Factor) {
     }
 }
 
-/// Where a record is noted: runs of more than 8 x 8 parts and lines have several places.
+/// Key and bit of a record; a run with more than 8 × 8 parts and lines has several keys.
 fn place(record: &Record) -> (u64, u64) {
     let block = u64::from(record.part / 8) << 16 | u64::from(record.line / 8);
     let key = (record.content >> 64) as u64 ^ block.wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -186,8 +188,9 @@ fn place(record: &Record) -> (u64, u64) {
 }
 
 impl Pool {
-    /// A pool that keeps at most so many groups of parts apart; at least four. [`Pool::default`] has not been told:
-    /// it keeps 16, or what the pools are told that are merged into it.
+    /// A pool with at most `limit` groups, but at least four.
+    ///
+    /// [`Pool::default`] has no limit of its own: it uses 16, or the limit of pools merged into it.
     #[must_use]
     pub fn new(limit: usize) -> Self {
         Self {
@@ -196,7 +199,7 @@ impl Pool {
         }
     }
 
-    /// Adds all records that some bytes hold. What is no record is counted.
+    /// Adds all records in some bytes; counts invalid ones.
     pub fn push(&mut self, bytes: &[u8]) {
         for record in Record::all(bytes) {
             match record {
@@ -206,13 +209,14 @@ impl Pool {
         }
     }
 
-    /// How many groups of parts are kept apart, at most; at least four. Groups that have been taken together can't
-    /// be told apart any more, so of several numbers the smallest holds.
+    /// Sets the largest number of groups, at least four.
+    ///
+    /// Merged groups cannot be separated again, so the smallest of several limits applies.
     pub fn limit(&mut self, limit: usize) {
         self.at_most(Some(limit.max(FEWEST_GROUPS)));
     }
 
-    /// The number of groups that it holds to, if it was told one or has anything.
+    /// The effective limit, if it was set or the pool has records.
     fn held_to(&self) -> Option<usize> {
         let usual = (!self.kinds.is_empty()).then_some(GROUPS);
         self.limit.or(usual)
@@ -240,12 +244,12 @@ impl Pool {
         }
     }
 
-    /// Adds what another pool has gathered.
+    /// Adds another pool.
     ///
     /// # Errors
     /// A run that both have.
     pub fn merge(&mut self, other: Self) -> Result<(), PoolError> {
-        // An empty pool that was told no number has no say in it.
+        // An empty pool without a limit has no influence.
         self.at_most(other.held_to());
         let limit = self.limit.unwrap_or(GROUPS);
         self.twice += other.twice;
@@ -262,7 +266,7 @@ impl Pool {
         Ok(())
     }
 
-    /// Bytes of memory, about.
+    /// Approximate memory in bytes.
     #[must_use]
     pub fn size(&self) -> usize {
         let kinds = self.kinds.values().map(|kind| {

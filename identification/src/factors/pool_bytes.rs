@@ -1,4 +1,4 @@
-//! A pool as bytes, on its way from one place to another. Lowest byte first; counts have 8 bytes.
+//! Pools as bytes, for transfer. Little-endian; counts have 8 bytes.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use super::{
 };
 use crate::regression::{factor::Factor, projection::ModelKind};
 
-/// What a pool begins with.
+/// Magic bytes of a pool.
 const MAGIC: [u8; 4] = *b"OAP1";
 
 impl Pool {
-    /// Adds what some bytes hold: records one after the other, or a pool.
+    /// Adds records, or a pool, from bytes.
     ///
     /// # Errors
     /// A pool that is damaged, or has a run that this one has.
@@ -27,11 +27,11 @@ impl Pool {
         }
     }
 
-    /// The bytes.
+    /// The pool as bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut own = MAGIC.to_vec();
-        // No pool is told zero, so that stands for none.
+        // Limits are never zero, so zero encodes `None`.
         let limit = self.limit.unwrap_or(0) as u64;
         let counts = [limit, self.twice, self.damaged, self.others];
         counts.iter().for_each(|count| whole(&mut own, *count));
@@ -69,7 +69,7 @@ impl Pool {
         own
     }
 
-    /// The pool of [`Pool::to_bytes`].
+    /// Decodes [`Pool::to_bytes`].
     ///
     /// # Errors
     /// Other bytes.

@@ -1,13 +1,14 @@
-//! The estimate of a pool of factors, and whether two of them differ.
+//! Estimate of a pool of factors, and comparison of two estimates.
 //!
-//! It is the weighted least-squares estimate (44), (48) of all columns that are independent on the data, in the
-//! order of the columns. Factors hold base parameters, so that these are what an identification of the logs tells
-//! in its base model. Where none but unloaded runs of a robot with payload are in a pool, the columns that its
-//! loaded runs would need are found to be combinations of others, and are named.
+//! It is the weighted least-squares estimate (44), (48) of all columns that are independent on the
+//! data, in their order. Factors contain base parameters, so it equals the base estimate from the
+//! logs. If a robot with payload has only unloaded runs in the pool, the columns of loaded runs are
+//! found to be dependent, and are listed.
 //!
-//! Two estimates from different runs are independent. Of q parameters the difference d has the covariance
-//! V = V_1 + V_2, and dᵀ V^-1 d/q is compared with Fisher's distribution of q and ν degrees of freedom, ν the least
-//! of what Welch's rule (*Biometrika* 34, 1947) gives for the variances of the single parameters.
+//! Estimates from different runs are independent. The difference d of q parameters has the
+//! covariance V = V_1 + V_2. dᵀ V^-1 d/q is compared with Fisher's distribution with q and ν
+//! degrees of freedom. ν is the smallest value of Welch's rule (*Biometrika* 34, 1947) for single
+//! parameters.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -28,51 +29,51 @@ use crate::{
     settings::Normalisation,
 };
 
-/// What a pool of factors tells.
+/// Estimate of a pool of factors.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[non_exhaustive]
 pub struct Pooled {
-    /// Why there is no estimate; empty where there is one.
+    /// Why there is no estimate; empty otherwise.
     pub problem: String,
-    /// Runs that count.
+    /// Number of runs.
     pub runs: u64,
-    /// Equations of all lines.
+    /// Number of equations of all lines.
     pub equations: u64,
-    /// Independent groups that the deviations are from.
+    /// Number of independent groups for the standard deviations.
     pub groups: u64,
-    /// Records that had been counted already, and count once.
+    /// Number of duplicate records, which count once.
     pub twice: u64,
-    /// Records that were damaged or not finite.
+    /// Number of records that were damaged or not finite.
     pub damaged: u64,
-    /// Runs of another description, with other settings, or beyond the kinds that are kept apart.
+    /// Number of runs with another description or settings, or beyond the largest number of kinds.
     pub unlike: u64,
     /// 100 ||ρ||/||Y||.
     pub relative_error_percent: f64,
-    /// The parameters.
+    /// Parameters.
     pub parameters: Vec<PooledParameter>,
-    /// Names of columns that are zero, or combinations of others, on these data.
+    /// Columns that are zero, or dependent on others, on these data.
     pub not_determined: Vec<String>,
-    /// The covariance of the parameters: its upper triangle, row by row.
+    /// Covariance of the parameters: upper triangle, row by row.
     pub covariance: Vec<f64>,
 }
 
-/// A parameter that a pool tells.
+/// A parameter estimated from a pool.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[non_exhaustive]
 pub struct PooledParameter {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its estimate (SI units).
+    /// Estimate (SI units).
     pub value: f64,
-    /// Its deviation, whatever the residual is like within a part of a run.
+    /// Standard deviation, for any residual within a part of a run.
     pub deviation: f64,
-    /// The degrees of freedom of that deviation.
+    /// Degrees of freedom of the standard deviation.
     pub freedom: f64,
-    /// Its deviation if residuals are white, (47).
+    /// Standard deviation for white residuals, (47).
     pub white_deviation: f64,
 }
 
-/// Whether parameters of two estimates differ.
+/// Test whether parameters of two estimates differ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Comparison {
@@ -82,12 +83,12 @@ pub struct Comparison {
     pub parameters: u64,
     /// ν.
     pub freedom: f64,
-    /// The probability of such a ratio, or a larger one, if they are the same.
+    /// p-value: probability of this or a larger ratio for equal parameters.
     pub probability: f64,
 }
 
 impl Pool {
-    /// The estimate of the runs of which there are most of one kind.
+    /// Estimate from the kind with the most runs.
     #[must_use]
     pub fn estimate(&self) -> Pooled {
         let mut told = Pooled {
@@ -96,7 +97,7 @@ impl Pool {
             unlike: self.others,
             ..Pooled::default()
         };
-        // Of equally many the first; the order is that of a hash and so depends on nothing else.
+        // The first of equally frequent kinds; the order is that of a hash and thus reproducible.
         let most = self.kinds.values().map(Kind::runs).max();
         let Some(kind) = self.kinds.values().find(|kind| Some(kind.runs()) == most) else {
             told.problem = "no run is left".to_owned();
@@ -118,7 +119,7 @@ impl Pool {
         told
     }
 
-    /// Number of runs, of all kinds.
+    /// Number of runs of all kinds.
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.kinds.values().map(|kind| kind.runs() as u64).sum()
@@ -126,7 +127,7 @@ impl Pool {
 }
 
 impl Kind {
-    /// Its equations as a system; a line that a group lacks has no equations in it.
+    /// The equations as a system; a line that a group lacks is empty.
     fn system(&self) -> System {
         let size = self.parameters();
         let empty = Factor::new(size);
@@ -207,7 +208,7 @@ fn parameters(
 }
 
 impl Pooled {
-    /// Values, covariance and degrees of freedom of parameters; none that is not estimated.
+    /// Values, covariance and degrees of freedom of parameters; `None` if one is not estimated.
     fn of(&self, names: &[&str]) -> Option<(DVector<f64>, DMatrix<f64>, Vec<f64>)> {
         let place = |name: &&str| self.parameters.iter().position(|own| own.name == **name);
         let places: Vec<usize> = names.iter().map(place).collect::<Option<_>>()?;
@@ -228,8 +229,9 @@ impl Pooled {
     }
 }
 
-/// Whether parameters of two estimates from different runs differ; none where one of them lacks one, or where
-/// their covariance is singular.
+/// Compares parameters of two estimates from different runs.
+///
+/// `None` if an estimate lacks a parameter, or the covariance is singular.
 #[must_use]
 pub fn compare(a: &Pooled, b: &Pooled, names: &[&str]) -> Option<Comparison> {
     let (first, of_first, freedoms) = a.of(names)?;

@@ -1,4 +1,4 @@
-//! Runs out of a Parquet file. What is wrong is told run by run, so that the others of a file can be used.
+//! Reads runs from a Parquet file, with errors per run, so that other runs remain usable.
 
 use std::{fs::File, path::Path};
 
@@ -24,25 +24,25 @@ use crate::{
     result::RunSummary,
 };
 
-/// What a file holds.
+/// Content of a file.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ReadFactors {
-    /// The runs that can be used.
+    /// Usable runs.
     pub runs: Vec<RunFactors>,
-    /// The others.
+    /// Unusable runs.
     pub damaged: Vec<Damaged>,
 }
 
-/// A run, or a whole file, that can't be used.
+/// A run, or a whole file, that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Damaged {
-    /// Name of the run; none where it is the whole file.
+    /// Name of the run; `None` for the whole file.
     pub run: Option<String>,
-    /// What kind of damage it is.
+    /// Kind of damage.
     pub reason: Reason,
-    /// The damage in words.
+    /// Damage in words.
     pub message: String,
 }
 
@@ -69,7 +69,7 @@ impl Damaged {
 /// Reads a factor file.
 ///
 /// # Errors
-/// A file that can't be read as a whole: cut off, of another kind, of a newer version.
+/// A file that cannot be read as a whole: cut off, of another kind, or of a newer version.
 pub fn read_factors(path: &Path) -> Result<ReadFactors, Damaged> {
     let unreadable = |error: &dyn std::fmt::Display| {
         let message = format!("the file can't be read as Parquet: {error}");
@@ -113,7 +113,7 @@ pub fn read_factors(path: &Path) -> Result<ReadFactors, Damaged> {
     Ok(read)
 }
 
-/// Whether all columns are there. Those that are not known are left alone.
+/// Checks that all columns exist; unknown ones are ignored.
 fn check_columns(reader: &SerializedFileReader<File>) -> Result<(), Damaged> {
     let schema = reader.metadata().file_metadata().schema_descr();
     let has = |name: &str| schema.columns().iter().any(|own| own.name() == name);
@@ -134,7 +134,7 @@ fn check_columns(reader: &SerializedFileReader<File>) -> Result<(), Damaged> {
     Err(Damaged::file(Reason::Unreadable, message))
 }
 
-/// Puts a value into a row; one of another type stays what it was, and the hash tells.
+/// Stores a value in a row; a value of another type is ignored and found by the hash.
 fn put(row: &mut Row, name: &str, field: &Field) {
     match (row.place(name), field) {
         (Some(Place::Whole(to)), Field::Long(from)) => *to = *from,
@@ -147,7 +147,7 @@ fn put(row: &mut Row, name: &str, field: &Field) {
     }
 }
 
-/// A run of its rows.
+/// A run from its rows.
 fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
     let Some(first) = rows.first() else {
         return Err(Damaged::file(Reason::Damaged, "a run without rows"));
@@ -190,7 +190,7 @@ fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
     }
 }
 
-/// What a run holds for a model; `columns` is the number of its columns.
+/// Factors of a run in one model; `columns` is the number of its columns.
 fn of_model(rows: &[Row], columns: usize) -> Result<ModelFactors, Damaged> {
     let first = &rows[0];
     let damaged = |message: &str| Damaged::run(&first.run, message);
@@ -245,10 +245,10 @@ fn of_model(rows: &[Row], columns: usize) -> Result<ModelFactors, Damaged> {
     })
 }
 
-/// What is said of bytes that are no factor.
+/// Message for bytes that are no factor.
 const NOT_NUMBERS: &str = "a factor of it has numbers that are not finite, or too few or too many";
 
-/// The factor of a row, whose record must be one of this run.
+/// The factor of a row, whose record must belong to this run.
 fn of_factor(row: &Row, columns: usize) -> Option<Factor> {
     let own = Record::one(&row.factor)?;
     let same = own.factor.parameters() == columns

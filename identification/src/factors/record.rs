@@ -1,64 +1,64 @@
-//! The equations of one line of a part of a run as bytes that stand alone: a database hands them on one by one,
-//! and whoever gets them knows what they are, whether they are whole, and whether they have been counted.
+//! Equations of one line of a part of a run, as self-contained bytes for a database.
 //!
-//! Lowest byte first:
+//! A record contains what it is, a checksum, and the run's hash for duplicate detection.
+//! Little-endian:
 //!
-//! | bytes | what |
+//! | bytes | content |
 //! |---|---|
 //! | 4 | `OAR1` |
-//! | 4 | length of all |
-//! | 8 | the low half of XXH3 (128 bits) of all behind it |
+//! | 4 | length of the record |
+//! | 8 | low half of XXH3 (128 bits) of everything after it |
 //! | 16, 16 | hash of description and settings; hash of the run's numbers |
-//! | 1, 1 | model: 0 platform, 1 actuators, 2 joints; 1 where the robot carried a payload |
+//! | 1, 1 | model: 0 platform, 1 actuators, 2 joints; 1 if the robot carried a payload |
 //! | 2, 2, 2 | part of the run, line of Γ, number of columns p |
 //! | 8 | equations |
 //! | 2, 2, 4 | lengths of the texts that follow |
 //! | | name of the payload, name of the line, names of the columns with commas |
 //! | 8 (p + 1) | sums of the columns and of Y, doubles |
-//! | 4 (p + 1)(p + 2) | the upper triangle of R row by row, doubles |
+//! | 4 (p + 1)(p + 2) | upper triangle of R row by row, doubles |
 
 use twox_hash::XxHash3_128;
 
 use super::packed::{from_triangle, numbers, triangle, values};
 use crate::regression::{factor::Factor, projection::ModelKind};
 
-/// What a record begins with.
+/// Magic bytes of a record.
 const MAGIC: [u8; 4] = *b"OAR1";
 
-/// Bytes in front of those that are hashed.
+/// Bytes before the hashed ones.
 const FRONT: usize = 16;
 
-/// Bytes in front of the texts.
+/// Bytes before the texts.
 const HEAD: usize = FRONT + 56;
 
-/// The models by their number.
+/// Models by number.
 const MODELS: [ModelKind; 3] = [ModelKind::Platform, ModelKind::Actuators, ModelKind::Joints];
 
-/// The equations of one line of a part of a run.
+/// Equations of one line of a part of a run.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Record {
-    /// Hash of the description and of the settings that make the equations.
+    /// Hash of the description and of the settings that affect the equations.
     pub like: u128,
-    /// Hash of the numbers of the run.
+    /// Hash of the run's numbers.
     pub content: u128,
-    /// The model.
+    /// Model.
     pub model: ModelKind,
-    /// The name of the payload that was carried, empty where it has none.
+    /// Payload name, empty if it has none; `None` without payload.
     pub load: Option<String>,
     /// Number of the part of the run.
     pub part: u16,
     /// Number of the line of Γ.
     pub line: u16,
-    /// Its name.
+    /// Name of the line.
     pub line_name: String,
-    /// Names of the columns, with commas.
+    /// Names of the columns, separated by commas.
     pub columns: String,
     /// R factor of [W Y].
     pub factor: Factor,
 }
 
-/// What bytes are instead of a record.
+/// Reason why bytes are no record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NoRecord {
@@ -69,7 +69,7 @@ pub enum NoRecord {
 }
 
 impl Record {
-    /// What only like with like shares: description, settings, model, payload and columns.
+    /// Hash of description, settings, model, payload and columns; equal for compatible records.
     #[must_use]
     pub fn kind(&self) -> u128 {
         let load = self.load.as_ref().map(|name| format!("+{name}"));
@@ -83,7 +83,7 @@ impl Record {
         XxHash3_128::oneshot(text.as_bytes())
     }
 
-    /// The bytes.
+    /// The record as bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let load = self.load.as_deref().unwrap_or("");
@@ -112,8 +112,7 @@ impl Record {
         own
     }
 
-    /// The records that stand one after the other in some bytes. Behind one whose length is not known nothing
-    /// can be read.
+    /// All records in some bytes; reading ends after one of unknown length.
     #[must_use]
     pub fn all(bytes: &[u8]) -> Vec<Result<Self, NoRecord>> {
         let mut found = Vec::new();
@@ -132,7 +131,7 @@ impl Record {
         found
     }
 
-    /// The one record of some bytes.
+    /// The single record in some bytes.
     pub(super) fn one(bytes: &[u8]) -> Option<Self> {
         let mut all = Self::all(bytes);
         match all.len() {
@@ -141,7 +140,7 @@ impl Record {
         }
     }
 
-    /// A record of just these bytes, which are at least those of the head.
+    /// Decodes a record from its bytes, at least those of the head.
     fn of(bytes: &[u8]) -> Result<Self, NoRecord> {
         let check = XxHash3_128::oneshot(&bytes[FRONT..]) as u64;
         let whole = check.to_le_bytes() == bytes[8..FRONT];
@@ -189,7 +188,7 @@ impl Record {
     }
 }
 
-/// Bytes that are still to be read.
+/// Unread bytes.
 pub(super) struct Rest<'a>(pub(super) &'a [u8]);
 
 impl<'a> Rest<'a> {

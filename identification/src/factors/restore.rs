@@ -1,4 +1,4 @@
-//! The systems of all runs together, from their factors.
+//! Combines the factors of all runs to systems.
 
 use nalgebra::DMatrix;
 use overact::Code;
@@ -20,8 +20,10 @@ use crate::{
     settings::Settings,
 };
 
-/// Puts the factors of runs together. Of runs that lack a model that others have, this model is an error, or the
-/// runs are left out of it, which is told.
+/// Combines the factors of runs.
+///
+/// If a run lacks a model that others have, this is an error. With `skip_bad`, the run is left out
+/// of this model and reported.
 pub(super) fn restored(
     model: &dyn Model,
     runs: &[RunFactors],
@@ -84,7 +86,7 @@ pub(super) fn restored(
     Ok((prepared, left_out))
 }
 
-/// How the payload takes part.
+/// Treatment of the payload columns.
 fn payload_use(runs: &[RunFactors]) -> Result<PayloadUse, Error> {
     let loaded = || runs.iter().filter(|run| run.summary.payload);
     let unnamed = loaded().find(|run| run.summary.payload_name.is_none());
@@ -117,15 +119,14 @@ fn names(runs: &[RunFactors]) -> Vec<String> {
     names
 }
 
-/// Where the columns of a run stand among those of all: for each base parameter the column of the run, none
-/// where it is zero.
+/// For each base parameter the column of the run; `None` if it is zero.
 struct Places {
     columns: Vec<Option<usize>>,
     /// Number of the run's own columns.
     own: usize,
 }
 
-/// Those of all runs.
+/// Columns of all runs.
 fn places(
     runs: &[RunFactors],
     columns: &ColumnSet,
@@ -169,7 +170,7 @@ fn places(
 }
 
 impl Places {
-    /// What a run adds to a system.
+    /// Equations of a run for the common columns.
     fn observed(&self, number: usize, parts: &[Part], own: &super::run::ModelFactors) -> Observed {
         let same = self.columns.len() == self.own;
         let same = same
@@ -201,7 +202,7 @@ impl Places {
         }
     }
 
-    /// Equations in the columns of all.
+    /// Rows in the common columns.
     fn rows(&self, rows: &DMatrix<f64>) -> DMatrix<f64> {
         let mut all = DMatrix::zeros(rows.nrows(), self.columns.len() + 1);
         for (to, from) in self.columns.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What is kept of a run.
+//! Factors of a run.
 
 use super::record::Record;
 use crate::{
@@ -16,42 +16,42 @@ use crate::{
 pub struct RunFactors {
     /// Name of the robot's description.
     pub robot: String,
-    /// Serial number of the robot; empty where none was given.
+    /// Serial number of the robot; empty if not given.
     pub serial: String,
-    /// When the run began, µs since 1970 (UTC); none where that was not given.
+    /// Start of the run, µs since 1970 (UTC); `None` if not given.
     pub time_us: Option<i64>,
-    /// Hash of the description and of the settings that make the equations.
+    /// Hash of the description and of the settings that affect the equations.
     pub like: String,
     /// Hash of the numbers.
     pub content: String,
-    /// What is told of the run.
+    /// Summary of the run.
     pub summary: RunSummary,
-    /// What its raw numbers are suspected of.
+    /// Suspicions about its raw numbers.
     pub flags: Vec<String>,
     /// Names of the columns of the factors.
     pub columns: Vec<String>,
-    /// For each model its equations.
+    /// Equations of each model.
     pub models: Vec<ModelFactors>,
 }
 
-/// The equations of a run in one model.
+/// Equations of a run in one model.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ModelFactors {
-    /// The model.
+    /// Model.
     pub model: ModelKind,
     /// Names of the lines of Γ.
     pub lines: Vec<String>,
-    /// The factors of the parts, or why there are none: kept actuators that are singular at a sample.
+    /// Factors of the parts, or the reason why they are missing: a singular partition.
     pub parts: Result<Vec<Part>, String>,
-    /// Successive equations, where they were asked for.
+    /// Successive equations, if they were requested.
     pub stretches: Vec<Stretch>,
-    /// How well the kept actuators determine the platform.
+    /// Condition of the kept actuators.
     pub partition: Option<PartitionCondition>,
 }
 
 impl RunFactors {
-    /// The run by its serial number, where it has one, and its name.
+    /// Name of the run, with the serial number if known.
     #[must_use]
     pub fn title(&self) -> String {
         match self.serial.is_empty() {
@@ -60,14 +60,14 @@ impl RunFactors {
         }
     }
 
-    /// The factors of all models as records.
+    /// Factors of all models as records.
     #[must_use]
     pub fn records(&self) -> Vec<Record> {
         let models = self.models.iter();
         models.flat_map(|model| self.records_of(model)).collect()
     }
 
-    /// Those of one of its models.
+    /// Records of one model.
     pub(super) fn records_of(&self, model: &ModelFactors) -> Vec<Record> {
         let number = |text: &str| u128::from_str_radix(text, 16).unwrap_or(0);
         let summary = &self.summary;

@@ -1,8 +1,9 @@
-//! The columns of a factor file: a row for each line of each part of a run, with what is known of the run in
-//! every row, so that a database groups and selects without other tables. What repeats is written once by
-//! Parquet's dictionaries.
+//! Columns of a factor file: one row for each line of each part of a run.
+//!
+//! Every row contains the metadata of the run, so a database can group and select without other
+//! tables. Parquet's dictionaries store repeated values once.
 
-/// Version of the format; a reader refuses files of others. In version 1 factors were no records.
+/// Version of the format; readers reject others. In version 1, factors were no records.
 pub(super) const VERSION: i64 = 2;
 
 /// A row.
@@ -17,16 +18,16 @@ pub(super) struct Row {
     pub(super) run: String,
     pub(super) samples: i64,
     pub(super) sampling_frequency: f64,
-    /// 1 where the robot carried the payload.
+    /// 1 if the robot carried the payload.
     pub(super) loaded: i64,
-    /// Its name, where it has one.
+    /// Name of the payload, if it has one.
     pub(super) payload: String,
     pub(super) closure_residual: f64,
-    /// Numbers of equations, with commas.
+    /// Numbers of equations, separated by commas.
     pub(super) standstill: String,
-    /// A line each.
+    /// One line each.
     pub(super) flags: String,
-    /// Names, with commas.
+    /// Names, separated by commas.
     pub(super) columns: String,
     pub(super) model: String,
     /// `factor`, `equations` or `missing`.
@@ -36,21 +37,23 @@ pub(super) struct Row {
     pub(super) line: i64,
     pub(super) line_name: String,
     pub(super) equations: i64,
-    /// The smallest ||Y - W χ|| of these equations alone, and ||Y||.
+    /// Smallest ||Y - W χ|| of these equations alone, and ||Y||.
     pub(super) residual_norm: f64,
     pub(super) measured_norm: f64,
-    /// Of the kept actuators the largest condition number, 0 where there is none; where and how often.
+    /// Largest condition number of the kept actuators, or 0.
+    ///
+    /// Then follow its sample and time, and the number of crossings.
     pub(super) condition: f64,
     pub(super) condition_sample: i64,
     pub(super) condition_time: f64,
     pub(super) crossings: i64,
-    /// Why there is no factor.
+    /// Reason for a missing factor.
     pub(super) problem: String,
-    /// A record of the factor, or equations row by row: doubles, lowest byte first.
+    /// A record of the factor, or equations row by row as little-endian doubles.
     pub(super) factor: Vec<u8>,
 }
 
-/// The schema, in the order of the fields of a row.
+/// Schema, in the order of the fields of a row.
 pub(super) const SCHEMA: &str = "message factors {
   required int64 version;
   required binary like (UTF8);
@@ -83,7 +86,7 @@ pub(super) const SCHEMA: &str = "message factors {
   required binary factor;
 }";
 
-/// A value of a row on its way into a file.
+/// A value of a row for writing.
 pub(super) enum Cell<'a> {
     Whole(i64),
     Real(f64),
@@ -91,7 +94,7 @@ pub(super) enum Cell<'a> {
     Bytes(&'a [u8]),
 }
 
-/// A value of a row on its way out of a file.
+/// Target of a value when reading.
 pub(super) enum Place<'a> {
     Whole(&'a mut i64),
     Real(&'a mut f64),
@@ -101,7 +104,7 @@ pub(super) enum Place<'a> {
 }
 
 impl Row {
-    /// The values in the order of the schema.
+    /// Values in the order of the schema.
     pub(super) fn cells(&self) -> Vec<Cell<'_>> {
         use Cell::{Bytes, Instant, Real, Whole};
         vec![
@@ -137,7 +140,7 @@ impl Row {
         ]
     }
 
-    /// Where the value of a column goes; none of a column that is not known.
+    /// Target of a column's value; `None` for an unknown column.
     pub(super) fn place(&mut self, name: &str) -> Option<Place<'_>> {
         use Place::{Bytes, Instant, Real, Text, Whole};
         Some(match name {

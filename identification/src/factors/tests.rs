@@ -1,4 +1,4 @@
-//! Pools of records: what they tell, whatever the order and the place in which records come.
+//! Pools of records give the same estimate in any order and place.
 
 use nalgebra::DMatrix;
 use rand::RngExt;
@@ -12,11 +12,13 @@ use crate::{
 
 const TRUE: [f64; 3] = [2.0, -0.5, 0.1];
 
-/// Records of runs with two lines and five parts each; noise of the second line is tenfold, and successive
-/// equations of both share a slow part of it.
+/// Records of runs with two lines and five parts each.
+///
+/// The second line has ten times the noise. A slow part of the noise is common to successive
+/// equations of both lines.
 fn records(seed: u64, runs: usize) -> Vec<Record> {
     let mut random = Pcg64::new(seed.into(), 7);
-    // Twelve uniform variables are normal enough.
+    // A sum of twelve uniform variables is nearly normal.
     let mut normal = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
     let mut all = Vec::new();
     for run in 0..runs {
@@ -103,7 +105,7 @@ fn a_pool_without_records_says_no_more_than_it_was_told() {
     let wanted = pooled(&all, 64);
     assert!(groups(&wanted) > 16);
 
-    // A place without rows that nobody has told a number, on either side.
+    // An empty pool without a limit, on either side.
     let mut left = Pool::default();
     left.merge(wanted.clone()).expect("other runs");
     let mut right = wanted.clone();
@@ -113,7 +115,7 @@ fn a_pool_without_records_says_no_more_than_it_was_told() {
     for own in [&left, &right] {
         same(&wanted.estimate(), &own.estimate());
     }
-    // What comes later has as much room as if the empty pool had not been.
+    // Later records have the same limit as without the empty pool.
     let mut later = pooled(first, 64);
     later.merge(Pool::default()).expect("other runs");
     later.merge(pooled(second, 64)).expect("other runs");
@@ -125,7 +127,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
     let all = records(7, 40);
     let few = pooled(&all, 8).estimate();
     assert!(few.groups <= 8);
-    // A pool that was told 8 before it has anything, and gets what was gathered with 64.
+    // An empty pool with limit 8, merged with one of limit 64.
     let mut told = Pool::new(8);
     told.merge(pooled(&all, 64)).expect("other runs");
     same(&few, &told.estimate());
@@ -133,7 +135,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
     told.limit(8);
     told.merge(pooled(&all, 64)).expect("other runs");
     same(&few, &told.estimate());
-    // One that was told 8 and is empty comes to what was gathered with 64, or is told 8 afterwards.
+    // The reverse, or limit 8 set afterwards.
     let mut late = pooled(&all, 64);
     late.merge(Pool::new(8)).expect("other runs");
     same(&few, &late.estimate());
@@ -141,7 +143,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
     late.limit(8);
     late.limit(64);
     same(&few, &late.estimate());
-    // Pools of two kinds share none of their groups, and both obey.
+    // Kinds do not share groups, and all follow the limit.
     let mut other = records(8, 40);
     other.iter_mut().for_each(|record| record.like = 2);
     let mut both = pooled(&all, 64);
@@ -156,7 +158,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
 fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
     let all = records(2, 3);
     let told = pooled(&all, 100).estimate();
-    // Each line by itself says how its equations are weighted; then the normal equations of both.
+    // Weights from each line alone; then the normal equations of both.
     let line = |number: u16| {
         let mut sum = DMatrix::zeros(4, 4);
         let mut equations = 0;

@@ -1,4 +1,4 @@
-//! Runs into a Parquet file.
+//! Writes runs to a Parquet file.
 
 use overact::Code;
 use std::sync::Arc;
@@ -19,10 +19,10 @@ use super::{
 };
 use crate::error::{Error, Problem};
 
-/// The bytes of a factor file of runs. The same runs give the same bytes.
+/// The bytes of a factor file of runs; equal runs give equal bytes.
 ///
 /// # Errors
-/// A name that is too long to be written.
+/// A name that is too long.
 pub fn write_factors(runs: &[RunFactors]) -> Result<Vec<u8>, Error> {
     let all: Vec<Row> = runs.iter().flat_map(of_run).collect();
     written(&all).map_err(|error| {
@@ -91,7 +91,7 @@ fn written(all: &[Row]) -> Result<Vec<u8>, ParquetError> {
     writer.into_inner()
 }
 
-/// The rows of a run.
+/// Rows of a run.
 fn of_run(run: &RunFactors) -> Vec<Row> {
     let summary = &run.summary;
     let standstill = summary.standstill_equations.iter().map(usize::to_string);
@@ -119,7 +119,7 @@ fn of_run(run: &RunFactors) -> Vec<Row> {
         .collect()
 }
 
-/// The rows of a model, for each line of a part, then of a stretch; one that says why there are none.
+/// Rows of a model: each line of a part, then of a stretch, or one row with the error.
 fn of_model(run: &RunFactors, row: &Row, model: &ModelFactors) -> Vec<Row> {
     let partition = model.partition.as_ref();
     let all = Row {

@@ -1,13 +1,11 @@
-//! A cascade of second-order sections over several signals side by side, and how long its transients
-//! last.
+//! A cascade of second-order sections for several interleaved signals, and its settling time.
 
 use super::design::{LowPass, Section};
 
-/// Samples after which a filter that has not settled is given up; its poles are on the unit circle but
-/// for rounding.
+/// Largest settling time in samples, for poles on the unit circle up to rounding.
 const LARGEST_SETTLING: usize = 1 << 24;
 
-/// The sections of a filter with their states, for rows of several signals.
+/// Sections of a filter with their states, for rows of several signals.
 #[derive(Debug, Clone)]
 pub(super) struct Cascade {
     sections: Vec<Section>,
@@ -17,7 +15,7 @@ pub(super) struct Cascade {
 }
 
 impl Cascade {
-    /// A filter whose input has been `row` for ever.
+    /// A filter in the steady state of the input `row`.
     pub(super) fn settled(filter: &LowPass, row: &[f64]) -> Self {
         let mut level = row.to_vec();
         let mut states = Vec::with_capacity(2 * row.len() * filter.sections().len());
@@ -34,12 +32,12 @@ impl Cascade {
         }
     }
 
-    /// The states as they are now: for each section, s1 of all signals, then s2 of all.
+    /// Current states: for each section, s1 of all signals, then s2 of all.
     pub(super) fn into_states(self) -> Vec<f64> {
         self.states
     }
 
-    /// Filters rows in place, the first one first.
+    /// Filters rows in place, forwards.
     pub(super) fn pass(&mut self, rows: &mut [f64]) {
         for row in rows.chunks_exact_mut(self.width) {
             let states = self.states.chunks_exact_mut(2 * self.width);
@@ -60,7 +58,7 @@ impl Cascade {
         }
     }
 
-    /// Filters rows in place, the last one first.
+    /// Filters rows in place, backwards.
     pub(super) fn pass_backwards(&mut self, rows: &mut [f64]) {
         let width = self.width;
         for row in rows.rchunks_exact_mut(width) {
@@ -68,21 +66,23 @@ impl Cascade {
         }
     }
 
-    /// The largest magnitude among the states.
+    /// Largest magnitude of the states.
     fn largest_state(&self) -> f64 {
         self.states.iter().fold(0.0, |m, s| f64::max(m, s.abs()))
     }
 }
 
-/// Number of samples after which a transient of `filter` stays below the part `tolerance` of what it
-/// was: that of an input which has been 1 for ever and is 0 from now on.
+/// Settling time of `filter` in samples.
+///
+/// After it, the transient stays below the fraction `tolerance` of its initial size. The input
+/// steps from 1 to 0.
 pub(crate) fn settling(filter: &LowPass, tolerance: f64) -> usize {
     let mut cascade = Cascade::settled(filter, &[1.0]);
     let start = cascade.largest_state();
     let mut last = 0;
     let mut sample = 0;
-    // States oscillate through zero: a transient is over when it has been small for as long as it lasted
-    // before.
+    // States oscillate through zero, so a transient counts as settled after staying small for as
+    // long as it has lasted.
     while sample <= 2 * last + filter.order() && sample < LARGEST_SETTLING {
         cascade.pass(&mut [0.0]);
         sample += 1;
@@ -93,7 +93,7 @@ pub(crate) fn settling(filter: &LowPass, tolerance: f64) -> usize {
     last
 }
 
-/// The odd reflection of rows about the first of them, nearest first: `count` rows.
+/// Odd reflection of rows about the first of them, nearest first: `count` rows.
 pub(super) fn reflected<'a>(mut rows: impl Iterator<Item = &'a [f64]>, count: usize) -> Vec<f64> {
     let Some(first) = rows.next() else {
         return Vec::new();
@@ -103,8 +103,9 @@ pub(super) fn reflected<'a>(mut rows: impl Iterator<Item = &'a [f64]>, count: us
         .collect()
 }
 
-/// A filter that has passed forwards over the reflection before the first of `rows`, whose number is
-/// more than its padding.
+/// A filter after its forward pass over the reflection before the first of `rows`.
+///
+/// There must be more rows than its padding.
 pub(super) fn started(filter: &LowPass, width: usize, rows: &[f64]) -> Cascade {
     let reflection = reflected(rows.chunks_exact(width), filter.padding());
     // The farthest row comes first.
@@ -122,7 +123,7 @@ pub(super) fn started(filter: &LowPass, width: usize, rows: &[f64]) -> Cascade {
     cascade
 }
 
-/// The state of a section whose input has been 1 for ever, and its gain at rest.
+/// Steady state of a section for the constant input 1, and its static gain.
 fn steady_state(section: &Section) -> ([f64; 2], f64) {
     let Section { b, a } = section;
     let gain = (b[0] + b[1] + b[2]) / (a[0] + a[1] + a[2]);

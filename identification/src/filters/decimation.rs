@@ -1,16 +1,18 @@
-//! Parallel decimation, as MATLAB's `decimate` does: an order-8 Chebyshev type I low-pass with
-//! 0.05 dB of ripple up to 0.8 f_m/(2 n_d), run forwards and backwards, then one sample in n_d.
+//! Parallel decimation, equivalent to MATLAB's `decimate`.
 //!
-//! The last sample is always kept, so the first one kept is number (N - 1) mod n_d. MATLAB filters
-//! with polynomials and lowers the order where these lose their digits; sections never need that.
+//! An order-8 Chebyshev type I low-pass with 0.05 dB of ripple up to 0.8 f_m/(2 n_d) runs forwards
+//! and backwards; then every n_d-th sample is kept. The last sample is always kept, so the first
+//! kept one is number (N - 1) mod n_d. MATLAB filters with polynomials and lowers the order if
+//! these are inaccurate. Second-order sections never need that.
 //!
-//! Of the filtered signal one sample in n_d is wanted, so neither pass is run sample by sample. A
-//! group are the n_d samples from a kept one on; what it adds to the modes of the low-pass ([`modes`](super::modes))
-//! is a product with fixed weights ([`groups`](super::groups)), all signals at once, and what waits for the backward
-//! pass is n_d times shorter than the signal. Both ends are passed sample by sample.
+//! Only one sample in n_d is needed, so neither pass runs sample by sample. A group is a kept
+//! sample and those up to the next one. Its contribution to the [`modes`](super::modes) of the
+//! low-pass is a product with fixed weights ([`groups`](super::groups)), for all signals at once.
+//! The data between both passes are n_d times shorter than the signal. Both ends are filtered
+//! sample by sample.
 //!
-//! Where all samples are kept, another low-pass can take the place of the decimation's, so that both sides
-//! of the equations are filtered alike.
+//! If all samples are kept, another low-pass can replace that of the decimation, so that both sides
+//! of the equations pass the same filter.
 
 use overact::Code;
 use std::sync::Arc;
@@ -27,30 +29,30 @@ use crate::error::{Error, Problem};
 /// Order of the Chebyshev low-pass.
 pub const DECIMATION_ORDER: usize = 8;
 
-/// Samples that a signal must exceed to be decimated.
+/// Number of samples that a signal must exceed.
 pub const DECIMATION_PADDING: usize = 3 * DECIMATION_ORDER;
 
 /// Ripple of the Chebyshev low-pass in its pass band, dB.
 const RIPPLE_DB: f64 = 0.05;
 
-/// Groups that are finished at once, at least; twice the overlap where that is more.
+/// Fewest groups finished at once; at least twice the overlap.
 const SMALLEST_HOP: usize = 256;
 
-/// A decimation by one factor, designed once for all signals.
+/// A decimation by one factor, for any number of signals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decimator {
     factor: usize,
     filter: Option<Arc<GroupFilter>>,
-    /// A low-pass that comes first.
+    /// A low-pass before the decimation.
     first: Option<LowPass>,
 }
 
-/// The low-pass with what it does to whole groups.
+/// The low-pass with its weights for groups.
 #[derive(Debug, PartialEq)]
 struct GroupFilter {
     low_pass: LowPass,
     groups: Groups,
-    /// Groups after which the backward pass has forgotten its start.
+    /// Settling time of the backward pass in groups.
     overlap: usize,
 }
 
@@ -66,7 +68,7 @@ impl GroupFilter {
 }
 
 impl Decimator {
-    /// Designs the low-pass for `factor`; a factor of 1 leaves signals as they are.
+    /// Designs the low-pass for `factor`; a factor of 1 keeps signals unchanged.
     ///
     /// # Errors
     /// A factor of 0.
@@ -90,35 +92,35 @@ impl Decimator {
         })
     }
 
-    /// The same behind a low-pass, run forwards and backwards.
+    /// Adds a low-pass before the decimation, run forwards and backwards.
     #[must_use]
     pub fn behind(self, low_pass: LowPass) -> Self {
         let first = Some(low_pass);
         Self { first, ..self }
     }
 
-    /// The factor n_d.
+    /// Factor n_d.
     #[must_use]
     pub const fn factor(&self) -> usize {
         self.factor
     }
 
-    /// Number of the first sample that is kept of `samples`.
+    /// Number of the first kept sample.
     #[must_use]
     pub const fn first(&self, samples: usize) -> usize {
         samples.saturating_sub(1) % self.factor
     }
 
-    /// Number of samples that are kept of `samples`.
+    /// Number of kept samples.
     #[must_use]
     pub const fn kept(&self, samples: usize) -> usize {
         samples.div_ceil(self.factor)
     }
 
-    /// The decimation of `samples` rows of `width` values that come block by block.
+    /// Decimates `samples` rows of `width` values block by block.
     ///
     /// # Errors
-    /// No more than 24 samples, or than three times the order of the low-pass before it.
+    /// At most 24 samples, or at most three times the order of the first low-pass.
     pub fn stream(&self, width: usize, samples: usize) -> Result<Decimation, Error> {
         let first = self.first.as_ref();
         let first = first.map(|own| ZeroPhase::new(own, width, samples));
@@ -128,14 +130,14 @@ impl Decimator {
         })
     }
 
-    /// What groups the samples, where not all of them are kept.
+    /// State of the decimation; `None` if all samples are kept.
     fn groups(&self, width: usize, samples: usize) -> Result<Option<Grouped>, Error> {
         let Some(filter) = &self.filter else {
             return Ok(None);
         };
         check_length(&filter.low_pass, samples)?;
         let hop = SMALLEST_HOP.max(2 * filter.overlap);
-        // Groups that wait at a time, at most.
+        // Largest number of pending groups.
         let waiting = (samples / self.factor).min(hop + filter.overlap);
         Ok(Some(Grouped {
             filter: Arc::clone(filter),
@@ -151,10 +153,10 @@ impl Decimator {
         }))
     }
 
-    /// Low-passes `signal` and keeps one sample in n_d.
+    /// Filters `signal` and keeps every n_d-th sample.
     ///
     /// # Errors
-    /// A signal of no more than 24 samples.
+    /// A signal of at most 24 samples.
     pub fn apply(&self, signal: &[f64]) -> Result<Vec<f64>, Error> {
         let mut stream = self.stream(1, signal.len())?;
         let mut kept = Vec::with_capacity(self.kept(signal.len()));
@@ -166,12 +168,12 @@ impl Decimator {
 /// Decimates one signal by `factor`.
 ///
 /// # Errors
-/// A factor of 0, or a signal of no more than 24 samples.
+/// A factor of 0, or a signal of at most 24 samples.
 pub fn decimate(signal: &[f64], factor: usize) -> Result<Vec<f64>, Error> {
     Decimator::new(factor)?.apply(signal)
 }
 
-/// The decimation of several signals side by side whose samples come in blocks of any size.
+/// Decimation of several interleaved signals in blocks of any size.
 #[derive(Debug, Clone)]
 pub struct Decimation {
     first: Option<ZeroPhase>,
@@ -179,8 +181,9 @@ pub struct Decimation {
 }
 
 impl Decimation {
-    /// Takes rows and appends the kept ones that are finished to `kept`. The rows that complete the
-    /// number announced bring out all that is left; rows beyond it are ignored.
+    /// Adds rows, and appends kept rows that are finished to `kept`.
+    ///
+    /// The rows that complete the announced number finish all others. Further rows are ignored.
     pub fn push(&mut self, rows: &[f64], kept: &mut Vec<f64>) {
         match (&mut self.first, &mut self.groups) {
             (None, None) => kept.extend_from_slice(rows),
@@ -195,26 +198,27 @@ impl Decimation {
     }
 }
 
-/// A decimation that is under way.
+/// State of a decimation.
 #[derive(Debug, Clone)]
 struct Grouped {
     filter: Arc<GroupFilter>,
     width: usize,
-    /// Samples that are still to come.
+    /// Samples still to come.
     left: usize,
-    /// Samples before the first group that have not come yet.
+    /// Samples before the first group still to come.
     skipped: usize,
-    /// Rows that make no whole group yet.
+    /// Rows of an incomplete group.
     gathered: Vec<f64>,
-    /// X of all signals at the start of the gathered rows, once enough rows for its reflection have come.
+    /// X of all signals before the gathered rows, once the initial reflection is known.
     before: Option<Vec<f64>>,
-    /// For each group that waits for the backward pass, F and the kept values as far as they are known, with room
-    /// for as many groups as ever wait.
+    /// For each pending group, F and the partial kept values.
+    ///
+    /// It has space for the largest number of pending groups.
     pending: Vec<f64>,
-    /// Groups that wait.
+    /// Number of pending groups.
     waiting: usize,
     hop: usize,
-    /// The last rows, for the reflection at the end.
+    /// Last rows, for the reflection at the end.
     last: Vec<f64>,
 }
 
@@ -225,7 +229,7 @@ impl Grouped {
             return;
         }
         self.left -= rows.len() / self.width;
-        // Of what comes, the rows that are among the last of all.
+        // Keep new rows that are among the last of all.
         let reach = self.filter.low_pass.padding() + 1;
         let tail = reach.saturating_sub(self.left) * self.width;
         self.last
@@ -245,7 +249,7 @@ impl Grouped {
         }
     }
 
-    /// Passes forwards up to the first group, once enough rows for that are there.
+    /// Runs forwards to the first group, once there are enough rows.
     fn start(&mut self) -> bool {
         let needed = (self.filter.low_pass.padding() + 1).max(self.skipped);
         if self.gathered.len() < needed * self.width {
@@ -266,8 +270,9 @@ impl Grouped {
         true
     }
 
-    /// Passes whole groups forwards. The last sample is a kept one that begins no whole group: it
-    /// stays gathered.
+    /// Runs whole groups forwards.
+    ///
+    /// The last sample is kept but starts no whole group: it stays in `gathered`.
     fn take(&mut self, mut rows: &[f64], kept: &mut Vec<f64>) {
         let size = self.filter.groups.length * self.width;
         if !self.gathered.is_empty() {
@@ -288,7 +293,7 @@ impl Grouped {
         self.gathered.extend_from_slice(&rows[whole..]);
     }
 
-    /// Passes groups forwards.
+    /// Runs groups forwards.
     fn take_groups(&mut self, rows: &[f64], kept: &mut Vec<f64>) {
         let Some(mut before) = self.before.take() else {
             return;
@@ -310,7 +315,7 @@ impl Grouped {
         self.before = Some(before);
     }
 
-    /// Gives out what the reflection behind the last row allows: all.
+    /// Finishes all groups with the reflection after the last row.
     fn finish(&mut self, kept: &mut Vec<f64>) {
         let Some(before) = self.before.take() else {
             return;
@@ -319,7 +324,7 @@ impl Grouped {
         let modes = &filter.groups.modes;
         let padding = filter.low_pass.padding();
         let reflection = reflected(self.last.rchunks_exact(width), padding);
-        // The last sample and the reflection behind it.
+        // The last sample and the reflection after it.
         let mut rows = [std::mem::take(&mut self.gathered), reflection].concat();
         for signal in 0..width {
             let own = rows[signal..].iter().step_by(width);
@@ -342,8 +347,9 @@ impl Grouped {
         kept.extend_from_slice(&rows[..width]);
     }
 
-    /// Runs backwards over all pending groups from B `behind` the last of them, and gives out
-    /// the kept samples of the first `finished` ones, which are pending no more.
+    /// Runs backwards over all pending groups, starting with B after the last one.
+    ///
+    /// It outputs the kept samples of the first `finished` groups and removes these.
     fn pass_backwards(&mut self, finished: usize, behind: Option<Vec<f64>>, kept: &mut Vec<f64>) {
         let width = self.width;
         let size = (PARTS + 1) * width;
@@ -352,7 +358,7 @@ impl Grouped {
         kept.resize(start + finished * width, 0.0);
         let pending = self.pending[..self.waiting * size].chunks_exact(size);
         for (index, waiting) in pending.enumerate().rev() {
-            // Groups behind the finished ones are passed again, from a better start.
+            // Later groups are run again with a better start.
             let place = start + index * width;
             let own = (index < finished).then(|| &mut kept[place..place + width]);
             self.filter.groups.pass_backwards(waiting, &mut behind, own);
@@ -363,13 +369,13 @@ impl Grouped {
     }
 }
 
-/// The states of a signal in those of all.
+/// States of one signal.
 fn sections(states: &[f64], width: usize, signal: usize) -> Vec<[f64; 2]> {
     let all = states.chunks_exact(2 * width);
     all.map(|own| [own[signal], own[width + signal]]).collect()
 }
 
-/// The modes of a signal among those of all.
+/// Modes of one signal.
 fn get(all: &[f64], width: usize, signal: usize) -> Vec<Mode> {
     let modes = all.chunks_exact(2 * width);
     modes
@@ -377,7 +383,7 @@ fn get(all: &[f64], width: usize, signal: usize) -> Vec<Mode> {
         .collect()
 }
 
-/// Puts the modes of a signal to those of all.
+/// Stores the modes of one signal.
 fn put(all: &mut [f64], width: usize, signal: usize, own: &[Mode]) {
     for (place, mode) in all.chunks_exact_mut(2 * width).zip(own) {
         (place[signal], place[width + signal]) = (mode.re, mode.im);

@@ -1,10 +1,12 @@
 //! Design of Butterworth and Chebyshev type I low-pass filters as second-order sections.
 //!
-//! The analogue prototype of order n with a cutoff of 1 rad/s has the poles
-//! -sinh(μ) sin θ_k ± i cosh(μ) cos θ_k, θ_k = π (2k + 1)/(2n), with sinh(μ n) = 1/ε for a ripple
-//! of 10 log10(1 + ε²) dB; for Butterworth both hyperbolic factors are 1. The bilinear transform
-//! with prewarping, t = tan(π f_c / f_m), maps a pole p to z = (1 + p t)/(1 - p t) and all zeros
-//! to -1. A pair of poles makes the section (1 + z^-1)² / (1 - 2 Re(z) z^-1 + |z|² z^-2).
+//! The analogue prototype of order n with a cutoff of 1 rad/s has the poles -sinh(μ) sin θ_k ± i
+//! cosh(μ) cos θ_k with θ_k = π (2k + 1)/(2n). For a ripple of 10 log10(1 + ε²) dB, sinh(μ n) =
+//! 1/ε; for Butterworth both hyperbolic factors are 1.
+//!
+//! The bilinear transform with prewarping, t = tan(π f_c/f_m), maps a pole p to z = (1 + p t)/(1 -
+//! p t), and all zeros to -1. A pair of poles gives the section (1 + z^-1)²/(1 - 2 Re(z) z^-1 +
+//! |z|² z^-2).
 
 use overact::Code;
 use std::f64::consts::PI;
@@ -13,7 +15,7 @@ use nalgebra::Complex;
 
 use crate::error::{Error, Problem};
 
-/// Highest order that is accepted; beyond it a low-pass gains nothing for identification.
+/// Largest order; higher orders have no benefit for identification.
 const LARGEST_ORDER: usize = 50;
 
 /// One second-order section b(z)/a(z) in powers of z^-1, with a\[0\] = 1.
@@ -25,8 +27,9 @@ pub struct Section {
     pub a: [f64; 3],
 }
 
-/// A low-pass filter: a cascade of sections, the one nearest to the unit circle last. The gain is
-/// in the first one.
+/// A low-pass filter: a cascade of sections, the one nearest to the unit circle last.
+///
+/// The first section contains the gain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowPass {
     sections: Vec<Section>,
@@ -34,7 +37,7 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// The sections in the order in which a signal passes them.
+    /// Sections in the order of filtering.
     #[must_use]
     pub fn sections(&self) -> &[Section] {
         &self.sections
@@ -46,15 +49,15 @@ impl LowPass {
         self.order
     }
 
-    /// Number of samples by which [`filtfilt`](super::filtfilt) extends a signal at either end:
-    /// 3 (filter length - 1).
+    /// Samples by which [`filtfilt`](super::filtfilt) extends a signal at either end, 3 × order.
     #[must_use]
     pub const fn padding(&self) -> usize {
         3 * self.order
     }
 
-    /// The polynomials b and a of the whole filter in powers of z^-1 (order + 1 coefficients
-    /// each). For comparison and plots; filter with the sections.
+    /// Polynomials b and a of the whole filter in powers of z^-1, order + 1 coefficients each.
+    ///
+    /// For comparison and plots; use the sections for filtering.
     #[must_use]
     pub fn polynomials(&self) -> (Vec<f64>, Vec<f64>) {
         let mut b = vec![1.0];
@@ -80,21 +83,23 @@ fn multiply(x: &[f64], y: &[f64]) -> Vec<f64> {
     product
 }
 
-/// Butterworth low-pass of `order`. `cutoff` is the -3 dB frequency as a fraction of the Nyquist
-/// frequency, between 0 and 1.
+/// Butterworth low-pass of `order`.
+///
+/// `cutoff` is the -3 dB frequency as a fraction of the Nyquist frequency, between 0 and 1.
 ///
 /// # Errors
-/// An order of 0 or above 50, or a cutoff outside of ]0, 1\[.
+/// An order of 0 or above 50, or a cutoff outside ]0, 1\[.
 pub fn butterworth(order: usize, cutoff: f64) -> Result<LowPass, Error> {
     check(order, cutoff)?;
     Ok(low_pass(order, cutoff, (1.0, 1.0), 1.0))
 }
 
-/// Chebyshev type I low-pass of `order` with `ripple_db` of ripple in the pass band. `cutoff` is
-/// the end of the pass band as a fraction of the Nyquist frequency, between 0 and 1.
+/// Chebyshev type I low-pass of `order` with `ripple_db` of ripple in the pass band.
+///
+/// `cutoff` is the end of the pass band as a fraction of the Nyquist frequency, between 0 and 1.
 ///
 /// # Errors
-/// An order of 0 or above 50, a cutoff outside of ]0, 1\[, or a ripple that is not positive.
+/// An order of 0 or above 50, a cutoff outside ]0, 1\[, or a ripple that is not positive.
 pub fn chebyshev1(order: usize, ripple_db: f64, cutoff: f64) -> Result<LowPass, Error> {
     check(order, cutoff)?;
     if !(ripple_db.is_finite() && ripple_db > 0.0) {
@@ -106,7 +111,7 @@ pub fn chebyshev1(order: usize, ripple_db: f64, cutoff: f64) -> Result<LowPass, 
     }
     let epsilon = (10.0_f64.powf(ripple_db / 10.0) - 1.0).sqrt();
     let mu = (1.0 / epsilon).asinh() / order as f64;
-    // The response of an even order starts at the bottom of the ripple.
+    // The static gain of an even order is the minimum of the ripple.
     let gain = if order.is_multiple_of(2) {
         10.0_f64.powf(-ripple_db / 20.0)
     } else {
@@ -115,7 +120,7 @@ pub fn chebyshev1(order: usize, ripple_db: f64, cutoff: f64) -> Result<LowPass, 
     Ok(low_pass(order, cutoff, (mu.sinh(), mu.cosh()), gain))
 }
 
-/// Checks what both designs share.
+/// Checks the parameters common to both designs.
 fn check(order: usize, cutoff: f64) -> Result<(), Error> {
     let mut problems = Vec::new();
     if order == 0 || order > LARGEST_ORDER {
@@ -143,13 +148,14 @@ fn check(order: usize, cutoff: f64) -> Result<(), Error> {
     Error::check(problems)
 }
 
-/// The digital filter of the prototype whose poles lie on the ellipse with half axes `axes` and
-/// whose gain at rest is `gain`.
+/// Digital filter from the prototype with poles on an ellipse.
+///
+/// `axes` are its half axes, and `gain` is the static gain.
 fn low_pass(order: usize, cutoff: f64, axes: (f64, f64), gain: f64) -> LowPass {
     let t = (PI * cutoff / 2.0).tan();
     let mut sections = Vec::with_capacity(order.div_ceil(2));
-    // The overall gain makes the response at z = 1 equal to `gain`: per pair |1 - z|²/4, written
-    // with 1 - z = -2 p t/(1 - p t), which loses no digits at low cutoff frequencies.
+    // The overall gain makes the response at z = 1 equal to `gain`. The factor per pair is |1 -
+    // z|²/4, with 1 - z = -2 p t/(1 - p t), which is accurate at low cutoff frequencies.
     let mut product = gain;
     if !order.is_multiple_of(2) {
         let p = -axes.0 * t;

@@ -2,19 +2,18 @@
 
 use std::ops::Range;
 
-/// Central differences per sample of rows of `n` values: those of the samples `range`, row by row.
+/// Central differences per sample of rows of `n` values, for the samples `range`.
 ///
-/// They reach over `reach` samples on either side, 1 or 2, and their error is of the order 2 or 4 in the
-/// step:
+/// With `reach` 1 or 2 samples on either side, the error is of order 2 or 4 in the step:
 ///
 /// ```text
 /// reach 1: q' = (q_1 - q_-1)/2,
 /// reach 2: q' = 2/3 (q_1 - q_-1) - 1/12 (q_2 - q_-2).
 /// ```
 ///
-/// Next to the ends of the run they reach less far, and at the ends themselves they are one-sided. `values`
-/// hold the rows from sample `start` on; number `last` is the run's last one. A central difference has no
-/// phase, so velocities and accelerations stay aligned with torques.
+/// Near the ends of the run the reach is smaller, and at the ends the differences are one-sided.
+/// `values` contains the rows from sample `start` on; `last` is the run's last sample. Central
+/// differences have zero phase, so velocities and accelerations stay aligned with torques.
 pub(crate) fn central_differences(
     values: &[f64],
     start: usize,
@@ -32,7 +31,7 @@ pub(crate) fn central_differences(
             found.extend(rows.map(|(after, before)| (after - before) / step));
         }
     };
-    // Where the differences reach as far as they may, all numbers are one row.
+    // With full reach, all rows are processed as one.
     let first = range.start.max(reach).min(range.end);
     let end = (last + 1).saturating_sub(reach).clamp(first, range.end);
     next_to_the_ends(range.start..first, &mut found);

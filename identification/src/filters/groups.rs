@@ -1,31 +1,32 @@
-//! Groups of the samples from one that is kept to the next one, as sums over the modes of the low-pass.
+//! Groups of samples from one kept sample to the next, as sums over the modes of the low-pass.
 //!
-//! A group of N samples u_k adds to the modes
+//! A group of N samples u_k contributes
 //!
 //! ```text
 //! F_i = Σ p_i^k u_k,   R_i = Σ p_i^(N-1-k) u_k,
 //! X_i' = p_i^N X_i + p_i R_i,   B_i = F_i + p_i^N B_i',   kept value = c u_0 + 2 Re Σ r_i (X_i + B_i),
 //! ```
 //!
-//! with X_i' before and B_i' from the next group on. F and R have the same weights from either end, so both are
-//! told from the sums u_k + u_(N-1-k) and the differences u_k - u_(N-1-k), with the even and the odd parts of the
-//! weights. All signals do that side by side, and no sample is filtered that is not kept.
+//! where X_i is before the group and B_i' after it. F and R have the same weights in opposite
+//! order. Both follow from the sums u_k + u_(N-1-k) and differences u_k - u_(N-1-k), with the even
+//! and odd parts of the weights. All signals are processed in parallel, and no discarded sample is
+//! filtered.
 
 use nalgebra::Complex;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::modes::{Mode, Modes};
 
-/// Modes of the low-pass: half its order.
+/// Number of modes of the low-pass: half its order.
 const MODES: usize = 4;
 
-/// Signals that go side by side on processors with registers for the sums of twice as many.
+/// Vector length from which on registers suffice for two vectors of signals.
 const WIDE: usize = 8;
 
 /// Real and imaginary parts of all modes.
 pub(super) const PARTS: usize = 2 * MODES;
 
-/// What groups of one length do.
+/// Weights for groups of one length.
 #[derive(Debug, PartialEq)]
 pub(super) struct Groups {
     pub(super) length: usize,
@@ -54,7 +55,7 @@ impl Groups {
             std::array::from_fn(|own| 0.5 * (near[own] + sign * far[own]))
         };
         Self {
-            // The sample in the middle of an odd number stands for itself: its sum is not twice its value.
+            // The middle sample of an odd number is its own partner, so it is not doubled.
             even: (0..length.div_ceil(2)).map(|k| part(1.0, k)).collect(),
             odd: (0..length / 2).map(|k| part(-1.0, k)).collect(),
             length,
@@ -63,9 +64,11 @@ impl Groups {
         }
     }
 
-    /// Passes a group forwards: `rows` of `width` signals. Of X, in `before`, becomes that of the next group in
-    /// `after`; `told` gets F, then the kept values as far as they are known. All have the real parts of a mode
-    /// of all signals, then the imaginary ones.
+    /// Runs a group forwards: `rows` of `width` signals.
+    ///
+    /// `before` is X, and `after` receives that of the next group. `told` receives F, then the
+    /// partial kept values. All contain the real parts of a mode for all signals, then the
+    /// imaginary ones.
     pub(super) fn pass(
         &self,
         (rows, width): (&[f64], usize),
@@ -82,8 +85,10 @@ impl Groups {
         });
     }
 
-    /// Passes a group backwards: what `told` has of it, and B' in `behind`, which becomes B; the kept values go to
-    /// `kept` where these are wanted.
+    /// Runs a group backwards.
+    ///
+    /// `told` is its result of the forward pass. `behind` is B' and becomes B. Kept values are
+    /// written to `kept` if requested.
     pub(super) fn pass_backwards(
         &self,
         told: &[f64],
@@ -99,7 +104,7 @@ impl Groups {
     }
 }
 
-/// A group on its way forwards.
+/// Forward pass of a group.
 struct Pass<'a> {
     groups: &'a Groups,
     rows: &'a [f64],
@@ -123,24 +128,24 @@ impl WithSimd for Pass<'_> {
 }
 
 impl Pass<'_> {
-    /// Passes all signals, at least as many as go side by side.
+    /// Processes all signals, at least one vector of them.
     #[inline(always)]
     fn all<S: Simd>(mut self, simd: S) {
         let (lanes, width) = (S::F64_LANES, self.width);
         let mut first = 0;
-        // Where there are registers for that, a weight serves two vectors of signals.
+        // With enough registers, a weight serves two vectors of signals.
         while lanes >= WIDE && first + 2 * lanes <= width {
             self.columns::<S, 2>(simd, first);
             first += 2 * lanes;
         }
         while first < width {
-            // The last signals are passed with some before them once more, to the same result.
+            // The last vector overlaps the one before, with equal results.
             self.columns::<S, 1>(simd, first.min(width - lanes));
             first += lanes;
         }
     }
 
-    /// Passes fewer signals than go side by side.
+    /// Processes fewer signals than a vector has.
     #[inline(always)]
     fn padded<S: Simd>(self, simd: S) {
         let (lanes, width) = (S::F64_LANES, self.width);
@@ -168,7 +173,7 @@ impl Pass<'_> {
         }
     }
 
-    /// Passes `N` vectors of signals, from number `column` on.
+    /// Processes `N` vectors of signals from number `column` on.
     #[inline(always)]
     fn columns<S: Simd, const N: usize>(&mut self, simd: S, column: usize) {
         let groups = self.groups;
@@ -191,8 +196,9 @@ impl Pass<'_> {
         }
     }
 
-    /// What a sample and the one at the same place from the end come to, each by its weights. The sample in the middle
-    /// of an odd number stands for itself.
+    /// Weighted sums of each sample combined with its mirror image.
+    ///
+    /// The middle sample of an odd number is its own partner.
     #[inline(always)]
     fn folded<S: Simd, const N: usize>(
         &self,
@@ -216,7 +222,7 @@ impl Pass<'_> {
         sums
     }
 
-    /// Puts what the sums and differences of a vector of signals tell to its places.
+    /// Stores the results of sums and differences for a vector of signals.
     #[inline(always)]
     fn put<S: Simd>(
         &mut self,
@@ -248,7 +254,7 @@ impl Pass<'_> {
     }
 }
 
-/// Adds samples of `N` vectors of signals, by the weights of all parts, to the sums of these.
+/// Adds samples of `N` vectors of signals, weighted for all parts, to `sums`.
 #[inline(always)]
 fn add<S: Simd, const N: usize>(
     simd: S,
@@ -264,7 +270,7 @@ fn add<S: Simd, const N: usize>(
     }
 }
 
-/// A complex number times others, their real and imaginary parts.
+/// A complex factor times a vector of complex numbers.
 #[inline(always)]
 fn times<S: Simd>(simd: S, factor: Mode, [x, y]: [S::f64s; 2]) -> [S::f64s; 2] {
     let [a, b] = [factor.re, factor.im].map(|part| simd.splat_f64s(part));
@@ -284,19 +290,19 @@ fn vectors<S: Simd, const N: usize>(values: &[f64], first: usize) -> [S::f64s; N
     )
 }
 
-/// Successive numbers.
+/// A vector of successive numbers.
 #[inline(always)]
 fn vector<S: Simd>(values: &[f64], first: usize) -> S::f64s {
     S::as_simd_f64s(&values[first..first + S::F64_LANES]).0[0]
 }
 
-/// The place of successive numbers.
+/// A mutable vector of successive numbers.
 #[inline(always)]
 fn vector_mut<S: Simd>(values: &mut [f64], first: usize) -> &mut S::f64s {
     &mut S::as_mut_simd_f64s(&mut values[first..first + S::F64_LANES]).0[0]
 }
 
-/// A group on its way back.
+/// Backward pass of a group.
 struct Backwards<'a> {
     groups: &'a Groups,
     told: &'a [f64],

@@ -1,12 +1,11 @@
-//! Zero-phase filters, decimation and differentiation, with MATLAB's semantics at the ends of a
-//! signal.
+//! Zero-phase filters, decimation and differentiation, with MATLAB's treatment of signal ends.
 //!
-//! A low-pass is a cascade of second-order sections: at the low cutoff frequencies of a decimation
-//! the expanded polynomials lose digits (2e-8 at a factor of 10, 8e-4 at 50), sections do not.
-//! [`filtfilt`] runs it forwards and backwards, so that no phase is lost between positions,
-//! torques and the columns of the regressor, and the parallel decimation of section 4.1 of the
-//! paper introduces no error into the linear relation (40). Long signals pass block by block
-//! ([`ZeroPhase`], [`Decimation`]), so memory does not grow with them.
+//! A low-pass is a cascade of second-order sections. At the low cutoff frequencies of decimation,
+//! expanded polynomials are inaccurate: the error is 2e-8 at a factor of 10, and 8e-4 at 50.
+//! [`filtfilt`] runs it forwards and backwards, which keeps positions, torques and regressor
+//! columns in phase. The parallel decimation of section 4.1 of the paper then keeps the linear
+//! relation (40) exact. Long signals are processed block by block ([`ZeroPhase`], [`Decimation`]),
+//! in bounded memory.
 
 mod cascade;
 mod decimation;

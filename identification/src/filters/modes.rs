@@ -1,36 +1,36 @@
-//! A low-pass run forwards and backwards, as sums over its modes.
+//! Zero-phase low-pass as sums over its modes.
 //!
-//! With the poles p_i of H, of which one of each conjugate pair is taken, the response of both passes is a sum
-//! of a causal and an anticausal part of each mode,
+//! Take one pole p_i of each conjugate pair of H. The response of both passes is the sum of a
+//! causal and an anticausal part of each mode,
 //!
 //! ```text
 //! H(z) H(1/z) = c + 2 Re Σ r_i (1/(1 - p_i z^-1) + p_i z/(1 - p_i z)),
 //! y[n] = c u[n] + 2 Re Σ r_i (X_i + B_i),   X_i = Σ_(m<n) p_i^(n-m) u[m],   B_i = Σ_(m≥n) p_i^(m-n) u[m].
 //! ```
 //!
-//! The poles of a Chebyshev low-pass lie apart by about its bandwidth, so the sums cancel hardly, however narrow
-//! the band: |r_i| is about 1 - |p_i|. What stands at either end of a signal is known as states of the sections;
-//! what they say about the modes follows from the transforms of the sections' responses at the poles, where
-//! everything is a product of differences of poles.
+//! The poles of a Chebyshev low-pass are separated by about its bandwidth. The sums therefore
+//! hardly cancel for any bandwidth: |r_i| is about 1 - |p_i|. At the ends of a signal, the states
+//! of the sections are known. The modes follow from them by the transforms of the sections'
+//! responses at the poles, which are products of pole differences.
 
 use nalgebra::Complex;
 
 use super::design::{LowPass, Section};
 
-/// A number of a mode.
+/// Complex value of a mode.
 pub(super) type Mode = Complex<f64>;
 
-/// The modes of a low-pass of even order.
+/// Modes of a low-pass of even order.
 #[derive(Debug, PartialEq)]
 pub(super) struct Modes {
     sections: Vec<Section>,
-    /// p_i, a pole of each section.
+    /// One pole p_i of each section.
     pub(super) poles: Vec<Mode>,
     /// r_i.
     pub(super) shares: Vec<Mode>,
     /// c.
     pub(super) direct: f64,
-    /// ρ_i and the constant of the forward pass alone: H(z) = h + 2 Re Σ ρ_i/(1 - p_i z^-1).
+    /// ρ_i and h of the forward pass: H(z) = h + 2 Re Σ ρ_i/(1 - p_i z^-1).
     forward: (Vec<Mode>, f64),
     /// H(1/p_i).
     mirrored: Vec<Mode>,
@@ -42,7 +42,7 @@ impl Modes {
         let pole = |section: &Section| {
             let [_, a, b] = section.a;
             let half = -0.5 * a;
-            // One rounding: what is left of the difference has all of its digits.
+            // One rounding keeps the difference accurate.
             Complex::new(half, (-half).mul_add(half, b).max(0.0).sqrt())
         };
         let poles: Vec<Mode> = sections.iter().map(pole).collect();
@@ -84,7 +84,7 @@ impl Modes {
         }
     }
 
-    /// X_i before a sample, of the states of the sections there: s1 and s2 of each.
+    /// X_i before a sample, from the states s1 and s2 of the sections there.
     pub(super) fn past(&self, states: &[[f64; 2]]) -> Vec<Mode> {
         let of = |p: &Mode| {
             let inverse = p.inv();
@@ -100,7 +100,7 @@ impl Modes {
         self.poles.iter().map(of).collect()
     }
 
-    /// The forward pass over the samples of a signal behind `past`, in place.
+    /// Runs the forward pass over a signal after `past`, in place.
     pub(super) fn pass(&self, past: &[Mode], signal: &mut [f64]) {
         let (shares, direct) = &self.forward;
         let mut modes = past.to_vec();
@@ -116,12 +116,14 @@ impl Modes {
         }
     }
 
-    /// B_i from a sample on, of the states of the backward pass behind the sample and of `past` before it.
+    /// B_i from a sample on.
+    ///
+    /// `states` are those of the backward pass after the sample, and `past` is X_i before it.
     pub(super) fn future(&self, states: &[[f64; 2]], past: &[Mode]) -> Vec<Mode> {
         let behind = self.past(states);
         let all = self.poles.iter().zip(&behind).zip(&self.mirrored);
         all.map(|((p, behind), mirrored)| {
-            // What the forward pass goes on with is no input.
+            // Remove the decay of the forward pass, which is no input.
             let modes = self.poles.iter().zip(past).zip(&self.forward.0);
             let decay = modes.map(|((other, past), share)| {
                 let own = past * share;

@@ -1,13 +1,12 @@
-//! Filtering forwards and backwards, as MATLAB's `filtfilt` does.
+//! Filtering forwards and backwards, equivalent to MATLAB's `filtfilt`.
 //!
 //! The signal is extended at both ends by its odd reflection 2 x_0 - x_k over three times the
-//! filter's order, and each pass starts in the steady state of its first value, so that neither
-//! end rings.
+//! filter's order. Each pass starts in the steady state of its first value, which avoids ringing.
 //!
-//! A long signal passes block by block ([`ZeroPhase`]). The forward pass hands its state on and is
-//! exact. The backward pass of a block starts a while behind the block's end, where the later
-//! samples are not known yet; the transient of that wrong start has died before it reaches the
-//! block. What fits into one block is filtered as a whole.
+//! A long signal is filtered block by block ([`ZeroPhase`]). The forward pass keeps its state and
+//! is exact. The backward pass starts some samples after the block's end with an unknown state.
+//! That transient decays before the block. A signal that fits into one block is filtered as a
+//! whole.
 
 use super::{
     cascade::{Cascade, reflected, settling, started},
@@ -16,17 +15,16 @@ use super::{
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// Part of a transient that is left where a block ends: below the rounding of the signals.
+/// Relative size of the transient at the block's end: below the signals' rounding.
 pub(super) const TRANSIENT: f64 = 1e-15;
 
-/// Rows that are finished at once, at least; twice the overlap where that is more, so that the
-/// backward pass does no more than half its work twice.
+/// Fewest rows finished at once; at least twice the overlap, to limit repeated work.
 const SMALLEST_HOP: usize = 8192;
 
 /// Filters `signal` with zero phase and the squared magnitude of `filter`.
 ///
 /// # Errors
-/// A signal of no more than 3 x order samples.
+/// A signal of at most 3 × order samples.
 pub fn filtfilt(filter: &LowPass, signal: &[f64]) -> Result<Vec<f64>, Error> {
     let mut stream = ZeroPhase::new(filter, 1, signal.len())?;
     stream.hop = signal.len();
@@ -35,20 +33,20 @@ pub fn filtfilt(filter: &LowPass, signal: &[f64]) -> Result<Vec<f64>, Error> {
     Ok(filtered)
 }
 
-/// Zero-phase filtering of several signals side by side, whose samples come in blocks of any size.
+/// Zero-phase filter for several interleaved signals in blocks of any size.
 #[derive(Debug, Clone)]
 pub struct ZeroPhase {
     filter: LowPass,
     /// Number of signals: values per row.
     width: usize,
-    /// Rows that come in all, and rows that have come.
+    /// Total number of rows, and number of rows so far.
     samples: usize,
     taken: usize,
-    /// The last raw rows, as many as the reflection needs.
+    /// Last raw rows, as many as the reflection needs.
     raw: Vec<f64>,
-    /// The forward pass, once enough rows for its reflection are there.
+    /// Forward pass, once its initial reflection is known.
     forward: Option<Cascade>,
-    /// Rows that have passed forwards only.
+    /// Rows after the forward pass only.
     pending: Vec<f64>,
     overlap: usize,
     hop: usize,
@@ -58,7 +56,7 @@ impl ZeroPhase {
     /// A filter for `samples` rows of `width` values.
     ///
     /// # Errors
-    /// No more than 3 x order samples.
+    /// At most 3 × order samples.
     pub fn new(filter: &LowPass, width: usize, samples: usize) -> Result<Self, Error> {
         check_length(filter, samples)?;
         let overlap = settling(filter, TRANSIENT);
@@ -75,8 +73,9 @@ impl ZeroPhase {
         })
     }
 
-    /// Takes rows and appends those that are finished to `filtered`. The rows that complete the
-    /// number announced bring out all that is left; rows beyond it are ignored.
+    /// Adds rows, and appends those that are finished to `filtered`.
+    ///
+    /// The rows that complete the announced number finish all others. Further rows are ignored.
     pub fn push(&mut self, rows: &[f64], filtered: &mut Vec<f64>) {
         let left = (self.samples - self.taken) * self.width;
         let rows = rows.get(..left).unwrap_or(rows);
@@ -85,7 +84,7 @@ impl ZeroPhase {
         let waiting = self.forward.is_none();
         self.raw.extend_from_slice(rows);
         if waiting {
-            // Until the reflection at the start is known, rows only gather.
+            // Wait until the initial reflection is known.
             if self.raw.len() < reach {
                 return;
             }
@@ -103,11 +102,11 @@ impl ZeroPhase {
         }
     }
 
-    /// Passes rows forwards, and backwards whenever enough of them are there.
+    /// Runs rows forwards, and backwards whenever there are enough.
     fn advance(&mut self, mut rows: &[f64], filtered: &mut Vec<f64>) {
         let full = (self.hop + self.overlap) * self.width;
         while !rows.is_empty() {
-            // More rows are to come than there is room for: those far enough behind are done.
+            // The buffer is full and more rows follow: finish the first ones.
             if self.pending.len() == full {
                 self.pass_backwards(self.hop, filtered);
             }
@@ -127,7 +126,7 @@ impl ZeroPhase {
         }
     }
 
-    /// Gives out what the reflection behind the last row allows: all.
+    /// Finishes all rows with the reflection after the last one.
     fn finish(&mut self, filtered: &mut Vec<f64>) {
         let finished = self.pending.len() / self.width;
         let reflection = reflected(self.raw.rchunks_exact(self.width), self.filter.padding());
@@ -136,8 +135,7 @@ impl ZeroPhase {
         self.pending = Vec::new();
     }
 
-    /// Runs backwards over all pending rows and gives out the first `finished` ones, which are
-    /// pending no more.
+    /// Runs backwards over all pending rows, and outputs and removes the first `finished` ones.
     fn pass_backwards(&mut self, finished: usize, filtered: &mut Vec<f64>) {
         let done = finished * self.width;
         let Some(last) = self.pending.rchunks_exact(self.width).next() else {

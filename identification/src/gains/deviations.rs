@@ -1,28 +1,28 @@
-//! Standard deviations of gains and parameters to first order.
+//! Standard deviations of gains and parameters, to first order.
 //!
-//! The estimate is the zero of Σ_t z_t, where the scores z_t = Σ_i ([W V]_itᵀ ρ_it - [0; Ω_i g] ρ_it²/s_i²)/s_i²
-//! of sample t have the mean zero at the true values. With the derivative H = RᵀR - Λ of the sum and its
-//! covariance Z, the estimate has the covariance H^-1 Z H^-1. Z is found from sums over batches of successive
-//! samples, so that correlation of the lines among each other and of neighbours in time is taken in, and
-//! noise of unequal size.
+//! The estimate is the zero of Σ_t z_t. The scores of sample t are z_t = Σ_i ([W V]_itᵀ ρ_it -
+//! [0; Ω_i g] ρ_it²/s_i²)/s_i². They have zero mean at the true values. With the derivative H =
+//! RᵀR - Λ of the sum and its covariance Z, the covariance of the estimate is H^-1 Z H^-1. Z is
+//! estimated from sums over batches of successive samples. It thus allows for correlation between
+//! lines and over time, and for varying noise.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{noise::residual, observation::Equations, selection::Selection, solve::Solution};
 use crate::regression::{factor::Factor, system::Stretch};
 
-/// Batches that are wanted at least.
+/// Fewest batches.
 const FEWEST_BATCHES: usize = 30;
 
-/// How sure a solution is.
+/// Uncertainty of a solution.
 pub(super) struct Deviations {
-    /// Of all values, in their order.
+    /// Standard deviations of all values, in their order.
     pub(super) all: Vec<f64>,
     /// Covariance of the gains.
     pub(super) gains: DMatrix<f64>,
 }
 
-/// The deviations of a solution; none where the data do not tell them.
+/// Uncertainty of a solution; `None` if the data do not determine it.
 pub(super) fn deviations(
     equations: &Equations,
     selection: &Selection,
@@ -46,7 +46,7 @@ pub(super) fn deviations(
     let size = selection.columns.len();
     let own = size - selection.drives;
     let sums = DMatrix::from_columns(&sums);
-    // In the coordinates R [-χ; g], in which H is the identity but for Λ.
+    // In the coordinates R [-χ; g], H is the identity minus the transformed Λ.
     let whitened = solution.triangle.tr_solve_upper_triangular(&sums)?;
     let mut lambda = DMatrix::zeros(size, size);
     for (j, value) in solution.lambda.iter().enumerate() {
@@ -69,14 +69,13 @@ pub(super) fn deviations(
     sound.then_some(Deviations { all, gains })
 }
 
-/// Samples of a batch: about the third root of their number, longer than noise is correlated over after
-/// decimation.
+/// Samples of a batch: about the cube root of their number, longer than the noise's correlation.
 fn batch(samples: usize) -> usize {
     let root = (samples as f64).cbrt().ceil() as usize;
     root.min(samples / FEWEST_BATCHES).max(1)
 }
 
-/// The scores of successive samples, a row each.
+/// Scores of successive samples, one row each.
 fn scores(stretch: &Stretch, selection: &Selection, solution: &Solution) -> DMatrix<f64> {
     let size = selection.columns.len();
     let own = size - selection.drives;

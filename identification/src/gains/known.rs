@@ -1,9 +1,9 @@
-//! What is known: which columns have known parameters, and whether they fix the scale.
+//! Columns of known parameters, and whether they determine the scale.
 //!
-//! Where all parameters are unknown, parameters and gains can be multiplied by one factor. A known
-//! parameter fixes it if its column is no combination of those of unknown ones: else its contribution goes
-//! into an unknown base parameter. The mass of a payload is such a parameter when some runs carry the
-//! payload and others do not; that of a single body of a chain is mostly regrouped into other bodies.
+//! If all parameters are unknown, parameters and gains are determined up to a common factor. A
+//! known parameter fixes it if its column is independent of those of unknown ones. Otherwise its
+//! contribution is absorbed by an unknown base parameter. The mass of a payload is suitable if some
+//! runs carry it and others do not. The mass of a body of a chain is usually regrouped.
 
 use overact::Code;
 use overact::Model;
@@ -18,27 +18,27 @@ use crate::{
     settings::Settings,
 };
 
-/// Names of a sum that are written out.
+/// Largest number of names in a sum.
 const NAMES: usize = 5;
 
-/// A way out that any robot has.
+/// Help that suits any robot.
 const WEIGHED: &str = "weigh a payload, give its mass in [identification.known] and record runs with it and without it";
 
-/// The columns of a model, split into those of known and of unknown parameters.
+/// Columns of a model, split into those of known and of unknown parameters.
 #[derive(Debug)]
 pub(super) struct Split {
     pub(super) columns: ColumnSet,
-    /// Base parameters of the unknown ones.
+    /// Base parameters of the unknown columns.
     pub(super) base: BaseParameters,
-    /// Columns of known parameters and their values (SI units).
+    /// Columns of known parameters, with their values (SI units).
     pub(super) known: Vec<(usize, f64)>,
 }
 
 impl Split {
-    /// The split of a model's columns for these runs.
+    /// Splits a model's columns for these runs.
     ///
     /// # Errors
-    /// Nothing known that fixes the scale, or names that are no parameters.
+    /// No known parameter that fixes the scale, or names that are no parameters.
     pub(super) fn new(model: &dyn Model, runs: &[Log], settings: &Settings) -> Result<Self, Error> {
         let info = model.info();
         if settings.known.is_empty() {
@@ -77,7 +77,7 @@ impl Split {
     }
 }
 
-/// The columns of the known parameters.
+/// Columns of the known parameters.
 fn found(
     model: &dyn Model,
     columns: &ColumnSet,

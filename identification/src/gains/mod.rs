@@ -1,21 +1,23 @@
-//! Global identification of the drives' gains: what torque each drive gives for a unit of its measured
-//! signal, together with the unknown parameters (M. Gautier, S. Briot, *Global identification of joint drive
-//! gains and dynamic parameters of robots*, J. Dynamic Systems, Measurement, and Control 136, 2014; the same
-//! of parallel robots in 2012).
+//! Global identification of drive gains together with the unknown parameters.
 //!
-//! With V having a column for each drive, what its signal contributes to the projected torques, χ the unknown
-//! base parameters and w what known parameters contribute, V g = W χ + w. If w is no combination of the
-//! columns of W, it fixes the scale of g and χ: a payload that was weighed does, when some runs carry it and
-//! some do not. Noise is in V, not in W and w: least squares would be biased to small gains.
+//! A gain is the torque of a drive for each unit of its measured signal (M. Gautier, S. Briot,
+//! *Global identification of joint drive gains and dynamic parameters of robots*, J. Dynamic
+//! Systems, Measurement, and Control 136, 2014; for parallel robots in 2012).
 //!
-//! - `known`: which columns are known, and whether they fix the scale;
-//! - `observation`: the equations of all runs, as R factors, case 1 of redundant robots;
-//! - `selection`: which columns are independent on the data;
-//! - `noise`: the noise of the drives' signals, as the residuals tell it;
+//! Column j of V is the contribution of drive j's signal to the projected torques. With the unknown
+//! base parameters χ and the contribution w of known parameters, V g = W χ + w. If w is independent
+//! of the columns of W, it fixes the scale of g and χ. A weighed payload does if some runs carry it
+//! and some do not. The noise is in V, not in W and w, so least squares would underestimate the
+//! gains.
+//!
+//! - `known`: columns of known parameters;
+//! - `observation`: equations of all runs as R factors; platform projection for redundant robots;
+//! - `selection`: columns that are independent on the data;
+//! - `noise`: noise of the drives' signals, from the residuals;
 //! - `solve`: generalised total least squares with exact columns W and w;
-//! - `deviations`: how sure the gains are;
-//! - `shares`: what their uncertainty does to estimates that are made with them;
-//! - `result`: what is told.
+//! - `deviations`: standard deviations of the gains;
+//! - `shares`: effect of their uncertainty on later estimates;
+//! - `result`: the result.
 
 mod deviations;
 mod known;
@@ -45,14 +47,16 @@ use observation::Observer;
 use selection::{Selection, undetermined};
 use solve::{solve, total_least_squares};
 
-/// A gain that is less than so many deviations from zero is not determined.
+/// Smallest ratio of a determined gain to its standard deviation.
 const DETERMINED: f64 = 5.0;
 
-/// Identifies the gains of all drives from runs of a robot some of whose parameters are known
-/// ([`Settings::known`]). `progress` hears the name of a run, its samples that are done, and of how many.
+/// Identifies the gains of all drives from runs of a robot with some known parameters.
+///
+/// The known ones are [`Settings::known`]. `progress` gets the name of a run, and its numbers of
+/// finished and of all samples.
 ///
 /// # Errors
-/// Settings or runs that can't be used; gains that are not determined, and why.
+/// Settings or runs that are unusable; undetermined gains, with the reason.
 pub fn drive_gains(
     model: &dyn Model,
     runs: &[Log],

@@ -1,19 +1,19 @@
-//! The noise of the drives' signals, as the residuals tell it.
+//! Noise of the drives' signals, estimated from the residuals.
 //!
-//! The residuals of lines i and l have the covariance C_il = Σ_j x_j m_jil, where x_j = g_j² σ_j² is the
-//! variance of the torque of drive j and m_jil the mean of J_ji J_jl. As there are r (r + 1)/2 of these
-//! equations, they tell the n variances of most robots; they are solved by least squares under x_j >= 0,
-//! each equation in units of the lines' deviations.
+//! The residuals of lines i and l have the covariance C_il = Σ_j x_j m_jil. x_j = g_j² σ_j² is the
+//! variance of the torque of drive j, and m_jil the mean of J_ji J_jl. These r (r + 1)/2 equations
+//! determine the n variances of most robots. They are solved by nonnegative least squares, each
+//! equation scaled by the lines' standard deviations.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{observation::Equations, selection::Selection};
 use crate::regression::factor::Factor;
 
-/// Sweeps over the unknowns of least squares without negative ones.
+/// Sweeps of nonnegative least squares.
 const SWEEPS: usize = 500;
 
-/// A line's deviation is at least this part of its root mean square: below is rounding.
+/// Smallest standard deviation of a line, by its root mean square.
 const LEAST: f64 = 1e-9;
 
 /// Variances of the drives' torques.
@@ -21,17 +21,17 @@ const LEAST: f64 = 1e-9;
 pub(super) struct Noise {
     /// x_j (N m or N, squared).
     torques: DVector<f64>,
-    /// Row i has m_ji for all drives j.
+    /// Row i contains m_jii for all drives j.
     moments: DMatrix<f64>,
 }
 
 impl Noise {
-    /// The noise that the residuals of a solution [-χ; g] tell.
+    /// Noise from the residuals of a solution [-χ; g].
     pub(super) fn new(equations: &Equations, selection: &Selection, values: &[f64]) -> Self {
         let covariance = covariance(equations, selection, values);
         let (r, n) = (covariance.nrows(), selection.drives);
         let pairs: Vec<(usize, usize)> = (0..r).flat_map(|i| (i..r).map(move |l| (i, l))).collect();
-        // Every pair of different lines stands twice in the covariance.
+        // Every pair of different lines occurs twice in the covariance.
         let weight = |i: usize, l: usize| {
             let scale = (covariance[(i, i)] * covariance[(l, l)]).sqrt();
             let double = if i == l { 1.0 } else { f64::sqrt(2.0) };
@@ -51,7 +51,7 @@ impl Noise {
         }
     }
 
-    /// The diagonals of Ω_i for gains g: σ_j² m_ji.
+    /// Diagonals of Ω_i for gains g: σ_j² m_jii.
     pub(super) fn omegas(&self, gains: &[f64]) -> Vec<DVector<f64>> {
         let of = |i: usize| {
             let each = gains.iter().enumerate();
@@ -61,7 +61,7 @@ impl Noise {
         (0..self.moments.nrows()).map(of).collect()
     }
 
-    /// The variances s_i² of the lines.
+    /// Variances s_i² of the lines.
     pub(super) fn variances(&self, lines: &[Factor]) -> Vec<f64> {
         let own = &self.moments * &self.torques;
         let least = lines.iter().map(|line| {
@@ -76,7 +76,7 @@ impl Noise {
     }
 }
 
-/// The covariance of the lines' residuals: variances from all equations, correlations from stretches.
+/// Covariance of the lines' residuals: variances from all equations, correlations from stretches.
 fn covariance(equations: &Equations, selection: &Selection, values: &[f64]) -> DMatrix<f64> {
     let lines = &equations.system.lines;
     let r = lines.len();
@@ -117,7 +117,7 @@ pub(super) fn residual(rows: &DMatrix<f64>, columns: &[usize], values: &[f64]) -
     residual
 }
 
-/// The x >= 0 of the smallest ||A x - b||, coordinate by coordinate.
+/// Minimises ||A x - b|| for x >= 0 by coordinate descent.
 fn not_negative(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
     let normal = matrix.tr_mul(matrix);
     let target = matrix.tr_mul(right);
@@ -150,7 +150,7 @@ mod tests {
         let matrix = DMatrix::from_row_slice(3, 2, &[1.0, 1.0, 1.0, 2.0, 0.0, 1.0]);
         let free = not_negative(&matrix, &(&matrix * DVector::from_vec(vec![2.0, 3.0])));
         assert!((free - DVector::from_vec(vec![2.0, 3.0])).amax() < 1e-9);
-        // Without the bound the second one would be negative: the first one alone is (4 + 2)/2.
+        // Without the bound the second one would be negative; the first one alone is (4 + 2)/2.
         let bound = not_negative(&matrix, &DVector::from_vec(vec![4.0, 2.0, -3.0]));
         assert!((bound - DVector::from_vec(vec![3.0, 0.0])).amax() < 1e-9);
     }

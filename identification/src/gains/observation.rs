@@ -1,9 +1,8 @@
-//! One pass over the runs: the decimated equations [W V | w] of all lines, and how the drives' noise gets
-//! into them.
+//! One pass over the runs: decimated equations [W V | w] of all lines, and moments for the noise.
 //!
-//! Line i of a sample is Σ_j (J_p^inv)ᵀ_ij τ_j g_j = W_i χ + w_i. Columns j of V are filtered and decimated
-//! as the torques are. As Γ¹ = (J_p^inv)ᵀ τ, noise of variance σ_j² of τ_j has in lines i and l the
-//! covariance σ_j² J_ji J_jl; the means of J_ji J_jl over all samples are the `moments`.
+//! Line i of a sample is Σ_j (J_p^inv)ᵀ_ij τ_j g_j = W_i χ + w_i. The columns of V are filtered and
+//! decimated like torques. As Γ¹ = (J_p^inv)ᵀ τ, noise of τ_j with variance σ_j² has the covariance
+//! σ_j² J_ji J_jl in lines i and l. The `moments` are the means of J_ji J_jl over all samples.
 
 use nalgebra::DMatrix;
 use overact::{Function, Model};
@@ -23,19 +22,19 @@ use crate::{
     settings::Settings,
 };
 
-/// Values of all runs that are kept as successive equations (64 MB).
+/// Largest number of values kept as successive equations, over all runs (64 MB).
 const LARGEST_STRETCHES: usize = 1 << 23;
 
-/// The equations of all runs.
+/// Equations of all runs.
 #[derive(Debug)]
 pub(super) struct Equations {
-    /// Columns: those of unknown base parameters, then one for each actuator; on the right what is known.
+    /// Columns of unknown base parameters, then one for each actuator; w on the right.
     pub(super) system: System,
-    /// For each actuator j the means of J_ji J_jl, r x r.
+    /// For each actuator j, the means of J_ji J_jl, r × r.
     pub(super) moments: Vec<DMatrix<f64>>,
 }
 
-/// What is observed, the same for all runs.
+/// Options of the observation, the same for all runs.
 pub(super) struct Observer<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) split: &'a Split,
@@ -49,7 +48,9 @@ struct Chunk {
 }
 
 impl Observer<'_> {
-    /// The equations of all runs. `progress` hears the run, the samples done, and of how many.
+    /// Equations of all runs.
+    ///
+    /// `progress` gets the run, and its numbers of finished and of all samples.
     ///
     /// # Errors
     /// The problems of all runs together.
@@ -88,7 +89,7 @@ impl Observer<'_> {
         self.split.base.columns.len() + self.model.info().sizes.actuators
     }
 
-    /// Adds the equations of a run, and tells how many samples they were made from.
+    /// Adds the equations of a run, and returns the number of its samples.
     fn run(
         &self,
         (number, budget): (usize, usize),
@@ -187,8 +188,9 @@ impl Observer<'_> {
         })
     }
 
-    /// Rows of a line: its columns of unknown parameters, what each drive's signal adds to it, and on the
-    /// right the sum of what is known, from rows of `width` columns of unknown and known parameters.
+    /// Rows of a line: columns of unknown parameters, contributions of the drives, and w.
+    ///
+    /// `rows` have `width` columns of unknown and known parameters.
     fn joined<'v>(
         &self,
         rows: &[f64],

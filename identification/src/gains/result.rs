@@ -1,32 +1,32 @@
-//! Gains of the drives, as they are printed and as they are serialised.
+//! Gains of the drives, for printing and serialisation.
 
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-/// Deviations by which a gain differs from that of the description before it is worth a warning.
+/// Smallest significant difference from the description, in standard deviations.
 const DEVIATIONS: f64 = 3.0;
 
-/// Part by which a gain differs from that of the description before it is worth a warning.
+/// Smallest relevant relative difference from the description.
 const PART: f64 = 0.02;
 
-/// The gain of one drive.
+/// Gain of one drive.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DriveGain {
     /// Name of the actuator.
     pub actuator: String,
-    /// Torque (N m) or force (N) of the drive for each unit of it in the log: the gain relative to that of
-    /// the description, by which the log was made.
+    /// Gain relative to the described one: actual torque (N m) or force (N) by the logged one.
     pub factor: f64,
     /// Standard deviation of the factor.
     pub deviation: f64,
-    /// The factor by total least squares, for comparison: they take all columns for equally wrong. None
-    /// where they have no solution.
+    /// Factor by ordinary total least squares, for comparison; `None` without a solution.
+    ///
+    /// It assumes equal errors in all columns.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub total_least_squares: Option<f64>,
 }
 
 impl DriveGain {
-    /// Whether the description's gain is wrong: by more than three deviations and more than 2 %.
+    /// Whether the described gain is wrong: by more than three σ and more than 2 %.
     #[must_use]
     pub fn is_wrong(&self) -> bool {
         let difference = (self.factor - 1.0).abs();
@@ -34,26 +34,27 @@ impl DriveGain {
     }
 }
 
-/// A base parameter that was estimated together with the gains.
+/// A base parameter estimated together with the gains.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointParameter {
-    /// Its name: the kept parameter's, with the suffix `R` where others are regrouped into it. What is known
-    /// is not among them.
+    /// Name of the kept parameter, with the suffix `R` if others are regrouped into it.
+    ///
+    /// Known parameters are not included.
     pub name: String,
     /// SI unit.
     pub unit: String,
     /// Estimate.
     pub value: f64,
-    /// Standard deviation, which the gains' own is part of.
+    /// Standard deviation, including the uncertainty of the gains.
     pub deviation: f64,
 }
 
-/// What an identification of the gains found.
+/// Result of an identification of gains.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Gains {
-    /// One for each actuator.
+    /// One gain for each actuator.
     pub drives: Vec<DriveGain>,
-    /// The base parameters that were unknown.
+    /// Unknown base parameters.
     pub parameters: Vec<JointParameter>,
     /// Number of equations.
     pub equations: usize,
@@ -63,7 +64,7 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// The covariance of the parts δg/g of themselves by which the gains are off.
+    /// Covariance of the relative errors δg/g of the gains.
     pub(super) fn relative_covariance(&self) -> DMatrix<f64> {
         let factors = self.factors();
         DMatrix::from_fn(factors.len(), factors.len(), |i, j| {
@@ -71,13 +72,13 @@ impl Gains {
         })
     }
 
-    /// By what the torques of each actuator are to be multiplied.
+    /// Factors for the torques of each actuator.
     #[must_use]
     pub fn factors(&self) -> Vec<f64> {
         self.drives.iter().map(|one| one.factor).collect()
     }
 
-    /// What is said of gains that the description has wrong.
+    /// Warnings about wrong gains in the description.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let wrong: Vec<&DriveGain> = self.drives.iter().filter(|one| one.is_wrong()).collect();
@@ -97,7 +98,7 @@ impl Gains {
             .collect()
     }
 
-    /// The factor by which all drives of several are wrong alike, as far as their deviations tell.
+    /// Common factor of all gains, if they are equally wrong within their standard deviations.
     fn common_factor(&self) -> Option<f64> {
         let all = &self.drives;
         if all.len() < 2 || !all.iter().all(DriveGain::is_wrong) {
@@ -109,7 +110,7 @@ impl Gains {
     }
 }
 
-/// Deviations within which gains are alike.
+/// Largest difference of equal gains, in standard deviations.
 const ALIKE: f64 = 3.0;
 
 #[cfg(test)]

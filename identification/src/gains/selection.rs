@@ -1,4 +1,4 @@
-//! Which columns of the equations are solved for, and what is said where those of drives can't be.
+//! Choice of independent columns, and errors for drives without one.
 
 use super::observation::Equations;
 use crate::{
@@ -10,11 +10,10 @@ use crate::{
 };
 use overact::Code;
 
-/// Columns of the drives whose part outside of all others is below this part of their norm can't be told
-/// from them.
+/// Smallest independent part of a drive's column, by its norm.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// Which columns of the equations are solved for.
+/// Columns of the equations that are solved for.
 #[derive(Debug, Clone)]
 pub(super) struct Selection {
     /// Columns that are independent on the data: those of parameters, then those of all drives.
@@ -24,7 +23,7 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// The columns that are independent on the data; `actuators` are the names of the drives.
+    /// Selects the columns that are independent on the data; `actuators` names the drives.
     ///
     /// # Errors
     /// Drives whose columns depend on others.
@@ -52,20 +51,19 @@ impl Selection {
         }
     }
 
-    /// Number of parameters beside the gains.
+    /// Number of parameters, without the gains.
     pub(super) fn parameters(&self) -> usize {
         self.columns.len() - self.drives
     }
 }
 
-/// The root mean square of a line's rows, in units of which lines can be compared before their noise is
-/// known; 1 where there is nothing.
+/// Root mean square of a line's rows, to scale lines before their noise is known; 1 if zero.
 pub(super) fn size(line: &Factor) -> f64 {
     let norm = line.matrix().norm() / (line.equations().max(1) as f64).sqrt();
     if norm > 0.0 { norm } else { 1.0 }
 }
 
-/// The problem of gains that the data do not tell, and why.
+/// The problem of gains that the data do not determine, and why.
 pub(super) fn undetermined(actuators: &[String], why: &str) -> Error {
     let message = format!(
         "gains are not determined: the data do not tell {} of {}{why}",

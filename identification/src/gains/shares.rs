@@ -1,13 +1,13 @@
-//! What the uncertainty of gains does to estimates that are made with them.
+//! Effect of the gains' uncertainty on estimates that use them.
 //!
-//! Torques that have been multiplied by gains g are off by the part δ_j = δg_j/g_j of themselves, drive by
-//! drive. Least squares is linear in the torques: with P_j the estimate from the torque of drive j alone, with
-//! the same columns and weights, the estimate is off by P δ, and C being the covariance of δ its covariance
-//! grows by P C Pᵀ.
+//! Torques multiplied by gains g have the relative errors δ_j = δg_j/g_j. Least squares is linear
+//! in the torques. P_j is the estimate from the torque of drive j alone, with the same columns and
+//! weights. The error of the estimate is then P δ. With the covariance C of δ, its covariance
+//! increases by P C Pᵀ.
 //!
-//! The gains come from what the columns of the unknown parameters leave of the torques, the estimate from what
-//! they explain, so noise that is white makes both err independently. What was known exactly is estimated once
-//! more and is an exception: of it this covariance is too large.
+//! The gains depend on the part of the torques that the unknown columns do not explain, and the
+//! estimate on the part that they explain. White noise thus makes both errors independent.
+//! Parameters that were known exactly are an exception: this covariance is too large for them.
 
 use overact::Function;
 
@@ -31,10 +31,10 @@ use crate::{
     },
 };
 
-/// Goes through runs whose torques have been multiplied by gains.
+/// Reads runs whose torques have been multiplied by gains.
 ///
 /// # Errors
-/// As [`Motions::next`]; the runs have been gone through before.
+/// As [`Motions::next`]; the runs have been read before.
 pub(crate) fn drive_shares(
     observer: &Observer<'_>,
     runs: &[Log],
@@ -99,7 +99,7 @@ fn run(
     Ok(())
 }
 
-/// Rows of a line of a projection with what each of `n` drives contributes in the place of Y.
+/// Rows of a line of a projection, with the contributions of `n` drives instead of Y.
 fn joined(chunk: &Chunk, drives: &[f64], (projection, line): (usize, usize), n: usize) -> Vec<f64> {
     let rows = &chunk.lines[projection][line];
     let width = rows.len() / (drives.len() / n).max(1);
@@ -111,8 +111,9 @@ fn joined(chunk: &Chunk, drives: &[f64], (projection, line): (usize, usize), n: 
     all
 }
 
-/// What each drive contributes to the lines of all projections, samples x n each, in up to [`BLOCK`] samples
-/// from number `first` of the motion on.
+/// Contributions of the drives to the lines of all projections, samples × n each.
+///
+/// For up to [`BLOCK`] samples from number `first` of the motion on.
 fn drives(
     observer: &Observer<'_>,
     motion: &Motion,

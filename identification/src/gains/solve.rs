@@ -1,23 +1,24 @@
-//! Gains and unknown parameters from the equations W χ - V g + w = 0, of which V alone has noise.
+//! Gains and unknown parameters from the equations W χ - V g + w = 0 with noise in V only.
 //!
-//! The residual of line i is ρ_i = V_i g - W_i χ - w_i. With noise of variance σ_j² in the signal of drive
-//! j, independent of the others, its variance is s_i² = gᵀ Ω_i g with Ω_i = diag(σ_j² m_ji), m_ji the mean of
-//! J_ji². Least squares would make V g small to have little noise in it; the estimate minimises
+//! The residual of line i is ρ_i = V_i g - W_i χ - w_i. Let the noise of drive j's signal have the
+//! variance σ_j², independent of other drives. Then the variance of ρ_i is s_i² = gᵀ Ω_i g with
+//! Ω_i = diag(σ_j² m_ji), where m_ji is the mean of J_ji². Least squares would reduce V g to reduce
+//! its noise. The estimate instead minimises
 //!
 //! ```text
-//! Σ_i ||ρ_i||² / (gᵀ Ω_i g),
+//! Σ_i ||ρ_i||² / (gᵀ Ω_i g).
 //! ```
 //!
-//! total least squares of which the columns W and w are exact (S. Van Huffel, J. Vandewalle, *The Total
-//! Least Squares Problem*, 1991, chapter 3 and the generalised form of chapter 10), and the most likely one
-//! of a serial robot under normal noise. The derivatives vanish where
+//! This is total least squares with exact columns W and w (S. Van Huffel, J. Vandewalle, *The Total
+//! Least Squares Problem*, 1991, chapter 3 and the generalised form of chapter 10). For a serial
+//! robot with normal noise, it is the maximum likelihood estimate. The derivatives vanish for
 //!
 //! ```text
 //! [W V]ᵀ S^-1 ([W V] [-χ; g] - w) = [0; Λ g],    Λ = Σ_i ||ρ_i||²/s_i⁴ Ω_i,
 //! ```
 //!
-//! S having the variances of the lines. With the R factor of [W V | w], R_11 being that of W, the gains
-//! follow from (R_22ᵀ R_22 - Λ) g = R_22ᵀ c_2 by repetition.
+//! with the line variances S. With the R factor of [W V | w] and its block R_11 of W, the gains
+//! follow iteratively from (R_22ᵀ R_22 - Λ) g = R_22ᵀ c_2.
 
 use nalgebra::{DMatrix, DVector};
 use overact::Code;
@@ -32,19 +33,19 @@ use crate::{
     regression::factor::Factor,
 };
 
-/// Most repetitions for a given noise of the drives.
+/// Largest number of iterations for a given noise of the drives.
 const INNER: usize = 200;
 
-/// Most repetitions with the noise found anew.
+/// Largest number of updates of the noise.
 const OUTER: usize = 30;
 
-/// Relative change of the gains at which the repetition ends.
+/// Relative change of the gains at which the iteration ends.
 const TOLERANCE: f64 = 1e-9;
 
 /// Relative change above which it has not converged.
 const CONVERGED: f64 = 1e-5;
 
-/// Gains and parameters, and what their deviations need.
+/// Gains and parameters, with data for their standard deviations.
 #[derive(Debug, Clone)]
 pub(super) struct Solution {
     /// [-χ; g] in the order of the selection.
@@ -53,14 +54,14 @@ pub(super) struct Solution {
     pub(super) triangle: DMatrix<f64>,
     /// Variance s_i² of each line.
     pub(super) variances: Vec<f64>,
-    /// The diagonal of Ω_i for each line.
+    /// Diagonal of Ω_i for each line.
     pub(super) omegas: Vec<DVector<f64>>,
-    /// The diagonal of Λ.
+    /// Diagonal of Λ.
     pub(super) lambda: DVector<f64>,
 }
 
 impl Solution {
-    /// The gains.
+    /// Gains.
     pub(super) fn gains(&self) -> &[f64] {
         let (_, gains) = self.values.split_at(self.values.len() - self.lambda.len());
         gains
@@ -89,7 +90,7 @@ pub(super) fn solve(equations: &Equations, selection: &Selection) -> Result<Solu
             break;
         }
     }
-    // What changes no more than this from one noise to the next is told to as many digits.
+    // Accept a small change between two noise updates.
     let noise = Noise::new(equations, selection, &solution.values);
     let next = with_noise(lines, selection, &noise, solution.clone())?;
     match change(solution.gains(), next.gains()) < CONVERGED {
@@ -107,7 +108,7 @@ fn not_converged() -> Error {
     .into()
 }
 
-/// Solves the equations for a given noise of the drives, from a solution for another one on.
+/// Solves the equations for a given noise, starting from another solution.
 fn with_noise(
     lines: &[Factor],
     selection: &Selection,
@@ -133,7 +134,7 @@ fn with_noise(
     Ok(solution)
 }
 
-/// The largest relative change of gains.
+/// Largest relative change of gains; NaN if any is NaN.
 fn change(before: &[f64], after: &[f64]) -> f64 {
     let each = before.iter().zip(after);
     each.map(|(a, b)| ((b - a) / b).abs())
@@ -146,7 +147,7 @@ fn change(before: &[f64], after: &[f64]) -> f64 {
         })
 }
 
-/// The solution for given variances of the lines and Λ.
+/// Solution for given variances of the lines and Λ.
 fn weighted(
     lines: &[Factor],
     selection: &Selection,
@@ -160,7 +161,7 @@ fn weighted(
     let corner = triangle.view((p, p), (n, n));
     let rest = reduced.rhs.rows(p, n).clone_owned();
     let normal = corner.tr_mul(&corner) - DMatrix::from_diagonal(lambda);
-    // Scaled to a diagonal of ones, so that units play no part in its digits.
+    // Scaled to a unit diagonal, to be independent of units.
     let scales = DVector::from_fn(n, |j, _| 1.0 / normal[(j, j)].abs().sqrt());
     let scaled = DMatrix::from_fn(n, n, |i, j| normal[(i, j)] * scales[i] * scales[j]);
     let right = corner.tr_mul(&rest).component_mul(&scales);
@@ -185,8 +186,10 @@ fn weighted(
     })
 }
 
-/// The gains by plain total least squares, for comparison: the vector of the smallest singular value of the
-/// weighted [W V w], all of whose columns are taken for equally wrong. None where it has no part in w.
+/// Gains by ordinary total least squares, for comparison.
+///
+/// They follow from the smallest singular vector of the weighted [W V w], with equal errors in all
+/// columns. `None` if that vector has no component of w.
 pub(super) fn total_least_squares(
     equations: &Equations,
     selection: &Selection,

@@ -1,5 +1,6 @@
-//! The independent columns among those of the robot as it is described and those of fields along the axes,
-//! and how the column of each parameter is made of them in any gravity.
+//! Independent columns of the described robot and of fields along the axes.
+//!
+//! The column of each parameter is a combination of them in any gravity.
 
 use overact::Code;
 use std::collections::BTreeMap;
@@ -20,32 +21,32 @@ use crate::{
     settings::Settings,
 };
 
-/// Rows of random states beyond the number of columns, by these.
+/// Ratio of the rows of random states to the number of columns.
 const STATES: usize = 2;
 
-/// Columns of one model that are among the independent ones.
+/// Selected columns of one model.
 #[derive(Debug)]
 pub(super) struct Picked {
     pub(super) columns: ColumnSet,
-    /// Which of them, in ascending order.
+    /// Their indices, in ascending order.
     pub(super) picked: Vec<usize>,
 }
 
-/// The independent columns B, those of the described robot first, then those of the fields along x, y and z.
+/// Independent columns B: those of the described robot, then of the fields along x, y and z.
 #[derive(Debug)]
 pub(super) struct Extended {
-    /// Of the robot in the gravity that is described.
+    /// Columns of the robot in the described gravity.
     pub(super) own: Picked,
-    /// Of the fields.
+    /// Columns of the fields.
     pub(super) along: [Picked; 3],
-    /// Names of the parameters that have an effect in some gravity.
+    /// Names of the parameters with an effect in any gravity.
     pub(super) names: Vec<String>,
     /// B on random states.
     pub(super) random: DMatrix<f64>,
     described: Vector3<f64>,
-    /// Columns of all parameters as combinations of B, in the gravity that is described.
+    /// Columns of all parameters as combinations of B, in the described gravity.
     at_described: DMatrix<f64>,
-    /// The same of the fields.
+    /// The same for the fields.
     of_fields: [DMatrix<f64>; 3],
 }
 
@@ -53,7 +54,7 @@ impl Extended {
     /// The columns of a robot for these runs.
     ///
     /// # Errors
-    /// A model that can't be evaluated near its home pose.
+    /// A model that cannot be evaluated near its home pose.
     pub(super) fn new(
         model: &dyn Model,
         fields: &Fields<'_>,
@@ -73,7 +74,7 @@ impl Extended {
         let along = fields.along.map(of_field);
         let [x, y, z] = along;
         let sets = [own, x?, y?, z?];
-        // Which column of which set each column of the wide regressor is.
+        // Set and column of each column of the wide regressor.
         let mut places: Vec<(usize, usize)> = Vec::new();
         for (set, columns) in sets.iter().enumerate() {
             let bears_weight = |column: &usize| {
@@ -90,7 +91,7 @@ impl Extended {
             let is_load = sets[set].indices(true).contains(&column);
             is_load.then(|| sets[set].as_slice()[column].load.as_ref())
         };
-        // Columns of payloads are told from all others by runs without them.
+        // Unloaded runs separate the columns of payloads from all others.
         let of = |own: Option<Option<&String>>| -> Vec<usize> {
             let all = 0..places.len();
             all.filter(|place| load(place) == own).collect()
@@ -158,12 +159,12 @@ impl Extended {
         self.at_described.nrows()
     }
 
-    /// The columns of all parameters in this gravity, as combinations of B.
+    /// Columns of all parameters in this gravity, as combinations of B.
     pub(super) fn at(&self, gravity: &Vector3<f64>) -> DMatrix<f64> {
         self.at_described.clone() + self.in_field(&(gravity - self.described))
     }
 
-    /// What a field adds to the columns of all parameters, as combinations of B.
+    /// Contribution of a field to the columns of all parameters, as combinations of B.
     pub(super) fn in_field(&self, field: &Vector3<f64>) -> DMatrix<f64> {
         let each = self.of_fields.iter().zip(field.iter());
         let zero = DMatrix::zeros(self.len(), self.names.len());
@@ -171,7 +172,7 @@ impl Extended {
     }
 }
 
-/// Of each column of the wide regressor that is not zero the rows and values of its combination of B.
+/// For each non-zero column of the wide regressor, the rows and values of its combination of B.
 fn combinations(kept: &[usize], found: &[Elimination]) -> BTreeMap<usize, Vec<(usize, f64)>> {
     let row: BTreeMap<usize, usize> = kept
         .iter()
@@ -191,8 +192,9 @@ fn combinations(kept: &[usize], found: &[Elimination]) -> BTreeMap<usize, Vec<(u
     all
 }
 
-/// All columns on random states, those of the fields at rest. The rows of a state are scaled by their largest
-/// entry, since relations between columns hold row by row.
+/// All columns on random states; those of the fields at rest.
+///
+/// The rows of a state are divided by their largest entry, since column relations hold row by row.
 fn random_regressor(
     model: &dyn Model,
     fields: &Fields<'_>,

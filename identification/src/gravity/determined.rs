@@ -1,8 +1,8 @@
-//! In which directions gravity can be turned so that the torques tell, whatever the data.
+//! Directions in which torques determine a rotation of gravity, for any data.
 //!
-//! A turn is told if what it does to the torques is more than other parameters could do. It is tried close to
-//! the described direction, but beside it, since columns that vanish in this direction alone take in a part of
-//! what a turn does as soon as there is one.
+//! A rotation is determined if its effect on the torques exceeds what other parameters can explain.
+//! It is tested near the described direction, but not exactly there. Columns that vanish only in
+//! that direction absorb part of the effect of any finite rotation.
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
@@ -11,17 +11,18 @@ use rand_pcg::Pcg64;
 use super::{columns::Extended, frame::Frame};
 use crate::regression::elimination::eliminate;
 
-/// How far beside the described direction turns are tried, rad.
+/// Angle between the tested and the described direction, rad.
 const BESIDE: f64 = 1e-6;
 
-/// Part of what gravity does that a turn has to do beyond all parameters, larger than what [`BESIDE`] makes of
-/// effects of second order.
+/// Smallest independent effect of a rotation, relative to gravity.
+///
+/// It is larger than second-order effects of [`BESIDE`].
 const PART: f64 = 1e-4;
 
-/// A column whose part outside the others is below this part of its norm is dependent.
+/// A column is dependent if its part outside the others is below this fraction of its norm.
 const TOLERANCE: f64 = 1e-9;
 
-/// The turns that torques can tell, as orthogonal combinations of those of a frame: all of them, some or none.
+/// Rotations that torques determine, as orthogonal combinations of the frame's: all, some or none.
 pub(super) fn free_turns(extended: &Extended, frame: &Frame, seed: u64) -> Vec<DVector<f64>> {
     let angles = DVector::from_vec(vec![0.6 * BESIDE, 0.8 * BESIDE]);
     let frame = frame.turned(&angles);
@@ -55,12 +56,12 @@ pub(super) fn free_turns(extended: &Extended, frame: &Frame, seed: u64) -> Vec<D
     let told = |at: &usize| parts.eigenvalues[*at] > PART * PART;
     let told: Vec<usize> = (0..parts.eigenvalues.len()).filter(told).collect();
     if told.len() == frame.turns.len() {
-        // All of them are told: those of the frame are as good as any.
+        // All are determined, so the frame's own directions suffice.
         let unit =
             |at: usize| DVector::from_fn(told.len(), |row, _| f64::from(u8::from(row == at)));
         return (0..told.len()).map(unit).collect();
     }
-    // What is as small as effects of second order are is none.
+    // Components of the size of second-order effects are set to zero.
     let vector = |at: usize| {
         let own = parts.eigenvectors.column(at);
         let own = own.map(|part| if part.abs() < PART { 0.0 } else { part });

@@ -1,9 +1,10 @@
-//! How sure the angles are.
+//! Covariance of the angles.
 //!
-//! The estimate is the zero of the sum of the scores z_t = Σ_i J_itᵀ ρ_it / s_i², J being what the angles do to the
-//! torques beyond what parameters make up for, so that its covariance is (JᵀJ)^-1 Z (JᵀJ)^-1. Z is found from sums
-//! of the scores over batches of successive samples, so that correlation of the lines among each other and of
-//! neighbours in time is taken in; where there are too few of them, residuals are taken for white.
+//! The estimate is the zero of the sum of the scores z_t = Σ_i J_itᵀ ρ_it/s_i². J is the effect of
+//! the angles on the torques that parameters cannot explain. The covariance of the angles is
+//! (JᵀJ)^-1 Z (JᵀJ)^-1. Z is estimated from score sums over batches of successive samples. It thus
+//! allows for correlation between lines and over time. With too few batches, residuals are assumed
+//! white.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,17 +14,17 @@ use crate::regression::{
     system::{Stretch, System},
 };
 
-/// Batches that are wanted at least.
+/// Fewest batches.
 const FEWEST_BATCHES: usize = 30;
 
-/// The covariance of the angles of a solution, rad²; none where the data do not tell them.
+/// Covariance of the angles of a solution, rad²; `None` if the data do not determine it.
 pub(super) fn covariance(system: &System, solution: &Solution) -> Option<DMatrix<f64>> {
     let inverse = solution.normal.clone().try_inverse()?;
     let white = &inverse * solution.deviation.powi(2);
     let samples = |stretch: &Stretch| stretch.lines.first().map_or(0, DMatrix::nrows);
     let kept: usize = system.stretches.iter().map(samples).sum();
     let all = system.lines.iter().map(Factor::equations).max()?;
-    // About the third root of the samples, longer than noise is correlated over after decimation.
+    // About the cube root of the samples, longer than the noise's correlation after decimation.
     let root = (kept as f64).cbrt().ceil() as usize;
     let batch = root.min(kept / FEWEST_BATCHES).max(1);
     let mut sums: Vec<DVector<f64>> = Vec::new();
@@ -44,7 +45,7 @@ pub(super) fn covariance(system: &System, solution: &Solution) -> Option<DMatrix
     let equations: usize = system.lines.iter().map(Factor::equations).sum();
     let freedom = equations as f64 / equations.saturating_sub(unknowns).max(1) as f64;
     let own = &moved * moved.transpose() * (freedom * all as f64 / kept.max(1) as f64);
-    // Noise that hangs together makes them less sure, never surer.
+    // Autocorrelated noise can only increase the covariance.
     Some(if own.trace() > white.trace() {
         own
     } else {
@@ -52,7 +53,7 @@ pub(super) fn covariance(system: &System, solution: &Solution) -> Option<DMatrix
     })
 }
 
-/// The scores of successive samples, a row each.
+/// Scores of successive samples, one row each.
 fn scores(stretch: &Stretch, solution: &Solution) -> DMatrix<f64> {
     let samples = stretch.lines.first().map_or(0, DMatrix::nrows);
     let explained = &solution.columns * &solution.values;

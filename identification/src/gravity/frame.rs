@@ -1,21 +1,23 @@
-//! A direction in space and the directions in which it can be turned.
+//! Direction of gravity, and the directions of its rotations.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Gravity: how large it is, where it points, and orthogonal directions in which it can be turned.
+/// Gravity: magnitude, direction, and orthogonal directions of rotation.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Frame {
     /// |g|, m/s².
     pub(super) size: f64,
-    /// Where it points.
+    /// Direction.
     pub(super) direction: Vector3<f64>,
-    /// Unit vectors across it, two or one.
+    /// Unit vectors orthogonal to it, one or two.
     pub(super) turns: Vec<Vector3<f64>>,
 }
 
 impl Frame {
-    /// The frame of a vector; none of one that is zero. The first turn is towards the axis that the vector is
-    /// farthest from, x of gravity along z, the second across both, y then.
+    /// Frame of a vector; `None` for zero.
+    ///
+    /// The first rotation is towards the axis most orthogonal to the vector: x for gravity along z.
+    /// The second one is orthogonal to both, then y.
     pub(super) fn new(gravity: Vector3<f64>) -> Option<Self> {
         let size = gravity.norm();
         if !(size > 0.0 && size.is_finite()) {
@@ -37,7 +39,7 @@ impl Frame {
         self.direction * self.size
     }
 
-    /// The frame that can only be turned in these directions, combinations of its own.
+    /// The frame with only these rotations, combinations of its own.
     pub(super) fn confined(&self, turns: &[DVector<f64>]) -> Self {
         let combined = |one: &DVector<f64>| {
             let each = one.iter().zip(&self.turns);
@@ -49,7 +51,7 @@ impl Frame {
         }
     }
 
-    /// The frame turned by angles (rad) in its directions, which are taken along the great circle.
+    /// The frame rotated by angles (rad) in its directions, along a great circle.
     pub(super) fn turned(&self, angles: &DVector<f64>) -> Self {
         let angle = angles.norm();
         if angle == 0.0 {
@@ -70,7 +72,7 @@ impl Frame {
         }
     }
 
-    /// What a change of the angles does to the vector, 3 x turns.
+    /// Derivative of the vector with respect to the angles, 3 × rotations.
     pub(super) fn derivative(&self) -> DMatrix<f64> {
         DMatrix::from_fn(3, self.turns.len(), |axis, turn| {
             self.size * self.turns[turn][axis]
@@ -98,7 +100,7 @@ mod tests {
                 assert!((a.dot(b) - f64::from(u8::from(i == j))).abs() < 1e-15);
             }
         }
-        // Its derivative is that of the way which the vector takes.
+        // Its derivative equals that of the path.
         let step = DVector::from_vec(vec![2e-7, -3e-7]);
         let moved = turned.turned(&step).gravity() - turned.gravity();
         assert!((turned.derivative() * step - moved).norm() < 1e-11);

@@ -1,25 +1,26 @@
-//! The direction of gravity, identified together with the parameters: where a base stands off the vertical.
+//! Identification of the direction of gravity together with the parameters, for a tilted base.
 //!
-//! With W_x, W_y, W_z the columns that a field of 1 m/s² along an axis of the base's frame gives at rest, and
-//! W_0 those of the robot as it is described, in gravity g_0,
+//! W_x, W_y, W_z are the columns at rest in a field of 1 m/s² along an axis of the base frame. W_0
+//! are those of the described robot in gravity g_0. Then
 //!
 //! ```text
 //! τ = (W_0 + Σ_k (g_k - g_0k) W_k) χ,    |g| = |g_0|.
 //! ```
 //!
-//! Every column is a combination of the independent ones among W_0, W_x, W_y and W_z, so one pass over the
-//! runs gives R factors of these, and all that follows works on the factors. For a given direction the
-//! parameters follow linearly: a separable least-squares problem in two angles (G. Golub, V. Pereyra 1973), solved
-//! by Gauss and Newton's steps of the projected residual (L. Kaufman 1975), with damping.
+//! Every column is a combination of the independent ones among W_0, W_x, W_y and W_z. One pass over
+//! the runs gives their R factors, and all further steps use the factors. For a given direction,
+//! the parameters follow linearly. This is a separable least-squares problem in two angles (G.
+//! Golub, V. Pereyra 1973). Damped Gauss-Newton steps of the projected residual solve it (L.
+//! Kaufman 1975).
 //!
-//! - `columns`: the independent columns, and how those of all parameters are made of them;
-//! - `observation`: the equations of all runs, as R factors;
-//! - `frame`: a direction and how it turns;
-//! - `solve`: the direction;
-//! - `determined`: in which directions it can be turned so that the torques tell;
-//! - `deviations`: how sure it is;
-//! - `shares`: what its uncertainty does to parameters;
-//! - `result`: what is told.
+//! - `columns`: independent columns, and combinations for all parameters;
+//! - `observation`: equations of all runs as R factors;
+//! - `frame`: a direction and its rotations;
+//! - `solve`: estimation of the direction;
+//! - `determined`: rotations that the torques determine;
+//! - `deviations`: covariance of the angles;
+//! - `shares`: effect of their uncertainty on parameters;
+//! - `result`: the result.
 
 mod columns;
 mod determined;
@@ -49,23 +50,25 @@ use observation::Observer;
 use shares::Turned;
 use solve::solve;
 
-/// Smallest deviation of an angle at which runs are said not to determine it, rad.
+/// Standard deviation of an angle from which on it is undetermined, rad.
 const UNDETERMINED: f64 = 0.2;
 
-/// A field of gravity in which a robot is described, and models of it in other ones.
+/// Described gravity, and models in other fields.
 #[derive(Clone, Copy)]
 pub struct Fields<'a> {
-    /// The acceleration of gravity that the model has, m/s², in the base's frame.
+    /// Acceleration of gravity of the model, m/s², in the base frame.
     pub described: [f64; 3],
-    /// The robot in fields of 1 m/s² along x, y and z of the base's frame.
+    /// The robot in fields of 1 m/s² along x, y and z of the base frame.
     pub along: [&'a dyn Model; 3],
 }
 
-/// Identifies the direction of gravity from runs of a robot whose description says how large it is and about
-/// where it points. `progress` hears the name of a run, its samples that are done, and of how many.
+/// Identifies the direction of gravity from runs of a robot.
+///
+/// The description gives its magnitude and approximate direction. `progress` gets the name of a
+/// run, and its numbers of finished and of all samples.
 ///
 /// # Errors
-/// Settings or runs that can't be used; a direction that is not determined, and why.
+/// Settings or runs that are unusable; an undetermined direction, with the reason.
 pub fn gravity_direction(
     model: &dyn Model,
     fields: &Fields<'_>,

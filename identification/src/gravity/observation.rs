@@ -1,4 +1,4 @@
-//! One pass over the runs: the decimated equations in the independent columns, for each projection.
+//! One pass over the runs: decimated equations in the independent columns, for each projection.
 
 use rayon::prelude::*;
 
@@ -25,10 +25,10 @@ use crate::{
     settings::Settings,
 };
 
-/// Values of all runs that are kept as successive equations (64 MB).
+/// Largest number of values kept as successive equations, over all runs (64 MB).
 const LARGEST_STRETCHES: usize = 1 << 23;
 
-/// What is observed, the same for all runs.
+/// Options of the observation, the same for all runs.
 pub(super) struct Observer<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) fields: &'a Fields<'a>,
@@ -36,11 +36,11 @@ pub(super) struct Observer<'a> {
     pub(super) settings: &'a Settings,
 }
 
-/// Rows of the columns of all fields in some samples: for each projection and line samples x columns.
+/// Rows of the field columns: for each projection and line, samples × columns.
 type FieldRows = Vec<Vec<Vec<f64>>>;
 
 impl Observer<'_> {
-    /// The equations of all runs for each projection, or why it has none.
+    /// Equations of all runs for each projection, or the reason why it has none.
     ///
     /// # Errors
     /// The problems of all runs together.
@@ -137,7 +137,7 @@ impl Observer<'_> {
         Ok(())
     }
 
-    /// The columns of the fields in up to [`BLOCK`] samples from number `first` of the motion on.
+    /// Field columns of up to [`BLOCK`] samples from number `first` of the motion on.
     fn field_rows(
         &self,
         observer: &observation::Observer<'_>,
@@ -192,7 +192,7 @@ impl Observer<'_> {
     }
 }
 
-/// Rows of a line of a projection with the columns of the fields between its own and Y.
+/// Rows of a line of a projection, with the field columns before Y.
 fn joined(chunk: &Chunk, fields: &[f64], (projection, line): (usize, usize)) -> Vec<f64> {
     let rows = &chunk.lines[projection][line];
     let samples = chunk.samples();

@@ -1,4 +1,4 @@
-//! The direction of gravity, as it is printed and as it is serialised.
+//! Direction of gravity, for printing and serialisation.
 
 use nalgebra::{DMatrix, Vector3};
 use serde::Serialize;
@@ -6,18 +6,18 @@ use serde::Serialize;
 use super::{frame::Frame, shares::Turned};
 use crate::regression::shares::Shares;
 
-/// Square of a normal quantity of one and of two dimensions that is exceeded in one case out of twenty.
+/// 95 % quantiles of chi-squared with one and with two degrees of freedom.
 const SIGNIFICANT: [f64; 2] = [3.841, 5.991];
 
-/// Decimals with which a direction is told and used, m/s²: far below any deviation.
+/// Rounding factor of a direction, m/s²: far below any standard deviation.
 const DECIMALS: f64 = 1e9;
 
-/// What an identification of the direction of gravity found.
+/// Result of an identification of the direction of gravity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GravityDirection {
-    /// The acceleration of gravity of the description, m/s², in the base's frame.
+    /// Described acceleration of gravity, m/s², in the base frame.
     pub described: [f64; 3],
-    /// As it was found, equally large.
+    /// Estimated acceleration, of equal magnitude.
     pub estimated: [f64; 3],
     /// Standard deviations of its components, m/s².
     pub deviations: [f64; 3],
@@ -25,11 +25,13 @@ pub struct GravityDirection {
     pub tilt: f64,
     /// Standard deviation of this angle, rad.
     pub tilt_deviation: f64,
-    /// Whether the angle is more than noise makes of none in nineteen cases out of twenty. If not, everything
-    /// else was identified with gravity as it is described.
+    /// Whether the angle is significant at the 5 % level.
+    ///
+    /// Otherwise everything else is identified with the described gravity.
     pub significant: bool,
-    /// A unit vector about which gravity can turn without any torque telling; the component of the direction
-    /// that it concerns is the described one.
+    /// Axis of rotations of gravity that no torque shows, as a unit vector.
+    ///
+    /// The corresponding component of the direction is the described one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub undetermined_about: Option<[f64; 3]>,
     /// Covariance of the angles, rad².
@@ -55,7 +57,7 @@ impl GravityDirection {
             .cross(&frame.direction)
             .norm()
             .atan2(from.dot(&frame.direction));
-        // The way back, in the angles of the frame.
+        // Direction back to the described gravity, in the frame's angles.
         let back = from - frame.direction * from.dot(&frame.direction);
         let each = frame.turns.iter().map(|turn| turn.dot(&back));
         let back = nalgebra::DVector::from_iterator(frame.turns.len(), each);
@@ -85,7 +87,7 @@ impl GravityDirection {
         }
     }
 
-    /// The gravity with which everything else is identified.
+    /// Gravity for the identification of everything else.
     #[must_use]
     pub const fn used(&self) -> [f64; 3] {
         if self.significant {
@@ -95,12 +97,12 @@ impl GravityDirection {
         }
     }
 
-    /// What its uncertainty does to base parameters that keep the standard parameters of these names.
+    /// Effect of its uncertainty on base parameters that keep the standard parameters `names`.
     pub(crate) fn shares(&self, names: &[&str]) -> Shares {
         self.turned.shares(names, &self.covariance)
     }
 
-    /// What the user should know.
+    /// Warnings to the user.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let [x, y, z] = self.estimated.map(|one| (one * 1e6).round() / 1e6);

@@ -1,4 +1,4 @@
-//! What the uncertainty of the direction does to parameters that are estimated in it.
+//! Effect of the uncertain direction of gravity on parameters.
 
 use std::fmt;
 
@@ -10,16 +10,15 @@ use crate::{
     regression::{factor::Factor, shares::Shares, system::System},
 };
 
-/// The columns of all parameters in the direction that was found, what its angles do to the inputs, and the
-/// equations of each projection.
+/// Columns and angle derivatives in the estimated direction, and equations of each projection.
 #[derive(Clone, PartialEq)]
 pub(super) struct Turned {
     names: Vec<String>,
-    /// The columns as combinations of the independent ones.
+    /// Columns as combinations of the independent ones.
     columns: DMatrix<f64>,
-    /// What the angles do, as such combinations.
+    /// Derivatives with respect to the angles, as such combinations.
     slopes: DMatrix<f64>,
-    /// R factors of the lines of each projection; none where it has no equations.
+    /// R factors of the lines of each projection; empty without equations.
     projections: Vec<Vec<Factor>>,
 }
 
@@ -47,7 +46,7 @@ impl Turned {
         }
     }
 
-    /// The shares of the angles, of this covariance, in estimates of parameters with these names.
+    /// Effect of angles with this covariance on estimates of the parameters `names`.
     pub(super) fn shares(&self, names: &[&str], covariance: &DMatrix<f64>) -> Shares {
         let rows = self.columns.nrows();
         let column = |name: &&str| {
@@ -56,7 +55,7 @@ impl Turned {
         };
         let own = names.iter().map(column);
         let slopes = self.slopes.column_iter().map(Into::into);
-        // The last quantity takes the place of Y.
+        // The last column replaces Y.
         let mut all: Vec<DVector<f64>> = own.chain(slopes).collect();
         let last = all.pop().unwrap_or_else(|| DVector::zeros(rows));
         let coefficients = match all.is_empty() {

@@ -1,4 +1,4 @@
-//! The direction of gravity of the smallest weighted residual.
+//! Direction of gravity with the smallest weighted residual.
 
 use nalgebra::{DMatrix, DVector};
 use overact::Code;
@@ -15,61 +15,61 @@ use crate::{
     settings::Settings,
 };
 
-/// Most repetitions with the weights found anew.
+/// Largest number of updates of the weights.
 const OUTER: usize = 20;
 
-/// Most steps with given weights.
+/// Largest number of steps for given weights.
 const INNER: usize = 60;
 
-/// Change of the direction at which repetitions end, rad: far below any deviation.
+/// Change of the direction at which the iteration ends, rad: far below any standard deviation.
 const TOLERANCE: f64 = 1e-10;
 
-/// Change above which they have not converged, rad.
+/// Change above which it has not converged, rad.
 const CONVERGED: f64 = 1e-6;
 
 /// Largest step, rad.
 const LARGEST_STEP: f64 = 0.3;
 
-/// Damping, as a part of the diagonal, at which no step is better.
+/// Relative damping of the diagonal at which the search ends.
 const LARGEST_DAMPING: f64 = 1e9;
 
-/// A direction and what belongs to it.
+/// A direction with its estimate.
 #[derive(Debug, Clone)]
 pub(super) struct Solution {
     pub(super) frame: Frame,
-    /// The columns of the parameters that are estimated, as combinations of the independent ones.
+    /// Columns of the estimated parameters, as combinations of the independent ones.
     pub(super) columns: DMatrix<f64>,
-    /// Their estimates.
+    /// Estimates.
     pub(super) values: DVector<f64>,
-    /// What the angles do to the inputs, as combinations of the independent columns.
+    /// Derivatives of the inputs with respect to the angles, as combinations of columns.
     pub(super) slopes: DMatrix<f64>,
-    /// The same less what the parameters make up for.
+    /// The part of these derivatives that parameters cannot explain.
     pub(super) free: DMatrix<f64>,
-    /// JᵀJ of the projected slopes.
+    /// JᵀJ of the projected derivatives.
     pub(super) normal: DMatrix<f64>,
     /// Weight of each line.
     pub(super) weights: Vec<f64>,
-    /// Deviation of the weighted residual.
+    /// Standard deviation of the weighted residual.
     pub(super) deviation: f64,
 }
 
-/// A direction with the parameters that explain the inputs best.
+/// A direction with its best parameters.
 struct Fit {
     values: DVector<f64>,
     columns: DMatrix<f64>,
     slopes: DMatrix<f64>,
     free: DMatrix<f64>,
-    /// Square of the residual that is left, but for what no column explains.
+    /// Squared residual, without the part that no column explains.
     square: f64,
-    /// JᵀJ and Jᵀ ρ of the projected slopes J.
+    /// JᵀJ and Jᵀ ρ of the projected derivatives J.
     normal: DMatrix<f64>,
     right: DVector<f64>,
 }
 
-/// The direction that explains a system best, from a frame on and in its turns.
+/// Direction with the best fit, starting from a frame and restricted to its rotations.
 ///
 /// # Errors
-/// Data that do not determine the parameters, or steps that do not end.
+/// Data that do not determine the parameters, or steps that do not converge.
 pub(super) fn solve(
     extended: &Extended,
     system: &System,
@@ -114,7 +114,7 @@ pub(super) fn solve(
     })
 }
 
-/// The parameters that are independent where gravity is turned a little.
+/// Parameters that are independent if gravity is slightly rotated.
 fn base(extended: &Extended, frame: &Frame) -> Vec<usize> {
     let angles = DVector::from_fn(frame.turns.len(), |turn, _| 0.1 + 0.05 * turn as f64);
     let turned = extended.at(&frame.turned(&angles).gravity());
@@ -122,7 +122,7 @@ fn base(extended: &Extended, frame: &Frame) -> Vec<usize> {
     eliminate(&(&extended.random * turned), &all, 1e-9).kept
 }
 
-/// The weights of the lines and the deviation of the residual, as the estimate of the parameters has them.
+/// Weights of the lines and standard deviation of the residual, from the parameter estimate.
 fn weighted(
     extended: &Extended,
     system: &System,
@@ -139,7 +139,7 @@ fn weighted(
     Ok((estimation.weights, estimation.residual_deviation))
 }
 
-/// The best direction for given weights.
+/// Best direction for given weights.
 fn with_weights(
     extended: &Extended,
     whole: (&DMatrix<f64>, &DVector<f64>),
@@ -174,7 +174,7 @@ fn with_weights(
     frame
 }
 
-/// The best parameters for a direction, of the weighted R factor and right-hand side of all columns.
+/// Best parameters for a direction, from the weighted R factor and right-hand side.
 fn fitted(
     extended: &Extended,
     (triangle, rhs): (&DMatrix<f64>, &DVector<f64>),

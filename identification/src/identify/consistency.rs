@@ -1,4 +1,4 @@
-//! The physically consistent estimates of all projections.
+//! Physically consistent estimates of all projections.
 
 use rayon::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::{
     result::{Estimate, Stage},
 };
 
-/// The consistent estimate of each projection, with its number, and the models that have none.
+/// Consistent estimate of each projection, with its number, and models without one.
 pub(super) fn consistent_all(
     prepared: &Prepared,
     estimates: &[(usize, Estimate)],

@@ -1,4 +1,4 @@
-//! Predictions of all estimates against the runs that they are not made from.
+//! Predictions of the validation runs by all estimates.
 
 use overact::Model;
 
@@ -15,11 +15,11 @@ use crate::{
     validation::{Candidate, Validation, validate},
 };
 
-/// What the runs of the cross-validation tell.
+/// Results on the validation runs.
 #[derive(Default)]
 pub(super) struct HeldOut {
     pub(super) validations: Vec<CrossValidation>,
-    /// The number of the projection of each.
+    /// Number of the projection of each result.
     pub(super) owners: Vec<usize>,
     pub(super) motions: Vec<RunFigures>,
     pub(super) watched: Vec<Watched>,
@@ -32,13 +32,13 @@ pub(super) struct Predictor {
     pub(super) projection: usize,
     pub(super) model: ModelKind,
     pub(super) stage: Stage,
-    /// Places among the base parameters, and values.
+    /// Indices among the base parameters, and values.
     pub(super) columns: Vec<usize>,
     pub(super) values: Vec<f64>,
 }
 
 impl Predictor {
-    /// The parameters of an estimate.
+    /// Parameters of an estimate.
     pub(super) fn of_estimate((projection, estimate): &(usize, Estimate)) -> Self {
         Self {
             projection: *projection,
@@ -57,7 +57,7 @@ impl Predictor {
         }
     }
 
-    /// The base parameters of a consistent estimate.
+    /// Base parameters of a consistent estimate.
     pub(super) fn of_consistent((projection, own): &(usize, Consistent)) -> Self {
         Self {
             projection: *projection,
@@ -69,7 +69,7 @@ impl Predictor {
     }
 }
 
-/// Compares the runs of the cross-validation with all predictions.
+/// Compares the validation runs with all predictions.
 pub(super) fn cross_validate(
     model: &dyn Model,
     prepared: &Prepared,
@@ -114,7 +114,7 @@ pub(super) fn cross_validate(
 }
 
 impl HeldOut {
-    /// Adds what a run tells of an estimate.
+    /// Adds the result of an estimate on a run.
     fn add(&mut self, own: &Predictor, payload: bool, validation: &Result<Validation, Error>) {
         match validation {
             Ok(validation) => {

@@ -1,4 +1,4 @@
-//! Base, recommended and essential estimates of one projection, with what is to be said about them.
+//! Base, recommended and essential estimates of one projection, with warnings.
 
 use overact::Code;
 use std::collections::BTreeMap;
@@ -27,33 +27,33 @@ use crate::{
     settings::Settings,
 };
 
-/// A partition whose condition exceeds this is likely to spoil case 2.
+/// Condition number of a partition above which the actuator projection is unreliable.
 const LARGEST_PARTITION_CONDITION: f64 = 30.0;
 
-/// A relative error above this means that the model does not explain the data.
+/// Relative residual above which the model does not explain the data.
 const LARGEST_RELATIVE_ERROR_PERCENT: f64 = 50.0;
 
-/// The estimates of one projection.
+/// Estimates of one projection.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Outcome {
-    /// All base parameters.
+    /// Base parameters.
     pub base: Estimate,
-    /// The fewest that the data do not refute.
+    /// Recommended parameters.
     pub recommended: Estimate,
     /// The essential parameters.
     pub essential: Estimate,
-    /// All base parameters by ordinary least squares, where the others are by weighted ones.
+    /// Base parameters by ordinary least squares, if the others are weighted.
     pub ordinary: Option<Estimate>,
-    /// All base parameters by instruments, where there are some.
+    /// Base parameters by instrumental variables, if there are instruments.
     pub instrumental: Option<Estimate>,
-    /// Whether errors of the regressor spoil the estimates.
+    /// Effect of regressor errors on the estimates.
     pub errors_in_regressor: ErrorsInRegressor,
-    /// What the user should know.
+    /// Warnings to the user.
     pub warnings: Vec<String>,
 }
 
-/// Estimates base and essential parameters of one of the prepared projections.
+/// Estimates base, recommended and essential parameters of one of the prepared projections.
 ///
 /// # Errors
 /// A projection that is singular on a run, or data that determine no parameter.
@@ -145,7 +145,7 @@ pub(super) fn estimate_all(
         .collect()
 }
 
-/// True values of the base parameters by place, where they are known.
+/// Known true values of the base parameters, by index.
 fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BTreeMap<usize, f64> {
     let Some(values) = true_values else {
         return BTreeMap::new();
@@ -158,7 +158,7 @@ fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BT
         .collect()
 }
 
-/// What all estimates of a projection share.
+/// Data that all estimates of a projection share.
 struct Context<'a> {
     prepared: &'a Prepared,
     projection: usize,
@@ -170,7 +170,7 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Joins an estimation to names, true values and the way to it.
+    /// Combines an estimation with names, true values and the elimination path.
     fn estimate(
         &self,
         stage: Stage,
@@ -203,8 +203,7 @@ impl Context<'_> {
         }
     }
 
-    /// The base parameters by ordinary least squares, where the settings ask for weighted ones and there is more
-    /// than one line to weight.
+    /// Base parameters by ordinary least squares, if weighting is on and there are several lines.
     fn by_ordinary(
         &self,
         (selected, names): (&[usize], &[String]),
@@ -238,7 +237,7 @@ impl Context<'_> {
         }))
     }
 
-    /// The estimate by instruments, where there are some, and what it says of that by least squares.
+    /// Instrumental-variable estimate, if possible, and its comparison with least squares.
     fn with_instruments(
         &self,
         (selected, names): (&[usize], &[String]),
@@ -271,7 +270,7 @@ impl Context<'_> {
         let honest = self.intervals.deviations();
         let told = told.compared((self.system, selected), (base, &honest), &found, &named);
         let estimation = found.estimation.clone();
-        // Instruments move the estimate little; what gains do to it is taken from least squares.
+        // Both estimates are close, so the effect of gains is that on least squares.
         let more = covariance_before(self.prepared, self.projection, (selected, &base.weights));
         let own = found.intervals.clone();
         let own = own.map(|own| own.widened(more.as_ref()));
@@ -293,8 +292,9 @@ impl Context<'_> {
         (Some(estimate), told)
     }
 
-    /// Deviations under correlated residuals, white ones where these are not known, with the part that is
-    /// the gains'.
+    /// Standard deviations for correlated residuals, or white ones if unknown.
+    ///
+    /// They include the uncertainty of previous identifications, such as gains.
     fn correlated(
         &self,
         estimation: &Estimation,
@@ -314,8 +314,11 @@ impl Context<'_> {
         each.map(|(own, more)| (own * own + more).sqrt()).collect()
     }
 
-    /// Deviations without successive equations: white ones, and of all base parameters those of the intervals where
-    /// these are larger. Intervals of smaller models are those of the base parameters all the same.
+    /// Standard deviations without successive equations: white ones, or larger ones of the
+    /// intervals.
+    ///
+    /// The latter apply to the full base model only; intervals of smaller models are those of the
+    /// base model anyway.
     fn without_noise(&self, estimation: &Estimation, selected: &[usize]) -> Vec<f64> {
         let white = estimation.standard_deviations.iter();
         if !self.system.stretches.is_empty() || selected.len() < self.intervals.deviations().len() {
@@ -338,7 +341,7 @@ impl Context<'_> {
         standard.map_or("", |column| column.unit)
     }
 
-    /// Joins estimates, names and true values.
+    /// Combines estimates, names and true values.
     fn parameters(
         &self,
         (estimation, intervals): (&Estimation, &Intervals),
@@ -375,7 +378,7 @@ impl Context<'_> {
     }
 }
 
-/// What the uncertainty of what was identified before adds to the covariance of an estimate, where there is any.
+/// Covariance from the uncertainty of previous identifications, if there is any.
 fn covariance_before(
     prepared: &Prepared,
     projection: usize,
@@ -384,7 +387,7 @@ fn covariance_before(
     prepared.shares.as_ref()?.covariance(projection, estimate)
 }
 
-/// The base parameters that the data can tell apart, with their names; the others are warned of.
+/// Base parameters that the data separate, with their names; warns of the others.
 fn on_data(
     prepared: &Prepared,
     system: &System,
@@ -425,7 +428,7 @@ fn on_data(
     Ok((found.kept, names))
 }
 
-/// What is said of data without a motion, or of which every motion was left out.
+/// The problem of data without motion, or with all motion excluded.
 fn nothing_moves(prepared: &Prepared, system: &System) -> Problem {
     let still = prepared.left_out();
     let left: usize = system.lines.iter().map(Factor::equations).sum();
@@ -443,7 +446,7 @@ fn nothing_moves(prepared: &Prepared, system: &System) -> Problem {
     .help("lower `standstill_velocity` of [identification], or check the unit of the positions, `position_scale` of [data]")
 }
 
-/// What is wrong with a system or its estimate.
+/// Warnings about a system or its estimate.
 fn quality_warnings(system: &System, base: &Estimation) -> Vec<String> {
     let label = system.projection.model().case();
     let mut warnings = Vec::new();

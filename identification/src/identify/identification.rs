@@ -1,12 +1,15 @@
-//! The result of an identification, as it is printed and as it is serialised: the names of the
-//! fields are the keys of the document.
+//! Result of an identification, for printing and serialisation.
 //!
-//! A report finds here: parameters with both standard deviations ([`ParameterEstimate`](crate::ParameterEstimate)), the path of
-//! the elimination and its stop ([`Estimate::removals`], [`Estimate::stop`]), conditioning
-//! ([`Estimate::partition`]), Table 3 ([`CrossValidation`], [`TorqueComparison`](crate::TorqueComparison)), Table 4
-//! ([`Identification::tracking`], filled by others), checks and the verdicts that follow from them, and in
-//! [`Identification::figures`] all that is plotted, in reduced resolution (see
-//! [`Figures`](super::figures::Figures); it is left out of the document, and serialises by itself).
+//! The field names are the keys of the document. A report uses these parts:
+//!
+//! - parameters with both standard deviations: [`ParameterEstimate`](crate::ParameterEstimate);
+//! - path and stop of the elimination: [`Estimate::removals`], [`Estimate::stop`];
+//! - conditioning: [`Estimate::partition`];
+//! - Table 3: [`CrossValidation`], [`TorqueComparison`](crate::TorqueComparison);
+//! - Table 4: [`Identification::tracking`], filled by others;
+//! - checks and verdicts;
+//! - plots in reduced resolution: [`Identification::figures`], serialised separately (see
+//!   [`Figures`](super::figures::Figures)).
 
 use std::collections::BTreeMap;
 
@@ -33,81 +36,85 @@ use crate::{
 
 use super::{figures::Figures, tracking::TrackingError};
 
-/// Everything that an identification found.
+/// Result of an identification.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Identification {
     /// Name of the robot.
     pub robot: String,
-    /// The runs identified from.
+    /// Training runs.
     pub runs: Vec<RunSummary>,
-    /// The base parameters and what is regrouped into them.
+    /// Base parameters and their regroupings.
     pub base_parameters: Vec<BaseParameter>,
     /// Standard parameters that have no effect on the model.
     pub without_effect: Vec<String>,
-    /// The estimates: for each model base, recommended and essential, all by least squares; then those
-    /// of the base parameters by instruments, where there are some.
+    /// Estimates: for each model base, recommended and essential parameters by least squares.
+    ///
+    /// Then follow base parameters by ordinary least squares and by instrumental variables, if
+    /// available.
     pub estimates: Vec<Estimate>,
-    /// For each model the standard parameters that a robot can have and that explain the data best.
+    /// Physically consistent parameters with the best fit, for each model.
     pub consistent: Vec<Consistent>,
-    /// Every estimate on every run that was not identified from.
+    /// Every estimate on every validation run.
     pub cross_validation: Vec<CrossValidation>,
-    /// What the user should know before trusting the numbers.
+    /// Warnings before using the result.
     pub warnings: Vec<String>,
-    /// What was checked; the words of those that found something stand among the warnings, too.
+    /// All checks; failed ones are also among the warnings.
     pub checks: Vec<Check>,
-    /// What the result rests on, since no data can show it.
+    /// Assumptions that these data cannot test.
     pub assumptions: Vec<String>,
-    /// Faults that spoil parameters in a size that these data would not have shown: of each kind the worst.
+    /// Detection limits: for each kind of fault the most harmful undetectable one.
     pub unseen: Vec<String>,
-    /// What may be done with the estimates, and why: one for each case.
+    /// Verdicts: whether the estimates may be used, and why, one for each model.
     pub verdicts: Vec<Verdict>,
-    /// The thresholds of the second opinion and of the conditioning.
+    /// Thresholds of the elimination and the conditioning.
     pub thresholds: Thresholds,
-    /// Encoder offsets and lengths with which everything was estimated, where they were calibrated from
-    /// the runs.
+    /// Calibrated encoder offsets and lengths, if they were estimated from the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
-    /// The direction of gravity, where it was identified from the runs.
+    /// Direction of gravity, if it was identified from the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gravity: Option<GravityDirection>,
-    /// Gains of the drives, relative to those of the description, by which all torques were multiplied, where
-    /// they were identified from the runs.
+    /// Gains of the drives relative to the described ones, if they were identified from the runs.
+    ///
+    /// All torques were multiplied by them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gains: Vec<DriveGain>,
-    /// The base parameters that were estimated together with the gains. Their deviations have a part that is
-    /// the gains', as have `correlated_standard_deviation` and `interval_95` of the other estimates;
-    /// `standard_deviation` of these holds for the gains as they were found.
+    /// Base parameters estimated together with the gains.
+    ///
+    /// Their standard deviations include the uncertainty of the gains. So do
+    /// `correlated_standard_deviation` and `interval_95` of the other estimates, unlike
+    /// `standard_deviation`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gain_parameters: Vec<JointParameter>,
-    /// Base estimates of the drives' parameters in front of their gears, where motors are described.
+    /// Motor-side parameters of the drives, if motors are described.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub motors: Vec<MotorParameter>,
-    /// The base estimate of the first model in the base parameters that functions like `inverse_dynamics_base`
-    /// take, in their order. They may be other sums than those that are estimated, of the same names, where the
-    /// functions' columns are chosen for the fewest operations.
+    /// First model's base estimate in the parameters of functions like `inverse_dynamics_base`.
+    ///
+    /// They may be other combinations than the estimated ones of the same names, if the functions'
+    /// columns are chosen for the fewest operations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub functions_base: Vec<FunctionParameter>,
-    /// Table 4, where controlled runs were compared.
+    /// Table 4, if controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,
-    /// For each model, whether errors of the regressor spoil it.
+    /// Effect of regressor errors, for each model.
     pub errors_in_regressor: Vec<ErrorsInRegressor>,
     /// The settings used.
     pub settings: Settings,
-    /// What is plotted.
+    /// Data for plots.
     #[serde(skip)]
     pub figures: Figures,
 }
 
 impl Identification {
-    /// The estimates by least squares: for each model base, recommended and essential.
+    /// Least-squares estimates: for each model base, recommended and essential parameters.
     pub fn by_least_squares(&self) -> impl Iterator<Item = &Estimate> {
         let own = |one: &&Estimate| one.estimator == Estimator::LeastSquares;
         self.estimates.iter().filter(own)
     }
 
-    /// What may be done with the result as a whole: the grade of the first case, which takes in all
-    /// actuators.
+    /// Grade of the result as a whole: that of the first model, which includes all actuators.
     #[must_use]
     pub fn grade(&self) -> Grade {
         self.verdicts
@@ -116,18 +123,18 @@ impl Identification {
     }
 }
 
-/// A base parameter: a kept standard parameter and what is regrouped into it.
+/// A base parameter: a kept standard parameter with its regrouping.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BaseParameter {
-    /// Its name, with the suffix `R` where others are regrouped into it.
+    /// Name, with the suffix `R` if others are regrouped into it.
     pub name: String,
     /// Name of the kept parameter.
     pub parameter: String,
     /// SI unit.
     pub unit: String,
-    /// What is added to the kept parameter.
+    /// Terms added to the kept parameter.
     pub regrouping: Vec<Regrouping>,
-    /// Its true value, where that is known.
+    /// True value, if known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_value: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! The instruments of all runs, as the settings ask for them.
+//! Instruments of all runs, according to the settings.
 
 use crate::{
     data::{Log, periods},
@@ -11,22 +11,24 @@ use crate::{
 };
 use overact::Code;
 
-/// What there is of instruments.
+/// Instruments of all runs.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Companions {
-    /// One run of instruments for each run, or none at all.
+    /// A run of instruments for each run, or none at all.
     pub(super) logs: Vec<Log>,
-    /// For instruments from other periods, the repetitions of each run.
+    /// Periods of each run, for instruments from other periods.
     pub(super) runs: Vec<RepeatedRun>,
-    /// For instruments from the simulated robot, how well it reproduces each run.
+    /// Reproduction of each run, for instruments from the simulated robot.
     pub(super) simulated: Vec<SimulatedRun>,
-    /// Why there are none where they are asked for.
+    /// Reason for missing instruments that were requested.
     pub(super) missing: Option<Error>,
 }
 
 impl Companions {
-    /// Those of the runs. A run without instruments has no equations for an estimate by them, so all runs
-    /// have some, or none has.
+    /// Instruments of the runs.
+    ///
+    /// Either all runs have some or none, since a run without instruments has no equations for this
+    /// estimate.
     pub(super) fn new(runs: &[Log], settings: &Settings) -> Self {
         let found = match settings.instruments {
             Instruments::None => Ok(Self::default()),
@@ -39,7 +41,7 @@ impl Companions {
         })
     }
 
-    /// The simulated motion beside all runs.
+    /// Simulated motion of all runs.
     fn simulated(runs: &[Log]) -> Result<Self, Error> {
         let mut found = Self::default();
         for log in runs {
@@ -57,7 +59,7 @@ impl Companions {
         Ok(found)
     }
 
-    /// The other periods of all runs.
+    /// Other periods of all runs.
     fn repeated(runs: &[Log], period: Option<f64>) -> Result<Self, Error> {
         let mut found = Self::default();
         for log in runs {
@@ -70,13 +72,13 @@ impl Companions {
         Ok(found)
     }
 
-    /// What the instruments of a run are, where there are some.
+    /// Instruments of a run, if there are any.
     pub(super) fn of(&self, run: usize) -> Option<&Log> {
         self.logs.get(run)
     }
 }
 
-/// 100 ||τ - τ_measured||/||τ_measured||.
+/// Relative torque error in percent, 100 ||τ - τ_measured||/||τ_measured||.
 fn torque_error(measured: &Log, simulated: &Log) -> Result<f64, Error> {
     let (mut own, mut other) = (measured.reader()?, simulated.reader()?);
     let (mut difference, mut whole) = (0.0, 0.0);

@@ -1,9 +1,9 @@
-//! The whole identification: runs in, parameters with their quality out.
+//! The identification procedure: from runs to parameters with their quality.
 //!
-//! [`identify`] estimates case 1 and case 2 of a redundant robot, or the joint model of one without
-//! redundancy; each in base, recommended and essential parameters. [`study()`] compares case 2 for many
-//! choices of kept actuators. [`prepare`] and [`estimate_projection`] are what both are made of: one
-//! pass over the data for all projections, then the estimates.
+//! [`identify`] estimates the platform and actuator projections of a redundant robot, or the joint
+//! model otherwise, each with base, recommended and essential parameters. [`study()`] compares the
+//! actuator projection for many partitions. Both use [`prepare`], one pass over the data for all
+//! projections, and [`estimate_projection`].
 
 mod consistency;
 mod cross_validation;
@@ -53,7 +53,8 @@ use crate::{
 /// Identifies a robot from the runs of a data set and cross-validates the estimates.
 ///
 /// # Errors
-/// As [`prepare`], or data that determine no parameter. What only harms case 2 is a warning.
+/// As [`prepare`], or data that determine no parameter. Problems of the actuator projection alone
+/// are warnings.
 pub fn identify(
     model: &dyn Model,
     dataset: &Dataset<'_>,
@@ -63,19 +64,21 @@ pub fn identify(
     identify_after(model, dataset, Before::Nothing, settings, progress)
 }
 
-/// What was identified before the parameters are.
+/// Quantities identified before the parameters.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum Before<'a> {
     /// Nothing.
     Nothing,
-    /// Gains of the drives, by which the torques of the runs have been multiplied.
+    /// Gains of the drives; the torques of the runs have been multiplied by them.
     Gains(&'a Gains),
-    /// The direction of gravity that the model has now.
+    /// Direction of gravity; the model already has it.
     Gravity(&'a GravityDirection),
 }
 
-/// [`identify`] with what was identified before: deviations and intervals have the part that is its.
+/// [`identify`] after a previous identification.
+///
+/// Standard deviations and intervals include its uncertainty.
 ///
 /// # Errors
 /// As [`identify`].
@@ -87,7 +90,7 @@ pub fn identify_after(
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
     let info = model.info();
-    // A cross-validation run that can't be used is better known before the long work.
+    // Report unusable validation runs before the long computation.
     check_runs(model, dataset.validation, settings)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let mut prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
@@ -175,7 +178,7 @@ pub fn identify_after(
     let estimates: Vec<Estimate> = estimates.into_iter().map(|(_, one)| one).collect();
     let rests_on = rests_on(model, found);
     let verdicts = verdicts(&estimates, &checks, rests_on.as_deref());
-    // What is refused anyway needs no word on what it might hide.
+    // Detection limits are irrelevant for a refused result.
     let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
     let unseen = match refused {
         true => Vec::new(),
@@ -208,7 +211,7 @@ pub fn identify_after(
     })
 }
 
-/// The estimates of systems that are prepared, by least squares, then by ordinary ones.
+/// Estimates of prepared systems, by weighted, then by ordinary least squares.
 pub(crate) fn estimates_of(
     prepared: &Prepared,
     settings: &Settings,
@@ -223,7 +226,7 @@ pub(crate) fn estimates_of(
     Ok(own.chain(beside).collect())
 }
 
-/// Where the actuators moved in all runs.
+/// Position ranges and speeds of the actuators in all runs.
 fn reaches(watched: &[Watched]) -> Vec<Reach> {
     let of_run = |one: &Watched| -> Vec<Reach> {
         let bounds = one.monitor.bounds().into_iter();
@@ -239,7 +242,7 @@ fn reaches(watched: &[Watched]) -> Vec<Reach> {
     united.unwrap_or_default()
 }
 
-/// What is known of errors in the regressors, and the estimates by other means than those that are judged.
+/// Regressor errors, and the estimates by other methods.
 fn regressor_errors(
     outcomes: &[Result<Outcome, Error>],
 ) -> (Vec<ErrorsInRegressor>, Vec<Estimate>) {
@@ -249,8 +252,9 @@ fn regressor_errors(
     (told.collect(), others.cloned().collect())
 }
 
-/// The estimates, each with the number of its projection. A projection on kept actuators that fails is
-/// a warning, any other an error.
+/// Estimates, each with the number of its projection.
+///
+/// A failed actuator projection is a warning; any other failure is an error.
 fn estimates(
     outcomes: Vec<Result<Outcome, Error>>,
     projections: &[Projection],

@@ -1,4 +1,4 @@
-//! What is plotted of an identification, from what the pass over the runs has kept.
+//! Plots of an identification, from data kept by the pass over the runs.
 
 use overact::Code;
 use overact::{Function, Model};
@@ -18,11 +18,13 @@ use crate::{
     validation::platform_input,
 };
 
-/// The plots of an identification. Each estimate comes with the number of its projection; `others` are
-/// the motions of the held-out runs.
+/// Plots of an identification.
+///
+/// Each estimate comes with the number of its projection. `others` are the motions of the
+/// validation runs.
 ///
 /// # Errors
-/// A pose at which the model has no value; it has had one before.
+/// A pose at which the model has no value, although it had one before.
 pub(super) fn figures(
     model: &dyn Model,
     prepared: &Prepared,
@@ -61,7 +63,7 @@ pub(super) fn figures(
     })
 }
 
-/// The residual of an estimate, over time and as a whole.
+/// Residual of an estimate over time, with autocorrelation and spectrum.
 fn residual(
     prepared: &Prepared,
     projection: usize,
@@ -104,8 +106,9 @@ fn residual(
     }
 }
 
-/// Measured and predicted inputs of a run identified from, at the points of the plots. Torques are
-/// predicted from the decimated Γ, which the slow change of J_p^inv allows.
+/// Measured and predicted inputs of a training run at the plotted points.
+///
+/// Torques are predicted from the decimated Γ, since J_p^inv changes slowly.
 fn prediction(
     model: &dyn Model,
     prepared: &Prepared,
@@ -176,7 +179,7 @@ fn prediction(
     })
 }
 
-/// The torques of all actuators, of least norm where there is a choice, for predicted inputs Γ.
+/// Torques of all actuators for predicted inputs Γ, with least norm if redundant.
 fn distributed(
     projection: &Projection,
     model: &dyn Model,

@@ -1,4 +1,4 @@
-//! The data as the projections see them: one pass over the runs for all projections.
+//! Equations of all projections from one pass over the runs.
 
 use nalgebra::DMatrix;
 use overact::Model;
@@ -32,39 +32,39 @@ use crate::{
     settings::{Settings, check_partition},
 };
 
-/// Values of all runs and projections that are kept as successive equations (64 MB).
+/// Largest number of values kept as successive equations, over runs and projections (64 MB).
 pub(crate) const LARGEST_STRETCHES: usize = 1 << 23;
 
-/// The data as the projections see them: their systems, the columns and the base parameters.
+/// Prepared data: systems of the projections, columns and base parameters.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Prepared {
-    /// The columns of the model.
+    /// Columns of the model.
     pub columns: ColumnSet,
     /// The base parameters.
     pub base: BaseParameters,
-    /// How the payload takes part.
+    /// Treatment of the payload columns.
     pub payload: PayloadUse,
     /// The projections.
     pub projections: Vec<Projection>,
-    /// For each projection, its system in the base parameters, or why it has none.
+    /// For each projection its system in the base parameters, or the error.
     pub systems: Vec<Result<System, Error>>,
     /// The runs.
     pub runs: Vec<RunSummary>,
-    /// What is told of the runs beside their equations.
+    /// Other results of the pass over each run.
     pub(super) seen: Vec<Seen>,
-    /// For each run and projection, the equations of each line at the points of the plots.
+    /// For each run and projection, the equations of each line at the plotted points.
     pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
-    /// What there is of instruments.
+    /// Instruments.
     pub(super) companions: Companions,
-    /// The motion of each run, where it returns.
+    /// Periodic motion of each run, if it has one.
     pub(super) returns: Vec<Option<Return>>,
-    /// Of what was identified before, what its uncertainty does.
+    /// Effect of the uncertainty of previous identifications.
     pub(super) shares: Option<Shares>,
 }
 
 impl Prepared {
-    /// Of systems that were made elsewhere, without what is told of the logs beside their equations.
+    /// From systems made elsewhere, without other results from the logs.
     pub(crate) fn of_systems(
         (columns, base, payload): (ColumnSet, BaseParameters, PayloadUse),
         (projections, systems): (Vec<Projection>, Vec<Result<System, Error>>),
@@ -85,7 +85,7 @@ impl Prepared {
         }
     }
 
-    /// With the uncertainty of gains by which the torques of the runs have been multiplied.
+    /// Adds the uncertainty of gains by which the torques of the runs were multiplied.
     pub(super) fn with_gains(
         mut self,
         (model, runs): (&dyn Model, &[Log]),
@@ -103,10 +103,10 @@ impl Prepared {
         Ok(self)
     }
 
-    /// What noise of the positions does to the columns of each projection.
+    /// Effect of position noise on the columns of each projection.
     ///
     /// # Errors
-    /// A log that can't be read any more.
+    /// A log cannot be read any more.
     pub(super) fn column_noise(
         &self,
         model: &dyn Model,
@@ -123,7 +123,7 @@ impl Prepared {
         ColumnNoise::all(&observer, runs)
     }
 
-    /// The coordinates of the pose with the ranges in which the runs move them (m, rad); none of free rotation.
+    /// Pose coordinates with their ranges in the runs (m, rad); empty with free rotation.
     pub(super) fn ranges(&self, model: &dyn Model) -> Vec<(String, f64)> {
         let sizes = model.info().sizes;
         if sizes.pose != sizes.dof {
@@ -145,7 +145,7 @@ impl Prepared {
         names.into_iter().enumerate().map(range).collect()
     }
 
-    /// With the uncertainty of the direction of gravity that the model has.
+    /// Adds the uncertainty of the model's direction of gravity.
     pub(super) fn with_gravity(mut self, direction: &GravityDirection) -> Self {
         let all = self.columns.as_slice();
         let columns = self.base.columns.iter();
@@ -166,14 +166,15 @@ impl Prepared {
         named.map(|column| column.name.clone()).collect()
     }
 
-    /// Equations of all runs that were left out at standstill.
+    /// Number of equations of all runs that were excluded at standstill.
     pub(super) fn left_out(&self) -> usize {
         let runs = self.runs.iter();
         runs.flat_map(|run| &run.standstill_equations).sum()
     }
 
-    /// The standard parameters that a robot can have and that explain the inputs best, for one of the
-    /// projections; `base` is the estimate of its base parameters. None where the search does not end.
+    /// Physically consistent parameters with the best fit, for one of the projections.
+    ///
+    /// `base` is the estimate of its base parameters. `None` if the search does not converge.
     #[must_use]
     pub fn consistent(
         &self,
@@ -186,12 +187,12 @@ impl Prepared {
     }
 }
 
-/// Finds the base parameters and goes through the runs, once for all projections.
+/// Finds the base parameters and reads the runs, once for all projections.
 ///
 /// # Errors
-/// Settings that are not possible, no run, runs that do not fit the robot or leave its workspace (the
-/// problems of all runs together), projections that are not possible. Kept actuators that are singular
-/// at a sample are an error of their system.
+/// Invalid settings, no run, runs that do not fit the robot or leave its workspace (the problems of
+/// all runs together), invalid projections. Kept actuators that are singular at a sample are an
+/// error of their system only.
 pub fn prepare(
     model: &dyn Model,
     runs: &[Log],
@@ -214,7 +215,7 @@ pub fn prepare(
     .with_payloads(&payload_names(runs));
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
-    // Relations between columns are those of the model; reversals are those of the data.
+    // Column relations belong to the model, reversals to the data.
     let columns = columns.with_reversals(model, settings)?;
     let observer = Observer {
         model,
@@ -265,10 +266,10 @@ pub fn prepare(
     })
 }
 
-/// What a run holds for the system of each projection, or why it has nothing for it.
+/// Equations of a run for each projection, or the error.
 type Equations = Vec<Result<Observed, Error>>;
 
-/// Adds what a run holds to the systems, and gives back the equations at the points of the plots.
+/// Adds the equations of a run to the systems, and returns those at the plotted points.
 fn add(systems: &mut [Result<System, Error>], observed: Equations) -> Vec<Vec<DMatrix<f64>>> {
     let mut points = Vec::new();
     for (system, observed) in systems.iter_mut().zip(observed) {
@@ -296,7 +297,7 @@ fn check_projections(projections: &[Projection], model: &dyn Model) -> Result<()
     Error::check(projections.iter().filter_map(problem).collect())
 }
 
-/// Checks whether runs fit the robot and the settings, before the long work.
+/// Checks whether runs fit the robot and the settings, before the long computation.
 pub(super) fn check_runs(
     model: &dyn Model,
     runs: &[Log],
@@ -307,7 +308,7 @@ pub(super) fn check_runs(
     Error::check(errors.flat_map(|error| error.problems).collect())
 }
 
-/// What the user should know before any estimate.
+/// Warnings before any estimate.
 pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<String> {
     let mut warnings = Vec::new();
     if prepared.payload == PayloadUse::Regrouped {
@@ -350,7 +351,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
     warnings
 }
 
-/// What is said where standstill leaves little of the data: positions in another unit look like standstill.
+/// Warning if standstill excludes most data, as positions in a wrong unit would.
 fn mostly_still(prepared: &Prepared) -> Option<String> {
     let still = prepared.left_out();
     let system = prepared.systems.iter().find_map(|one| one.as_ref().ok())?;

@@ -1,34 +1,34 @@
-//! What a long identification tells while it works.
+//! Progress of a long identification.
 
 use crate::regression::projection::ModelKind;
 
-/// What an identification is doing.
+/// Current activity of an identification.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Progress<'a> {
-    /// Finds the base parameters.
+    /// Finding the base parameters.
     Base,
-    /// Goes through a run: motion, columns, decimation.
+    /// Reading a run: motion, columns, decimation.
     Run {
         /// Name of the run.
         run: &'a str,
-        /// Samples done.
+        /// Number of finished samples.
         done: usize,
-        /// Samples of the run.
+        /// Number of all samples.
         samples: usize,
     },
-    /// Estimates and eliminates parameters.
+    /// Estimation and elimination of parameters.
     Estimation {
-        /// Which inputs the model explains.
+        /// Model.
         model: ModelKind,
     },
-    /// Compares predictions with a run that was not identified from.
+    /// Comparing predictions with a validation run.
     Validation {
         /// Name of the run.
         run: &'a str,
-        /// Samples done.
+        /// Number of finished samples.
         done: usize,
-        /// Samples of the run.
+        /// Number of all samples.
         samples: usize,
     },
 }

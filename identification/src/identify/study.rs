@@ -1,10 +1,9 @@
-//! Case 2 for every choice of kept actuators on the same data: the study that section 3.1.2 of the
-//! paper leaves open.
+//! Compares the actuator projection for all partitions on the same data.
 //!
-//! All choices estimate the same base parameters from the same runs, so they can be compared one by
-//! one: how well the kept actuators determine the platform along the way, how large the deviations of
-//! the parameters are by those of case 1, and how well the parameters predict data that were held out,
-//! all on the platform, so that no choice judges itself.
+//! The paper leaves this study open in section 3.1.2. All partitions estimate the same base
+//! parameters from the same runs. They are ranked by conditioning along the path, by standard
+//! deviations relative to the platform projection, and by prediction of folds. All predictions use
+//! the equations of the platform projection, so no partition judges itself.
 
 use overact::Model;
 use serde::Serialize;
@@ -26,59 +25,60 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// How well case 1 and every choice of case 2 do.
+/// Comparison of the platform projection and all actuator projections.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Study {
     /// Name of the robot.
     pub robot: String,
-    /// Case 1.
+    /// Platform projection.
     pub platform: RankedProjection,
-    /// Case 2, best first; choices that can't be trusted come last.
+    /// Actuator projections, best first; unreliable ones come last.
     pub partitions: Vec<RankedProjection>,
-    /// What a user should know.
+    /// Warnings to the user.
     pub warnings: Vec<String>,
 }
 
-/// How well one projection does.
+/// Quality of one projection.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[non_exhaustive]
 pub struct RankedProjection {
-    /// Names of the kept actuators; empty for case 1.
+    /// Names of the kept actuators; empty for the platform projection.
     pub kept_actuators: Vec<String>,
-    /// Whether the choice stays away from its singularities.
+    /// Whether the partition avoids its singularities.
     pub trusted: bool,
-    /// Worst condition of the kept actuators' Jacobian over all runs, with its place.
+    /// Largest condition number of the kept actuators' Jacobian in all runs, with its place.
     pub partition: Option<PartitionCondition>,
-    /// Its number.
+    /// The condition number itself.
     pub partition_condition: Option<f64>,
-    /// Geometric mean of σ/σ (case 1) over the base parameters, under correlated residuals: below 1
-    /// the choice determines them better than case 1.
+    /// Geometric mean of σ by that of the platform projection over the base parameters.
+    ///
+    /// For correlated residuals; below 1 the partition determines the parameters better.
     pub deviation_ratio: Option<f64>,
     /// Sum of the relative standard deviations of the essential parameters, percent.
     pub deviation_sum_percent: Option<f64>,
-    /// Sum of the magnitudes of their errors, percent, where the truth is known.
+    /// Sum of the magnitudes of their errors, percent, if the truth is known.
     pub error_sum_percent: Option<f64>,
-    /// Part of the platform's inputs that is not predicted on held-out parts of the runs, percent.
+    /// Cross-validated relative error of the platform projection's inputs, percent.
     pub held_out_percent: Option<f64>,
-    /// Mean over the actuators of the torques' relative errors on runs of the cross-validation, percent.
+    /// Mean relative torque error of the actuators on validation runs, percent.
     pub torque_percent: Option<f64>,
-    /// Relative error on its own equations, percent: it does not rank choices.
+    /// Relative residual of its own equations, percent; not used for ranking.
     pub relative_error_percent: Option<f64>,
-    /// Of W, in base parameters.
+    /// Condition number of W, in base parameters.
     pub condition_number: Option<f64>,
     /// Number of essential parameters.
     pub essential_parameters: Option<usize>,
-    /// Places by conditioning, parameter quality and prediction, counted from 1.
+    /// Ranks by conditioning, parameter quality and prediction, counted from 1.
     pub ranks: Option<[usize; 3]>,
-    /// Why there is no estimate.
+    /// Reason for a missing estimate.
     pub error: Option<String>,
 }
 
-/// Compares case 2 for the `choices` of kept actuators with case 1.
+/// Compares the actuator projection for the partitions `choices` with the platform projection.
 ///
 /// # Errors
-/// As [`prepare`], or data from which case 1 determines nothing.
+/// As [`prepare`], or data from which the platform projection determines nothing.
 pub fn study(
     model: &dyn Model,
     dataset: &Dataset<'_>,
@@ -88,7 +88,7 @@ pub fn study(
 ) -> Result<Study, Error> {
     let mut projections = vec![Projection::Platform];
     projections.extend(choices.iter().cloned().map(Projection::Actuators));
-    // Instruments do not compare choices of kept actuators.
+    // Instruments are not used to compare partitions.
     let settings = &Settings {
         instruments: Instruments::None,
         ..settings.clone()
@@ -154,7 +154,7 @@ pub fn study(
     })
 }
 
-/// What one projection achieves.
+/// Quality of one projection.
 fn choice(
     prepared: &Prepared,
     number: usize,
@@ -196,8 +196,7 @@ fn choice(
     }
 }
 
-/// Geometric mean of the ratios of deviations of the parameters that both have; none if they share
-/// nothing.
+/// Geometric mean ratio of the standard deviations of common parameters; `None` without any.
 fn deviation_ratio(own: &Estimate, reference: &Estimate) -> Option<f64> {
     debug_assert_eq!((own.stage, reference.stage), (Stage::Base, Stage::Base));
     let logarithms: Vec<f64> = own
@@ -215,19 +214,20 @@ fn deviation_ratio(own: &Estimate, reference: &Estimate) -> Option<f64> {
     (count > 0.0).then(|| (logarithms.iter().sum::<f64>() / count).exp())
 }
 
-/// The error of a projection's parameters on the platform's equations of parts from which they were
-/// not estimated, percent.
+/// Cross-validated relative error of the platform's equations, percent.
+///
+/// The parameters are estimated from other folds of this projection.
 fn held_out(prepared: &Prepared, number: usize, base: &Estimate) -> Option<f64> {
     let selected = base.columns();
     let system = |number: usize| prepared.systems.get(number)?.as_ref().ok();
     let (system, platform) = (system(number)?, system(0)?);
     let own = HeldOut::new(system, &selected, &base.weights)?;
-    // The equations that judge are not weighted.
+    // The test equations are not weighted.
     let platform = HeldOut::new(platform, &selected, &vec![1.0; platform.lines.len()])?;
     own.error_percent_in(&platform, &selected)
 }
 
-/// Fills the places of all choices that have an estimate.
+/// Ranks all partitions that have an estimate.
 fn rank(rows: &mut [RankedProjection]) {
     let placed =
         |of: fn(&RankedProjection) -> Option<f64>, rows: &[RankedProjection]| -> Vec<usize> {
@@ -249,7 +249,7 @@ fn rank(rows: &mut [RankedProjection]) {
     }
 }
 
-/// What is said about a choice that can't be trusted.
+/// Warning about an unreliable partition.
 fn warning(row: &RankedProjection, platform: &RankedProjection) -> Option<String> {
     let names = row.kept_actuators.join(", ");
     if let Some(error) = &row.error {

@@ -1,9 +1,10 @@
-//! Table 4: how well controllers track runs with the identified parameters.
+//! Table 4: tracking errors of controllers with the identified parameters.
 
 use serde::Serialize;
 
-/// Tracking errors of one controller on one run, as in Table 4: filled by whoever simulates or measures
-/// controlled runs; the identification leaves the list empty.
+/// Tracking errors of one controller on one run, as in Table 4.
+///
+/// The caller fills them after simulating or measuring controlled runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrackingError {
     /// Name of the run.

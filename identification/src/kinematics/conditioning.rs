@@ -1,9 +1,9 @@
-//! How well actuators determine the platform at a pose, and case 2 for any choice of them.
+//! Condition of the kept actuators at a pose, and the actuator projection.
 //!
-//! With the rows J_a of J_p^inv that belong to the kept actuators, Γ² = J_a^-T Γ¹ (36). Their condition
-//! number compares metres with radians by dividing the columns of J_p^inv by their norms at home. The
-//! determinant changes its sign where a trajectory crosses a singularity of the partition, be it
-//! between two samples.
+//! With the rows J_a of J_p^inv of the kept actuators, Γ² = J_a^-T Γ¹ (36). For the condition
+//! number, the columns of J_p^inv are divided by their norms at home, which makes metres and
+//! radians comparable. The determinant changes its sign where a trajectory crosses a singularity of
+//! the partition, even between two samples.
 
 use overact::{Function, Model};
 use pulp::NullaryFnOnce;
@@ -11,8 +11,9 @@ use pulp::NullaryFnOnce;
 use super::dense::{LANES, Lanes, eliminated, invert, lanes, orthogonalised};
 use crate::widest::widest;
 
-/// Inverse norms of the columns of J_p^inv at home, which make metres and radians comparable; ones
-/// where the model has no value at home.
+/// Inverse norms of the columns of J_p^inv at home, to scale metres and radians.
+///
+/// Ones if the model has no value at home.
 pub(crate) fn home_scales(model: &dyn Model) -> Vec<f64> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
@@ -32,24 +33,24 @@ pub(crate) fn home_scales(model: &dyn Model) -> Vec<f64> {
     (0..r).map(norm).map(scale).collect()
 }
 
-/// What some actuators are like at one pose.
+/// Condition of the kept actuators at one pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Condition {
-    /// Condition number (2-norm); infinite where they are singular.
+    /// Condition number (2-norm); infinite if singular.
     pub(crate) number: f64,
-    /// Determinant divided by the product of the rows' norms; 0 unless there are r of them.
+    /// Determinant divided by the product of the row norms; 0 unless there are r rows.
     pub(crate) determinant: f64,
 }
 
 impl Condition {
-    /// The condition of an identity matrix.
+    /// Condition of an identity matrix.
     pub(crate) const PERFECT: Self = Self {
         number: 1.0,
         determinant: 1.0,
     };
 }
 
-/// A choice of actuators.
+/// A partition: the kept actuators.
 #[derive(Debug, Clone)]
 pub(crate) struct KeptActuators {
     kept: Vec<usize>,
@@ -57,7 +58,7 @@ pub(crate) struct KeptActuators {
 }
 
 impl KeptActuators {
-    /// The actuators `kept`, with the `scales` of the platform's coordinates.
+    /// The partition `kept`, with the `scales` of the platform's coordinates.
     pub(crate) fn new(kept: Vec<usize>, scales: &[f64]) -> Self {
         Self {
             kept,
@@ -65,7 +66,7 @@ impl KeptActuators {
         }
     }
 
-    /// Whether the kept rows of J_p^inv are the identity, as without a loop.
+    /// Whether the kept rows of J_p^inv are the identity, as in robots without loops.
     pub(crate) fn is_identity(&self, jacobian: &[f64]) -> bool {
         let r = self.scales.len();
         self.kept.len() == r
@@ -77,7 +78,7 @@ impl KeptActuators {
             })
     }
 
-    /// Conditions and determinants of the kept rows of J_p^inv, of `size` numbers each, n x r and row-major.
+    /// Conditions of successive samples; `jacobians` has n × r row-major values each.
     pub(crate) fn conditions(&self, jacobians: &[f64], size: usize) -> Vec<Condition> {
         let samples = jacobians.len() / size;
         let mut found = vec![Condition::PERFECT; samples];
@@ -90,7 +91,7 @@ impl KeptActuators {
         found
     }
 
-    /// J_a^-1 (r x r, row-major) of successive samples, and the first of them at which it is singular.
+    /// J_a^-1 (r × r, row-major) of successive samples, and the first singular sample.
     pub(crate) fn inverses(&self, jacobians: &[f64], size: usize) -> (Vec<f64>, Option<usize>) {
         let r = self.scales.len();
         let mut inverses = vec![0.0; jacobians.len() / size * r * r];
@@ -104,7 +105,7 @@ impl KeptActuators {
     }
 }
 
-/// The conditions of some actuators along the way.
+/// Vectorised computation of conditions.
 struct Conditions<'a> {
     choice: &'a KeptActuators,
     jacobians: &'a [f64],
@@ -148,7 +149,7 @@ impl NullaryFnOnce for Conditions<'_> {
     }
 }
 
-/// Determinants of matrices of `r` columns, divided by the products of their rows' norms.
+/// Determinants of r × r matrices, divided by the product of their row norms.
 #[inline(always)]
 fn scaled_determinants(matrix: &mut [Lanes], r: usize) -> Lanes {
     let mut norms = [1.0; LANES];
@@ -174,7 +175,7 @@ fn scaled_determinants(matrix: &mut [Lanes], r: usize) -> Lanes {
     determinants
 }
 
-/// The inverses of the kept rows along the way.
+/// Vectorised computation of inverses.
 struct Inverses<'a> {
     choice: &'a KeptActuators,
     jacobians: &'a [f64],
@@ -214,7 +215,7 @@ impl NullaryFnOnce for Inverses<'_> {
     }
 }
 
-/// Whether the loops couple all actuators: J_p^inv at home is not the identity.
+/// Whether loops couple the actuators: J_p^inv at home is not the identity.
 pub(crate) fn couples(model: &dyn Model) -> bool {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
@@ -263,7 +264,7 @@ mod tests {
             }
         }
         let singular = KeptActuators::new(vec![0, 1], &[1.0, 1.0]);
-        // Behind a regular one: neighbours do not matter.
+        // After a regular one: neighbours do not matter.
         let jacobians = [[1.0, 0.5, 2.0, 4.0], [1.0, 2.0, 2.0, 4.0]].concat();
         let conditions = singular.conditions(&jacobians, 4);
         assert!(conditions[0].number < 10.0);

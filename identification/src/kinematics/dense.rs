@@ -1,25 +1,27 @@
-//! Small dense matrices of several samples side by side, row by row, without allocation: each entry is a
-//! vector of the samples' numbers. What one sample needs alone is done by all of them, and taken by that one,
-//! so a sample's result does not depend on its neighbours.
+//! Small dense matrices for several samples in parallel, without allocation.
+//!
+//! Each entry is a vector of the samples' values. All lanes perform every operation, and each lane
+//! takes only what it needs. A sample's result is thus independent of its neighbours.
 
-/// Samples side by side: so many that loops over them are no short ones, which the compiler would unroll before it
-/// makes vectors of them.
+/// Samples in parallel; many enough that the compiler vectorises loops instead of unrolling them.
 pub(super) const LANES: usize = 16;
 
-/// A number of each sample.
+/// A value of each sample.
 pub(super) type Lanes = [f64; LANES];
 
-/// Sweeps after which the singular values of a small matrix have converged to rounding.
+/// Largest number of sweeps; the singular values of small matrices converge before.
 const SWEEPS: usize = 30;
 
-/// Cosine of the angle between two columns that count as orthogonal: by so much of themselves, at most, the singular
-/// values are wrong. A sweep more would be needed for some of the last digits, for rounding is near.
+/// Cosine of the angle between two columns that count as orthogonal.
+///
+/// It bounds the relative error of the singular values. Another sweep would gain only the last
+/// digits.
 const ORTHOGONAL: f64 = 1e-13;
 
-/// Cosine before a sweep that makes columns orthogonal: what it leaves is of the size of its square.
+/// Cosine from which one sweep makes columns orthogonal: its error is the square.
 const NEARLY: f64 = 1e-8;
 
-/// Samples side by side, of rows of `size` numbers, filled up with the last one.
+/// Values of successive rows of `size` numbers; missing lanes repeat the last one.
 #[inline(always)]
 pub(super) fn lanes(rows: &[f64], size: usize, of: impl Fn(&[f64]) -> f64) -> Lanes {
     let last = rows.len() / size - 1;
@@ -31,9 +33,10 @@ pub(super) fn lanes(rows: &[f64], size: usize, of: impl Fn(&[f64]) -> f64) -> La
     values
 }
 
-/// Solves systems with symmetric positive definite matrices, of which the upper triangle is read, in place, as
-/// [`overact::forward::solve_positive_definite`] does; `false` where a pivot is not above this part of the largest
-/// entry of the diagonal.
+/// Solves symmetric positive definite systems in place, from the upper triangle.
+///
+/// As [`overact::forward::solve_positive_definite`]; `false` if a pivot is below `least` times the
+/// largest diagonal entry.
 #[inline(always)]
 pub(super) fn solved(matrix: &mut [Lanes], vector: &mut [Lanes], least: f64) -> [bool; LANES] {
     let r = vector.len();
@@ -73,8 +76,9 @@ pub(super) fn solved(matrix: &mut [Lanes], vector: &mut [Lanes], least: f64) -> 
     is_regular
 }
 
-/// Ratio of the largest to the smallest singular value of a matrix of columns of `n` values, by
-/// one-sided Jacobi rotations, which make the columns orthogonal.
+/// Condition number of a matrix with columns of `n` values.
+///
+/// One-sided Jacobi rotations make the columns orthogonal.
 #[inline(always)]
 pub(super) fn orthogonalised(columns: &mut [Lanes], n: usize) -> Lanes {
     let r = columns.len() / n.max(1);
@@ -98,7 +102,7 @@ pub(super) fn orthogonalised(columns: &mut [Lanes], n: usize) -> Lanes {
             largest[lane] = f64::max(largest[lane], square[lane]);
         }
     }
-    // A matrix that is not finite has no condition number either.
+    // A matrix that is not finite has no condition number, either.
     std::array::from_fn(|lane| {
         if least[lane] > 0.0 && largest[lane].is_finite() {
             (largest[lane] / least[lane]).sqrt()
@@ -108,8 +112,9 @@ pub(super) fn orthogonalised(columns: &mut [Lanes], n: usize) -> Lanes {
     })
 }
 
-/// Turns two columns until they are orthogonal; `false` where they were, or nearly so, for all samples: no sweep is
-/// needed after this one then.
+/// Rotates two columns until they are orthogonal.
+///
+/// `false` if they were nearly orthogonal for all samples, so that no further sweep is needed.
 #[inline(always)]
 fn turn(x: &mut [Lanes], y: &mut [Lanes]) -> bool {
     let (a, b, c) = (product(x, x), product(y, y), product(x, y));
@@ -123,7 +128,8 @@ fn turn(x: &mut [Lanes], y: &mut [Lanes]) -> bool {
     }
     let (mut turning, mut far) = ([0.0; LANES], [0.0; LANES]);
     for lane in 0..LANES {
-        // Squares of cosines: roots and quotients take most of the time. What is no number turns.
+        // Compare squared cosines, since roots and quotients are slow. NaN counts as not
+        // orthogonal.
         let (square, size) = (c[lane] * c[lane], a[lane] * b[lane]);
         let rests = square <= ORTHOGONAL * ORTHOGONAL * size;
         turning[lane] = if rests { 0.0 } else { 1.0 };
@@ -197,8 +203,7 @@ pub(super) fn eliminated(matrix: &mut [Lanes], r: usize) -> Lanes {
     })
 }
 
-/// Turns the identity in `inverse` into the inverse of `matrix`, which is overwritten; `false` where
-/// it is singular.
+/// Transforms the identity `inverse` to the inverse of `matrix`; `false` if singular.
 #[inline(always)]
 pub(super) fn invert<const LANES: usize>(
     matrix: &mut [[f64; LANES]],
@@ -242,7 +247,7 @@ pub(super) fn invert<const LANES: usize>(
     is_regular
 }
 
-/// Where the entry of column `k` is larger in row `i` than in row `k`.
+/// Whether the entry of column `k` is larger in row `i` than in row `k`.
 #[inline(always)]
 fn larger<const LANES: usize>(
     matrix: &[[f64; LANES]],
@@ -253,7 +258,7 @@ fn larger<const LANES: usize>(
     std::array::from_fn(|lane| below[lane].abs() > above[lane].abs())
 }
 
-/// Exchanges two rows where that is wanted.
+/// Exchanges two rows in the lanes that need it.
 #[inline(always)]
 fn exchange<const LANES: usize>(
     matrix: &mut [[f64; LANES]],
@@ -276,8 +281,8 @@ mod tests {
     use super::{Lanes, eliminated, invert};
     use nalgebra::DMatrix;
 
-    /// Row by row; without pivots, the digits of each are lost, or its first step divides by zero. The last one
-    /// is singular.
+    /// Matrices row by row. Without pivots they are inaccurate or divide by zero; the last one is
+    /// singular.
     const NEEDS_PIVOTS: [[f64; 9]; 8] = [
         [0.0, 2.0, 1.0, 1.0, 0.0, 3.0, 4.0, 1.0, 0.0],
         [1e-17, 1.0, 2.0, 1.0, 1.0, 1.0, 2.0, -1.0, 1.0],
@@ -289,7 +294,7 @@ mod tests {
         [1.0, 2.0, 0.0, 2.0, 4.0, 0.0, 0.0, 0.0, 1.0],
     ];
 
-    /// Filled up with the last one.
+    /// Missing lanes repeat the last one.
     fn side_by_side(rows: &[[f64; 9]]) -> [Lanes; 9] {
         let last = rows.len() - 1;
         std::array::from_fn(|entry| std::array::from_fn(|lane| rows[lane.min(last)][entry]))

@@ -1,12 +1,13 @@
-//! The torques of redundant actuators that give wanted inputs of the platform.
+//! Torques of redundant actuators for given inputs of the platform.
 
 use pulp::NullaryFnOnce;
 
 use super::dense::{LANES, invert, lanes};
 use crate::widest::widest;
 
-/// J (Jᵀ J)^-1 of J_p^inv (n x r, row-major), which turns Γ¹ into the torques of least norm; `None` where
-/// the actuators do not determine the platform.
+/// J (Jᵀ J)^-1 of J_p^inv (n × r, row-major), which maps Γ¹ to the least-norm torques.
+///
+/// `None` if the actuators do not determine the platform.
 pub(crate) fn least_norm(jacobian: &[f64], r: usize) -> Option<Vec<f64>> {
     // The actuators of most serial robots are their coordinates.
     if is_identity(jacobian, r) {
@@ -15,8 +16,10 @@ pub(crate) fn least_norm(jacobian: &[f64], r: usize) -> Option<Vec<f64>> {
     distribution(jacobian, jacobian, r)
 }
 
-/// The torques of least norm that give inputs of the platform, for several inputs at each of successive samples:
-/// samples x n, of J_p^inv (n x r each) and samples x r. Zeros where the actuators do not determine the platform.
+/// Least-norm torques for several inputs at each of successive samples, samples × n.
+///
+/// `jacobians` has J_p^inv (n × r) of each sample, and inputs are samples × r. Zero if the
+/// actuators do not determine the platform.
 pub(crate) fn least_torques<const N: usize>(
     jacobians: &[f64],
     (n, r): (usize, usize),
@@ -32,7 +35,7 @@ pub(crate) fn least_torques<const N: usize>(
     torques
 }
 
-/// J (Jᵀ J)^-1 Γ¹ of successive samples.
+/// Vectorised computation of J (Jᵀ J)^-1 Γ¹.
 struct LeastTorques<'a, const N: usize> {
     jacobians: &'a [f64],
     /// n and r.
@@ -97,9 +100,10 @@ fn is_identity(matrix: &[f64], r: usize) -> bool {
     matrix.len() == r * r && matrix.iter().enumerate().all(one)
 }
 
-/// Bᵀ B J (Jᵀ Bᵀ B J)^-1 with B_p of the closure (n x n): with A_p = -B_p J_p^inv, this is what turns Γ¹
-/// into the torques -B_pᵀ λ of eq. (26) without overconstraint, λ being of least norm in A_pᵀ λ = Γ¹. (The
-/// multipliers of the legs in (26) are determined without a choice.)
+/// Bᵀ B J (Jᵀ Bᵀ B J)^-1 with B_p of the closure (n × n).
+///
+/// With A_p = -B_p J_p^inv, it maps Γ¹ to the torques -B_pᵀ λ of eq. (26) without overconstraint. λ
+/// is the least-norm solution of A_pᵀ λ = Γ¹. The multipliers of the legs in (26) are unique.
 pub(crate) fn least_multipliers(jacobian: &[f64], closure: &[f64], r: usize) -> Option<Vec<f64>> {
     let n = jacobian.len() / r.max(1);
     let platform: Vec<f64> = closure
@@ -144,14 +148,14 @@ fn distribution(jacobian: &[f64], weighted: &[f64], r: usize) -> Option<Vec<f64>
     Some(product)
 }
 
-/// Product of a matrix (rows of the vector's length) with a vector.
+/// Matrix times vector; rows have the vector's length.
 pub(crate) fn product(matrix: &[f64], vector: &[f64], result: &mut [f64]) {
     for (row, result) in matrix.chunks_exact(vector.len()).zip(result) {
         *result = row.iter().zip(vector).map(|(a, b)| a * b).sum();
     }
 }
 
-/// Product of the transpose of a matrix of `r` columns with a vector: Γ¹ = J_p^invᵀ τ.
+/// Transposed matrix of `r` columns times vector: Γ¹ = J_p^invᵀ τ.
 pub(crate) fn transposed_product(matrix: &[f64], vector: &[f64], r: usize) -> Vec<f64> {
     let mut result = vec![0.0; r];
     for (row, factor) in matrix.chunks_exact(r).zip(vector) {
@@ -168,8 +172,8 @@ mod tests {
     use super::{least_multipliers, least_norm, least_torques, product, transposed_product};
     use nalgebra::DMatrix;
 
-    /// With B = 1 both distributions agree; with any B they satisfy the model, and the multipliers are
-    /// those of the pseudo-inverse.
+    /// With B = 1 both distributions agree. With any B they satisfy the model, and the multipliers
+    /// are those of the pseudo-inverse.
     #[test]
     fn torques_satisfy_the_model() {
         let mut seed = 1_u64;
@@ -193,7 +197,7 @@ mod tests {
         for (a, b) in plain.iter().zip(torques(&same)) {
             assert!((a - b).abs() < 1e-12);
         }
-        // Behind a singular sample, and twice as large.
+        // After a singular sample, and twice as large.
         let both = [vec![0.0; n * r], jacobian.clone()].concat();
         let inputs = [gamma, gamma].concat();
         let twice: Vec<f64> = inputs.iter().map(|input| 2.0 * input).collect();

@@ -1,13 +1,13 @@
-//! The poses of a run.
+//! Forward kinematics of a run.
 //!
-//! Some samples, the anchors, are solved one after the other, each from the one before, so that the
-//! assembly mode stays that of the home pose. The samples between two anchors start from the cubic through
-//! four anchors around them, where Gauss-Newton needs one or two steps, and all of them step
-//! together: a model evaluates many samples at once much faster than one by one. What does not
-//! converge that way is solved sample by sample, which also tells where a run leaves the workspace.
+//! Some samples, the anchors, are solved in sequence, each starting from the one before. This keeps
+//! the assembly mode of the home pose. Samples between anchors start from a cubic through four
+//! anchors, and Gauss-Newton needs one or two steps. Many samples step in parallel, since a model
+//! evaluates them much faster together. Samples that do not converge are solved one by one, which
+//! also finds where a run leaves the workspace.
 //!
-//! Where there is a closed form, all samples start from it: it is in the assembly mode of the home pose, and that of
-//! the run as long as it goes on without a jump.
+//! If there is a closed form, all samples start from it. It has the assembly mode of the home pose,
+//! which is that of the run if it is continuous.
 
 use overact::{Function, Model, math::wrap_angle};
 use rayon::prelude::*;
@@ -17,35 +17,34 @@ use super::motion::outside;
 use super::settling::settle;
 use crate::{blocks::evaluate, data::Log, error::Error};
 
-/// Steps in which the first sample is approached from the home pose, should it be far from it.
+/// Number of steps from the home pose to the first sample.
 const APPROACH_STEPS: usize = 50;
 
-/// Time (s) and samples from one anchor to the next, at most. The time is one in which a robot moves
-/// little, so that no other assembly mode is near.
+/// Largest time (s) and number of samples between anchors, short enough to keep the mode.
 const ANCHOR_SECONDS: f64 = 0.005;
 const ANCHOR_SAMPLES: usize = 32;
 
-/// Closed forms of successive samples that are not farther apart than this (m, rad) are of one assembly mode.
+/// Largest difference (m, rad) of successive closed-form poses of one assembly mode.
 const NEAR: f64 = 0.01;
 
-/// Samples that step together: enough to fill vector units, few enough for the cache.
+/// Samples stepped in parallel: enough for vector units, few enough for the cache.
 const TOGETHER: usize = 256;
 
-/// Forward kinematics that follows a run.
+/// Forward kinematics along a run.
 pub(super) struct Forward<'a> {
     model: &'a dyn Model,
     log: &'a Log,
-    /// The last pose that was found; the home pose at first.
+    /// Last pose found; initially the home pose.
     pose: Vec<f64>,
     started: bool,
-    /// Samples from one anchor to the next; 1 where each is solved by itself.
+    /// Samples between anchors; 1 if each sample is solved separately.
     spacing: usize,
 }
 
 impl<'a> Forward<'a> {
     /// Starts at home.
     pub(super) fn new(model: &'a dyn Model, log: &'a Log) -> Self {
-        // Without loops the positions are the pose: nothing is to be solved.
+        // Without loops, the positions are the pose.
         let spacing = if couples(model) {
             (ANCHOR_SECONDS * log.sampling_frequency()) as usize
         } else {
@@ -60,7 +59,7 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// The poses of the samples from number `first` on, from the actuator positions, samples x n.
+    /// Poses of the samples from number `first` on, from actuator positions, samples × n.
     ///
     /// # Errors
     /// The first sample outside the workspace.
@@ -103,7 +102,7 @@ impl<'a> Forward<'a> {
         Ok(poses)
     }
 
-    /// All poses from those in closed form; `None` where there are none, or where they jump.
+    /// All poses from the closed form; `None` without one, or if poses jump.
     fn in_closed_form(&self, positions: &[f64]) -> Option<Vec<f64>> {
         let samples = positions.len() / self.log.actuators();
         let function = Function::PoseInClosedForm;
@@ -115,7 +114,7 @@ impl<'a> Forward<'a> {
         goes_on.then(|| self.settled(poses, positions)).flatten()
     }
 
-    /// Poses that are found from others, which are near, or `None` where that does not converge.
+    /// Refines approximate poses; `None` if that does not converge.
     fn settled(&self, mut poses: Vec<f64>, positions: &[f64]) -> Option<Vec<f64>> {
         let (n, size) = (self.log.actuators(), self.pose.len());
         poses
@@ -125,7 +124,7 @@ impl<'a> Forward<'a> {
         Some(poses)
     }
 
-    /// All poses from anchors, or `None` where that does not converge.
+    /// All poses from anchors; `None` if that does not converge.
     fn together(&self, positions: &[f64]) -> Option<Vec<f64>> {
         let (n, size) = (self.log.actuators(), self.pose.len());
         let samples = positions.len() / n;
@@ -141,7 +140,7 @@ impl<'a> Forward<'a> {
             self.model.pose_from_actuators(actuators, &mut pose).ok()?;
             found.push(pose);
         }
-        // Poses with a quaternion have no way between: all start from the anchor before.
+        // Poses with quaternions are not interpolated; they start from the previous anchor.
         let is_straight = size == self.model.info().sizes.dof;
         // The pose before the first sample is an anchor, too.
         let places: Vec<f64> = std::iter::once(-1.0)
@@ -174,10 +173,10 @@ impl<'a> Forward<'a> {
     }
 }
 
-/// Weights of anchors at the samples of an interval between two of them.
+/// Interpolation weights of anchors at the samples between two of them.
 #[derive(Default)]
 struct Between {
-    /// The anchors, seen from the first sample.
+    /// Anchors, relative to the first sample.
     places: Vec<f64>,
     samples: usize,
     /// For each sample the weight of each anchor.
@@ -185,7 +184,7 @@ struct Between {
 }
 
 impl Between {
-    /// Finds them, unless they are those of the interval before, as those of intervals of one length are.
+    /// Computes the weights, unless they equal those of the previous interval.
     fn prepare(&mut self, places: &[f64], first: f64, samples: usize) {
         let seen = || places.iter().map(|place| place - first);
         if self.samples == samples && seen().eq(self.places.iter().copied()) {
@@ -201,7 +200,7 @@ impl Between {
     }
 }
 
-/// The weight of place number `own` in the polynomial through some places, at `x`.
+/// Lagrange polynomial of node `own` among `places`, at `x`.
 fn lagrange(places: &[f64], own: usize, x: f64) -> f64 {
     let others = places.iter().enumerate().filter(|(place, _)| *place != own);
     others
@@ -209,9 +208,10 @@ fn lagrange(places: &[f64], own: usize, x: f64) -> f64 {
         .product()
 }
 
-/// Walks from the home pose towards the first sample in small steps, so that its assembly mode is
-/// that of the home pose. Should the way lead outside the workspace, the pose stays at home, and
-/// the first sample is tried from there.
+/// Moves from the home pose to the first sample in small steps, to keep the assembly mode.
+///
+/// If the path leaves the workspace, the pose stays at home, and the first sample starts from
+/// there.
 pub(crate) fn approach(model: &dyn Model, first: &[f64], pose: &mut [f64]) {
     let info = model.info();
     let mut home = vec![0.0; first.len()];

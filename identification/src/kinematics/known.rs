@@ -1,15 +1,14 @@
-//! Torques of the position that the description knows: subtracted from the measured ones, whatever is identified
-//! is the rest.
+//! Known position-dependent torques of the description, subtracted from measured ones.
 
 use overact::{Columns, Function, Model};
 
 use super::motion::Motion;
 use crate::error::Error;
 
-/// Poses at which it is tried out whether a robot has such torques.
+/// Number of poses at which they are looked for.
 const PROBES: u32 = 4;
 
-/// The torques that a robot needs at rest without any parameter.
+/// Torques at rest that are independent of parameters.
 pub(super) struct KnownTorques<'a> {
     model: &'a dyn Model,
     /// Whether there are any.
@@ -17,7 +16,7 @@ pub(super) struct KnownTorques<'a> {
 }
 
 impl<'a> KnownTorques<'a> {
-    /// Those of a model. Robots with a platform have none, and their inverse dynamics is not asked for.
+    /// Finds whether a model has them; robots with a platform never do.
     pub(super) fn new(model: &'a dyn Model) -> Self {
         let info = model.info();
         let sizes = info.sizes;
@@ -40,7 +39,7 @@ impl<'a> KnownTorques<'a> {
         }
     }
 
-    /// The torques at poses.
+    /// Torques at poses.
     fn at(&self, poses: &[f64], samples: usize) -> Result<Vec<f64>, overact::SampleError> {
         let sizes = self.model.info().sizes;
         let still = vec![0.0; samples * sizes.dof];

@@ -1,10 +1,10 @@
-//! From measured actuator positions to the platform's motion, block by block.
+//! From measured actuator positions to platform motion, block by block.
 //!
-//! Positions pass a zero-phase Butterworth low-pass, and so do velocities where they were measured; else
-//! they are central differences, as accelerations are. The pose x is the least-squares forward kinematics of all n actuators, sample after
-//! sample from the previous one, so that the assembly mode is that of the home pose. The twist v
-//! and its derivative follow from eqs. (21) and (24). A robot without a loop is the same: its pose
-//! are its joint positions.
+//! Positions pass a zero-phase Butterworth low-pass, and so do measured velocities. Otherwise
+//! velocities are central differences, like accelerations. The pose x is the least-squares forward
+//! kinematics of all n actuators, each sample starting from the previous one. This keeps the
+//! assembly mode of the home pose. The twist v and its derivative follow from eqs. (21) and (24).
+//! The pose of a robot without loops is its joint positions.
 
 pub(crate) mod conditioning;
 mod dense;
@@ -35,8 +35,9 @@ pub use motion::Motion;
 use motion::outside;
 use stream::{Derivatives, Stream};
 
-/// The motion of a run without the samples that the settings drop, in one piece. `progress` is told
-/// how many samples are done, of how many. A long run is better gone through with [`Motions`].
+/// Motion of a run in one piece, without the samples that the settings exclude.
+///
+/// `progress` gets the numbers of finished and of all samples. Use [`Motions`] for long runs.
 ///
 /// # Errors
 /// As [`Motions::new`] and [`Motions::next`].
@@ -56,16 +57,16 @@ pub fn motion(
     Ok(whole)
 }
 
-/// The motion of a run, block by block, without the samples that the settings drop.
+/// Motion of a run, block by block, without the samples that the settings exclude.
 pub struct Motions<'a> {
     model: &'a dyn Model,
     log: &'a Log,
     stream: Stream<'a>,
     forward: Forward<'a>,
     known: KnownTorques<'a>,
-    /// Samples that are kept.
+    /// Samples to keep.
     kept: std::ops::Range<usize>,
-    /// Whether closure and raw numbers are watched.
+    /// Whether closure and raw numbers are monitored.
     is_watched: bool,
 }
 
@@ -73,8 +74,8 @@ impl<'a> Motions<'a> {
     /// Starts with the first sample.
     ///
     /// # Errors
-    /// A run of another number of actuators or of too few samples, a cutoff above the Nyquist
-    /// frequency, a file that can't be read.
+    /// A run with another number of actuators or too few samples, a cutoff above the Nyquist
+    /// frequency, a file that cannot be read.
     pub fn new(model: &'a dyn Model, log: &'a Log, settings: &Settings) -> Result<Self, Error> {
         check(model, log, settings)?;
         Ok(Self {
@@ -88,31 +89,31 @@ impl<'a> Motions<'a> {
         })
     }
 
-    /// The same without a look at closure and raw numbers, for one that is made of another.
+    /// Turns off monitoring, for runs derived from another one.
     pub(crate) fn unwatched(mut self) -> Self {
         self.is_watched = false;
         self.stream.leave_unwatched();
         self
     }
 
-    /// Number of samples that are kept in all.
+    /// Number of samples to keep.
     #[must_use]
     pub fn samples(&self) -> usize {
         self.kept.len()
     }
 
-    /// Number of samples of the log that are done.
+    /// Number of processed samples of the log.
     #[must_use]
     pub fn done(&self) -> usize {
         self.stream.done()
     }
 
-    /// What has been watched of the raw numbers that have been gone through.
+    /// Statistics of the processed raw numbers.
     pub(crate) fn into_monitor(self) -> Monitor {
         self.stream.into_monitor()
     }
 
-    /// A motion without samples, to which blocks can be appended.
+    /// A motion without samples, for appending.
     fn empty(&self) -> Motion {
         Motion {
             run: self.log.name().to_owned(),
@@ -133,7 +134,7 @@ impl<'a> Motions<'a> {
     /// The next block, or `None` at the end.
     ///
     /// # Errors
-    /// A sample outside the workspace, or a file that can't be read any more.
+    /// A sample outside the workspace, or a file that cannot be read any more.
     #[expect(clippy::should_implement_trait, reason = "an iterator has no errors")]
     pub fn next(&mut self) -> Result<Option<Motion>, Error> {
         while let Some(block) = self.stream.next()? {
@@ -153,7 +154,7 @@ impl<'a> Motions<'a> {
         Ok(None)
     }
 
-    /// The motion of the samples `kept` of a block.
+    /// Motion of the samples `kept` of a block.
     fn completed(
         &self,
         block: &Derivatives,
@@ -243,7 +244,7 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
         );
     }
     let nyquist = log.sampling_frequency() / 2.0;
-    // Written so that a cutoff that is not a number is a problem, too.
+    // Also false for NaN.
     let below = settings.filter_cutoff_hz < nyquist;
     if !below {
         problems.push(
@@ -258,7 +259,7 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
     Error::check(problems)
 }
 
-/// The way out of a cutoff that the sampling frequency does not allow (Hz).
+/// Help for a cutoff that the sampling frequency (Hz) does not allow.
 fn cutoff_help(frequency: f64, cutoff: f64) -> String {
     let set = "`filter_cutoff` of [identification] about ten times the bandwidth of the motion";
     match time_of_sampling(frequency, cutoff) {
@@ -267,10 +268,10 @@ fn cutoff_help(frequency: f64, cutoff: f64) -> String {
     }
 }
 
-/// A run that is shorter than this (s) may have its time in a longer unit.
+/// Duration (s) below which the time of a run may be in a longer unit.
 const SHORT_RUN: f64 = 2.0;
 
-/// The way out of a run with too few samples.
+/// Help for a run with too few samples.
 fn short_help(log: &Log) -> String {
     let longer = "record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]";
     let seconds = log.samples() as f64 / log.sampling_frequency();
@@ -289,7 +290,7 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The largest difference between measured and reached positions, angles modulo a turn.
+/// Largest difference between measured and computed positions, angles modulo a turn.
 fn largest_difference(measured: &[f64], reached: &[f64], revolute: &[bool]) -> f64 {
     measured
         .iter()

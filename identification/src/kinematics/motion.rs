@@ -1,10 +1,9 @@
-//! The motion of the platform over some samples.
+//! Motion of the platform over some samples.
 
 use crate::{data::Load, error::Problem};
 use overact::Code;
 
-/// The motion of the platform in some successive samples of a run and the torques that belong to
-/// them.
+/// Motion of the platform and actuator torques in some successive samples of a run.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Motion {
@@ -12,31 +11,32 @@ pub struct Motion {
     pub run: String,
     /// Whether the platform carried the payload.
     pub payload: bool,
-    /// Name of the payload, where there are several.
+    /// Name of the payload, if there are several.
     pub payload_name: Option<String>,
-    /// f_m, Hz.
+    /// Sampling frequency f_m, Hz.
     pub sampling_frequency: f64,
     /// Number of the first sample in the log.
     pub first_sample: usize,
     /// Number of samples.
     pub samples: usize,
-    /// Poses x, samples x pose coordinates (m, rad).
+    /// Poses x, samples × pose coordinates (m, rad).
     pub pose: Vec<f64>,
-    /// Twist coordinates v, samples x r (m/s, rad/s).
+    /// Twist coordinates v, samples × r (m/s, rad/s).
     pub twist: Vec<f64>,
-    /// Their derivatives, samples x r (m/s², rad/s²).
+    /// Derivatives v̇, samples × r (m/s², rad/s²).
     pub acceleration: Vec<f64>,
-    /// Velocities of the actuators' joints, samples x n (m/s, rad/s).
+    /// Joint velocities of the actuators, samples × n (m/s, rad/s).
     pub velocities: Vec<f64>,
-    /// Torques, samples x n (N, N m), unfiltered, without those that the description knows.
+    /// Unfiltered torques without known ones, samples × n (N, N m).
     pub torques: Vec<f64>,
-    /// Largest distance of a filtered actuator position from the one that the pose asks for (m,
-    /// rad): zero without redundancy, else the quality of the geometry and the encoders' offsets.
+    /// Largest difference between filtered actuator positions and those of the pose (m, rad).
+    ///
+    /// Zero without redundancy; otherwise it shows errors of geometry and encoder offsets.
     pub closure_residual: f64,
 }
 
 impl Motion {
-    /// What the platform carried.
+    /// The payload that the platform carried.
     #[must_use]
     pub fn carried(&self) -> Load<'_> {
         let own = self.payload_name.as_deref().map(Load::Named);
@@ -49,7 +49,7 @@ impl Motion {
         (self.first_sample + sample) as f64 / self.sampling_frequency
     }
 
-    /// The problem of a model that has no value at a sample of the motion.
+    /// The problem of a model without a value at a sample of the motion.
     pub(crate) fn outside(&self, sample: usize, error: overact::Error) -> Problem {
         outside(
             &self.run,
@@ -59,7 +59,7 @@ impl Motion {
         )
     }
 
-    /// Appends the samples that follow.
+    /// Appends the following samples.
     pub(super) fn append(&mut self, next: Self) {
         self.samples += next.samples;
         self.pose.extend(next.pose);
@@ -71,7 +71,7 @@ impl Motion {
     }
 }
 
-/// A sample of a log at which the model has no value.
+/// The problem of a sample at which the model has no value.
 pub(super) fn outside(run: &str, sample: usize, frequency: f64, error: overact::Error) -> Problem {
     Problem::new(
         Code::OUTSIDE_WORKSPACE,

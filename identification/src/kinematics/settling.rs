@@ -1,7 +1,6 @@
-//! Steps of Gauss-Newton that many samples do together.
+//! Gauss-Newton steps of many samples in parallel.
 //!
-//! The step of a sample is that of [`overact::forward::gauss_newton`]; several samples lie side by side in
-//! vectors.
+//! Each sample has the step of [`overact::forward::gauss_newton`].
 
 use overact::{
     Function, Model,
@@ -14,8 +13,10 @@ use pulp::NullaryFnOnce;
 use super::dense::{LANES, Lanes, lanes, solved};
 use crate::widest::widest;
 
-/// Moves poses until none moves any more, or none will: Gauss-Newton for all samples at once, which ends as
-/// [`overact::forward::gauss_newton`] does. `None` where a sample does not converge.
+/// Refines poses by Gauss-Newton for all samples at once.
+///
+/// The stopping rule is that of [`overact::forward::gauss_newton`]. `None` if a sample does not
+/// converge.
 pub(super) fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) -> Option<()> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
@@ -31,7 +32,7 @@ pub(super) fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) ->
         model
             .evaluate(Function::InverseJacobian, &[poses], &mut jacobians)
             .ok()?;
-        // What is left of each position, in the place of the one that is reached.
+        // Replace positions by their residuals.
         for (left, measured) in reached.iter_mut().zip(positions) {
             *left = measured - *left;
         }
@@ -54,11 +55,11 @@ pub(super) fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) ->
         let moved = poses.chunks_exact_mut(poses.len() / samples).zip(rows);
         moved.for_each(|(pose, step)| model.displace(pose, step));
         let largest = steps.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
-        // The largest of numbers and what is none is a number.
+        // `f64::max` ignores NaN, so check separately.
         if !steps.iter().fold(true, |all, s| all & s.is_finite()) {
             return None;
         }
-        // The next step is largest²/before at most, of whichever sample.
+        // The next step of any sample is at most largest²/before.
         if largest < TOLERANCE || largest * largest < 0.1 * TOLERANCE * before {
             return Some(());
         }
@@ -67,25 +68,25 @@ pub(super) fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) ->
     None
 }
 
-/// The steps (JᵀJ)^-1 Jᵀ Δq of successive samples.
+/// Vectorised computation of the steps (JᵀJ)^-1 Jᵀ Δq.
 struct Steps<'a> {
-    /// Δq, n of each sample.
+    /// Δq, n per sample.
     left: &'a [f64],
-    /// J_p^inv, n x r of each sample.
+    /// J_p^inv, n × r per sample.
     jacobians: &'a [f64],
     /// n and r.
     sizes: (usize, usize),
-    /// r of each sample.
+    /// Steps, r per sample.
     steps: &'a mut [f64],
 }
 
 impl NullaryFnOnce for Steps<'_> {
-    /// Whether there is a step at all samples.
+    /// Whether all samples have a step.
     type Output = bool;
 
     #[inline(always)]
     fn call(self) -> bool {
-        // Loops of a few turns are unrolled where their number is known.
+        // Constant lengths let the compiler unroll short loops.
         match self.sizes.1 {
             2 => self.all([[0.0; LANES]; 4], [[0.0; LANES]; 2]),
             3 => self.all([[0.0; LANES]; 9], [[0.0; LANES]; 3]),
@@ -96,7 +97,7 @@ impl NullaryFnOnce for Steps<'_> {
 }
 
 impl Steps<'_> {
-    /// Finds the steps in memory for normal matrices and steps of samples side by side.
+    /// Computes the steps with workspace for normal matrices and steps.
     #[inline(always)]
     fn all(self, mut normal: impl AsMut<[Lanes]>, mut step: impl AsMut<[Lanes]>) -> bool {
         let (normal, step) = (normal.as_mut(), step.as_mut());
@@ -112,7 +113,7 @@ impl Steps<'_> {
                 for k in 0..r {
                     let entry = |at: usize| lanes(jacobians, n * r, |own| own[actuator * r + at]);
                     let own = entry(k);
-                    // Of the normal matrix the upper triangle is read.
+                    // Only the upper triangle of the normal matrix is used.
                     for at in k..r {
                         let other = entry(at);
                         for lane in 0..LANES {

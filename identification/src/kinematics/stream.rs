@@ -1,5 +1,4 @@
-//! Filtered positions of a run with their derivatives and the torques of the same samples, block by
-//! block.
+//! Filtered positions of a run, their derivatives, and torques, block by block.
 
 use crate::{
     data::{Log, Reader},
@@ -9,10 +8,10 @@ use crate::{
     settings::Settings,
 };
 
-/// Samples of a block, at most.
+/// Largest number of samples of a block.
 const BLOCK_SAMPLES: usize = 4096;
 
-/// Some successive samples of a log; all arrays are samples x n.
+/// Some successive samples of a log; all arrays are samples × n.
 pub(super) struct Derivatives {
     /// Number of the first sample in the log.
     pub(super) first: usize,
@@ -27,12 +26,12 @@ pub(super) struct Derivatives {
 pub(super) struct Stream<'a> {
     reader: Reader<'a>,
     monitor: Monitor,
-    /// Whether the raw numbers are watched.
+    /// Whether the raw numbers are monitored.
     is_watched: bool,
     filter: ZeroPhase,
-    /// Filter of the velocities, where they were measured.
+    /// Filter of the velocities, if measured.
     velocity_filter: Option<ZeroPhase>,
-    /// Filter of the torques, where they are to be filtered.
+    /// Filter of the torques, if requested.
     torque_filter: Option<ZeroPhase>,
     frequency: f64,
     samples: usize,
@@ -44,9 +43,9 @@ pub(super) struct Stream<'a> {
     velocities: Vec<f64>,
     /// Torques from sample `next` on.
     torques: Vec<f64>,
-    /// The next sample to give out.
+    /// Next sample to return.
     next: usize,
-    /// Samples on either side that a difference reaches over.
+    /// Reach of differences on either side, in samples.
     reach: usize,
 }
 
@@ -78,17 +77,17 @@ impl<'a> Stream<'a> {
         })
     }
 
-    /// Leaves the raw numbers unwatched.
+    /// Turns off monitoring of the raw numbers.
     pub(super) fn leave_unwatched(&mut self) {
         self.is_watched = false;
     }
 
-    /// What has been watched of the raw numbers.
+    /// Statistics of the raw numbers.
     pub(super) fn into_monitor(self) -> Monitor {
         self.monitor
     }
 
-    /// Number of samples that have been given out.
+    /// Number of samples returned so far.
     pub(super) fn done(&self) -> usize {
         self.next
     }
@@ -97,7 +96,7 @@ impl<'a> Stream<'a> {
     pub(super) fn next(&mut self) -> Result<Option<Derivatives>, Error> {
         loop {
             let known = self.start + self.positions.len() / self.width;
-            // An acceleration is a difference of differences; at the end there is nothing to reach over.
+            // An acceleration is a difference of differences; the end has no neighbours.
             let possible = if known == self.samples {
                 known
             } else {
@@ -124,10 +123,10 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Gives out the samples up to `end`.
+    /// Returns the samples up to `end`.
     fn take(&mut self, end: usize) -> Derivatives {
         let (first, n, last) = (self.next, self.width, self.samples - 1);
-        // Some samples more on either side, for the accelerations.
+        // Accelerations need additional samples on either side.
         let before = first.saturating_sub(self.reach);
         let behind = (end + self.reach).min(self.samples);
         let around: Vec<f64> = if self.velocity_filter.is_some() {

@@ -1,9 +1,10 @@
-//! What is told of a torque that is clipped, however that was seen.
+//! Description of a clipped torque.
 
 use super::suspicion::{Suspicion, Trouble};
 
-/// What is told of a torque that is clipped for a part of the samples.
-/// At most a part `usual` of a torque that is not clipped lies there.
+/// The suspicion of a torque that is clipped for the fraction `part` of the samples.
+///
+/// Without clipping, the fraction is at most `usual`.
 pub(super) fn clipping(actuator: &str, part: f64, usual: f64, levels: &[String]) -> Suspicion {
     Suspicion {
         trouble: Trouble::Clipped,

@@ -1,40 +1,40 @@
-//! Samples by which a run is known again, should it or a part of it stand among the runs twice.
+//! Hashes of selected samples, to find samples that occur in two runs.
 //!
-//! Which samples are kept depends on their numbers alone, so that two runs that share samples keep the same of them,
-//! wherever they begin.
+//! The selection depends on the numbers of a sample alone. Two runs that share samples therefore
+//! select the same ones, wherever they start.
 
 use std::collections::HashMap;
 
-/// Marks that are kept of a run, at most.
+/// Largest number of marks of a run.
 const MOST: usize = 1 << 14;
 
-/// Marks that two runs have in common at one distance in time, at least, where one holds samples of the other.
+/// Fewest common marks at one time shift for runs that share samples.
 const FEWEST: usize = 10;
 
-/// An odd number with well mixed bits: 2⁶⁴ by the golden ratio.
+/// An odd number with well-mixed bits: 2⁶⁴ divided by the golden ratio.
 const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The marks of a run: one in 2^level of its samples, those whose hashes end in so many zeros.
+/// Marks of a run: one in 2^level of its samples, whose hashes end with that many zeros.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Marks {
     level: u32,
     samples: usize,
     last: u64,
-    /// Hashes, and the samples that have them first.
+    /// Hashes, with the first sample of each.
     kept: HashMap<u64, usize>,
 }
 
-/// What two runs have in common.
+/// Samples that two runs have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shared {
-    /// About so many samples.
+    /// Approximate number of samples.
     pub(crate) samples: usize,
-    /// The part of the shorter run.
+    /// Fraction of the shorter run.
     pub(crate) part: f64,
 }
 
 impl Marks {
-    /// Takes the next sample. One that is as the last is none that tells anything.
+    /// Adds the next sample, unless it equals the previous one.
     pub(super) fn take(&mut self, positions: &[f64], torques: &[f64]) {
         let all = positions.iter().chain(torques);
         let hash = all.fold(MIX, |hash, value| {
@@ -53,7 +53,7 @@ impl Marks {
         self.samples += 1;
     }
 
-    /// What another run has of this one, sample by sample; none where that is nothing.
+    /// Samples in common with another run; `None` without any.
     pub(crate) fn shared(&self, other: &Self) -> Option<Shared> {
         let level = self.level.max(other.level);
         let mut distances: HashMap<i128, usize> = HashMap::new();
@@ -83,7 +83,7 @@ impl Marks {
 mod tests {
     use super::{MOST, Marks};
 
-    /// Samples of two actuators, each unlike all others.
+    /// Different samples of two actuators.
     fn marks(samples: std::ops::Range<usize>) -> Marks {
         let mut marks = Marks::default();
         for sample in samples {

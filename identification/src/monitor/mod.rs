@@ -1,14 +1,13 @@
-//! What the raw numbers of a run tell by themselves while they are gone through: data that can't be
-//! right.
+//! Statistics and plausibility of a run's raw numbers, collected while it is read.
 //!
-//! - `watch`: stuck encoders, lost samples, a robot that stands still;
-//! - `position`: what is followed of an actuator's positions;
-//! - `marks`: samples by which a run is known again;
-//! - `peaks`: torques that are flat at their extremes;
-//! - `clipping`: what is told of them;
-//! - `roughness`: noise of signals, and signals that are equal;
-//! - `suspicion`: what is suspicious;
-//! - `statistics`: what is kept of numbers that pass.
+//! - `watch`: stuck encoders, lost samples, standstill;
+//! - `position`: statistics of an actuator's positions;
+//! - `marks`: hashes of samples, to find repeated ones;
+//! - `peaks`: torques with flat peaks;
+//! - `clipping`: their description;
+//! - `roughness`: noise of signals, and equal signals;
+//! - `suspicion`: implausible data;
+//! - `statistics`: statistics of a stream of numbers.
 
 mod clipping;
 mod marks;

@@ -1,26 +1,25 @@
-//! Torques that are flat at their extremes although noise keeps them from being equal there: a drive
-//! that saturates before its torque is measured.
+//! Flat peaks of noisy torques: a drive that saturates before its torque is measured.
 //!
-//! In a band of a hundredth of its range below the extreme, a smooth peak of duration T falls by four
-//! bands within another T/2 on either side, being a parabola. One that is cut off falls with the slope
-//! with which it came.
+//! Consider the band of one hundredth of the range below the extreme. A smooth peak of duration T
+//! is a parabola, which falls by three further bands within T/2 on either side. A clipped peak
+//! falls with the slope of its approach.
 
 use super::{clipping::clipping, suspicion::Suspicion};
 use crate::significant;
 
-/// Width of the band by the range.
+/// Width of the band, by the range.
 const BAND: f64 = 0.01;
 
-/// Bands by which a cut-off peak falls within half its duration.
+/// Bands by which a clipped peak falls within half its duration.
 const FALL: f64 = 10.0;
 
 /// Fewest samples of a flat peak.
 const FEWEST: usize = 8;
 
-/// Part of the run that flat peaks take.
+/// Fraction of the run in flat peaks.
 const PART: f64 = 0.02;
 
-/// Looks at torques at a moderate rate, rows of one value per actuator.
+/// Finds flat peaks in torques at a moderate rate, rows of one value per actuator.
 pub(crate) fn suspicions(names: &[&str], torques: &[f64]) -> Vec<Suspicion> {
     let n = names.len().max(1);
     let column = |actuator: usize| -> Vec<f64> {
@@ -44,7 +43,7 @@ pub(crate) fn suspicions(names: &[&str], torques: &[f64]) -> Vec<Suspicion> {
     names.iter().enumerate().filter_map(suspicion).collect()
 }
 
-/// The part of a signal in flat peaks at its maximum.
+/// Fraction of a signal in flat peaks at its maximum.
 fn flat_part(signal: &[f64]) -> f64 {
     let (low, high) = signal
         .iter()
@@ -68,7 +67,7 @@ fn flat_part(signal: &[f64]) -> f64 {
             .unwrap_or(signal.len());
         let duration = end - index;
         let reach = duration.div_ceil(2);
-        // Peaks at the ends of the run are not seen whole.
+        // Peaks at the ends of the run are incomplete.
         let falls = |place: Option<usize>| {
             place
                 .and_then(|place| signal.get(place))

@@ -1,36 +1,37 @@
-//! What is followed of the positions of an actuator: range, steps and their changes, speed, rests.
+//! Statistics of an actuator's positions: range, steps and their changes, speed, rests.
 
 use super::statistics::Histogram;
 
-/// Equal values in a row that count, at least.
+/// Fewest equal values in a row for a rest.
 const REST_SAMPLES: usize = 20;
 
-/// Samples over which the speed before a rest is told.
+/// Samples over which the speed before a rest is computed.
 pub(super) const SPEED_SAMPLES: usize = 10;
 
-/// What is known of the positions of an actuator.
+/// Statistics of an actuator's positions.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Position {
     pub(super) low: f64,
     pub(super) high: f64,
     pub(super) first: f64,
     pub(super) last: f64,
-    /// Σ of the squares of steps between samples.
+    /// Sum of squared steps between samples.
     pub(super) steps: f64,
     /// Sizes of steps and of their changes.
     pub(super) sizes: Histogram,
     pub(super) changes: Histogram,
-    /// The smallest step that is not zero: the resolution, if it is one.
+    /// Smallest non-zero step: the resolution, if there is one.
     pub(super) smallest: Option<f64>,
-    /// The largest changes of steps, with their samples.
+    /// Largest changes of steps, with their samples.
     pub(super) jumps: Vec<(f64, usize)>,
     /// Largest |q_k - q_(k-10)|.
     pub(super) speed: f64,
-    /// Since which sample the present value has not changed, and the bounds of all positions in the
-    /// meantime, where it has been there more than once.
+    /// Sample of the last change of the value.
+    ///
+    /// Then the bounds of all positions since then, if the value has repeated.
     since: usize,
     bounds: Vec<(f64, f64)>,
-    /// |q_k - q_(k-10)| when the rest began.
+    /// |q_k - q_(k-10)| at the start of the rest.
     pub(super) speed_before: f64,
     /// The rest in which another actuator moved most.
     pub(super) rest: Option<Rest>,
@@ -41,14 +42,15 @@ pub(super) struct Position {
 pub(super) struct Rest {
     pub(super) first: usize,
     pub(super) samples: usize,
-    /// By how much each actuator moved.
+    /// Motion of each actuator.
     pub(super) moved: Vec<f64>,
     pub(super) speed_before: f64,
 }
 
 impl Position {
-    /// Takes the position of the actuator at sample `sample`, the last of `own`, which are behind each other; `rows`
-    /// are those of all actuators at the same samples.
+    /// Adds the actuator's position at sample `sample`, the last of the successive positions `own`.
+    ///
+    /// `rows` are those of all actuators at the same samples.
     pub(super) fn take(&mut self, own: &[f64], sample: usize, rows: &[f64]) {
         let before = own.len() - 1;
         let position = own[before];
@@ -89,7 +91,7 @@ impl Position {
             self.bounds.clear();
             let before = rows[(before - 1) * n..].iter();
             self.bounds.extend(before.map(|q| (*q, *q)));
-            // The first equal value: how fast was it before?
+            // The first equal value: store the speed before it.
             self.speed_before = match is_long {
                 true => (position - back(known)).abs(),
                 false => 0.0,

@@ -1,33 +1,34 @@
-//! Noise of signals, whatever smooth motion they follow, and signals that are one.
+//! Noise of smooth signals, and pairs of equal signals.
 
 /// Mean square of third differences of white noise by its variance: 1 + 9 + 9 + 1.
 const THIRD_DIFFERENCES: f64 = 20.0;
 
-/// What is told of signals that stand side by side.
+/// Statistics of interleaved signals.
 #[derive(Debug, Clone)]
 pub(super) struct Roughness {
-    /// The last three rows, the newest last.
+    /// Last three rows, the newest last.
     last: Vec<f64>,
-    /// Σ of the squares of third differences, and how many there are.
+    /// Sum of squared third differences, and their number.
     squares: Vec<f64>,
     count: usize,
-    /// The first row.
+    /// First row.
     first: Vec<f64>,
-    /// Pairs of signals that have been one so far.
+    /// Pairs of signals that have been proportional so far.
     twins: Vec<Twins>,
 }
 
-/// Rounding of signals that are scaled and shifted, by their size.
+/// Relative rounding error of scaled and shifted signals.
 const ROUNDING: f64 = 1e-13;
 
-/// Two signals of which one has been the other times a factor and shifted so far: one measured signal that
-/// stands for two, in units or behind gears of its own.
+/// Two signals that have been equal up to a factor and an offset so far.
+///
+/// They may be one measured signal in two units, or on both sides of a gear.
 #[derive(Debug, Clone)]
 struct Twins {
     pair: (usize, usize),
     /// Whether they have been equal.
     equal: bool,
-    /// How far they were from the first row where the first of them was farthest.
+    /// Their differences to the first row, where the first signal was farthest from it.
     farthest: [f64; 2],
 }
 
@@ -40,14 +41,14 @@ impl Twins {
         }
     }
 
-    /// Whether they are still one at a row.
+    /// Whether they are still proportional, or equal, at a row.
     fn take(&mut self, row: &[f64], first: &[f64]) -> bool {
         let (i, j) = self.pair;
         self.equal &= row[i] == row[j];
         let [a, b] = [i, j].map(|at| row[at] - first[at]);
         let rounding = [i, j].map(|at| ROUNDING * (row[at].abs() + first[at].abs()));
         let [far_a, far_b] = self.farthest;
-        // a : b = far_a : far_b, with no ratio to divide by.
+        // Tests a : b = far_a : far_b without division.
         let allowed = (rounding[0] * far_b.abs() + rounding[1] * far_a.abs())
             + ROUNDING * (a * far_b).abs().max((b * far_a).abs());
         let proportional = (a * far_b - b * far_a).abs() <= 4.0 * allowed;
@@ -57,8 +58,7 @@ impl Twins {
         proportional || self.equal
     }
 
-    /// Whether they are one, now that all rows have been seen: signals that rest are not told apart, but equal
-    /// ones are.
+    /// Whether they are one signal; for signals at rest, only if equal.
     fn is_one(&self) -> bool {
         self.equal || self.farthest.iter().all(|far| *far != 0.0)
     }
@@ -76,7 +76,7 @@ impl Roughness {
         }
     }
 
-    /// Takes the next rows.
+    /// Adds the next rows.
     pub(super) fn take(&mut self, rows: &[f64]) {
         let n = self.squares.len().max(1);
         if self.first.is_empty() {
@@ -102,18 +102,18 @@ impl Roughness {
         self.last.drain(..done * n);
     }
 
-    /// The variance of the noise of each signal, if it is white and the signal smooth.
+    /// Noise variance of each signal, for white noise on a smooth signal.
     pub(super) fn variances(&self) -> Vec<f64> {
         let count = THIRD_DIFFERENCES * self.count.max(1) as f64;
         self.squares.iter().map(|square| square / count).collect()
     }
 
-    /// Leaves pairs out whose first signal is of no interest.
+    /// Removes pairs whose first signal is idle.
     pub(super) fn forget(&mut self, is_idle: impl Fn(usize) -> bool) {
         self.twins.retain(|twins| !is_idle(twins.pair.0));
     }
 
-    /// Pairs of signals that are equal throughout, or one in whatever unit where these count, too.
+    /// Pairs of equal signals; with `in_any_unit` also proportional ones.
     pub(super) fn twins(&self, in_any_unit: bool) -> Vec<(usize, usize)> {
         let is_one = |twins: &&Twins| twins.equal || in_any_unit && twins.is_one();
         let one = self.twins.iter().filter(is_one);
@@ -154,7 +154,7 @@ mod tests {
         for k in 0..5_000 {
             let phase = 1e-3 * f64::from(k);
             let own = (3.0 * phase).sin() + 0.2 * phase;
-            // Behind another gear and from another zero; a thousandth of another motion; at rest.
+            // With another gear and offset; with a thousandth of another motion; at rest.
             let other = 0.3 - own / 45.0;
             roughness.take(&[own / 32.0, other, own + 1e-3 * phase.cos(), 0.7, 0.0]);
         }

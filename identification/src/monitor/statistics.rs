@@ -1,6 +1,6 @@
-//! Statistics of signals that are gone through once: means, extremes, sizes.
+//! Single-pass statistics of signals: means, extremes, sizes.
 
-/// Means of torques at a rate at which noise is small and peaks are resolved.
+/// Means of torques at a rate with little noise that still resolves peaks.
 #[derive(Debug, Clone)]
 pub(super) struct Means {
     /// Rows of one mean per actuator.
@@ -11,7 +11,7 @@ pub(super) struct Means {
 }
 
 impl Means {
-    /// Rate of the means, Hz, and most rows of them (ten minutes).
+    /// Rate of the means, Hz, and largest number of their rows (ten minutes).
     const RATE: f64 = 500.0;
     const LARGEST: usize = 300_000;
 
@@ -42,7 +42,7 @@ impl Means {
     }
 }
 
-/// How often the largest value of a signal occurs, and the one next to it.
+/// Number of occurrences of a signal's largest value, and of the one next to it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extreme {
     pub(super) value: f64,
@@ -77,7 +77,7 @@ impl Extreme {
     }
 }
 
-/// Counts of magnitudes by their power of two.
+/// Histogram of magnitudes by their power of two.
 #[derive(Debug, Clone)]
 pub(super) struct Histogram {
     counts: [usize; Self::BINS],
@@ -100,14 +100,14 @@ impl Histogram {
     pub(super) fn take(&mut self, magnitude: f64) {
         self.total += 1;
         if magnitude > 0.0 {
-            // The exponent of a normal number stands in its bits.
+            // The exponent of a normal number is in its bits.
             let exponent = (magnitude.to_bits() >> 52) as i32 - 1022;
             let bin = usize::try_from(exponent - Self::LEAST_EXPONENT).unwrap_or(0);
             self.counts[bin.min(Self::BINS - 1)] += 1;
         }
     }
 
-    /// A bound that so large a part of the magnitudes does not exceed, right to a factor of two.
+    /// A quantile of the magnitudes for the fraction `part`, up to a factor of two.
     pub(super) fn quantile(&self, part: f64) -> f64 {
         let mut above = self.total as f64 * (1.0 - part);
         for (bin, count) in self.counts.iter().enumerate().rev() {

@@ -1,32 +1,32 @@
-//! What is suspicious in the raw numbers of a run.
+//! Implausible raw numbers of a run.
 
-/// Something suspicious in the raw numbers of a run.
+/// A finding in the raw numbers of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Suspicion {
-    /// Which kind of trouble it is.
+    /// Kind of trouble.
     pub(crate) trouble: Trouble,
-    /// Name of the actuator, where it is one's.
+    /// Name of the actuator, if it concerns one.
     pub(crate) actuator: Option<String>,
-    /// What was measured, its unit and the limit that it exceeds.
+    /// Statistic, its unit, and the exceeded limit.
     pub(crate) statistic: f64,
     pub(crate) unit: &'static str,
     pub(crate) threshold: f64,
-    /// What is wrong and what to do, in sentences.
+    /// Finding and remedy, in sentences.
     pub(crate) message: String,
 }
 
-/// Trouble that raw numbers tell by themselves.
+/// Trouble that raw numbers show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Trouble {
     /// A torque stays at its extreme.
     Clipped,
     /// A position does not change while the robot moves.
     Stuck,
-    /// A position jumps, or repeats while the others go on.
+    /// A position jumps, or repeats while others change.
     Dropped,
     /// The robot hardly moves.
     Standstill,
-    /// Two columns are one.
+    /// Two columns are equal.
     Duplicate,
     /// A torque is zero throughout.
     Zero,

@@ -1,4 +1,4 @@
-//! Which torques count as clipped.
+//! Tests of clipped torques.
 
 use super::{Monitor, Suspicion, Trouble};
 use crate::data::Samples;
@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 /// Samples per second.
 const FREQUENCY: f64 = 500.0;
 
-/// What is suspicious in a run of so many samples, of an actuator that swings twice in three seconds.
+/// Suspicions about a run of an actuator that swings twice in three seconds.
 fn suspicions(samples: usize, torque: impl Fn(f64) -> f64) -> Vec<Suspicion> {
     let time = |sample: usize| sample as f64 / FREQUENCY;
     let swing = |sample: usize| (TAU * 2.0 / 3.0 * time(sample)).sin();
@@ -54,7 +54,7 @@ fn peaks_of_a_quantised_torque_are_not_clipped() {
 
 #[test]
 fn of_several_rests_the_one_in_which_others_move_most_is_told() {
-    // The second actuator turns round at 0.7 s and hardly moves then.
+    // The second actuator reverses at 0.7 s and hardly moves then.
     let others = |time: f64| (TAU * 2.0 / 3.0 * (time - 0.7)).cos();
     let held = |time: f64| match time {
         0.6..0.8 => 0.6,

@@ -1,5 +1,6 @@
-//! What is suspicious in the raw numbers of a run, told while it is gone through: clipped torques,
-//! encoders that are stuck, samples that are lost, a robot that stands still.
+//! Monitors the raw numbers of a run while it is read.
+//!
+//! It finds clipped torques, stuck encoders, lost samples and standstill.
 
 use super::{
     clipping::clipping,
@@ -12,49 +13,51 @@ use super::{
 };
 use crate::{data::Samples, significant};
 
-/// Equal values in a row that count as a rest of a signal (s).
+/// Shortest rest of a signal (s).
 const REST_SECONDS: f64 = 0.1;
 
-/// Part of an actuator's range, or of its speed, that is motion beyond doubt.
+/// Fraction of an actuator's range, or speed, that is certainly motion.
 const CLEAR_MOTION: f64 = 0.05;
 
-/// Part of the usual largest step by which a step differs from the one before where samples are lost.
+/// Smallest change of a step at lost samples, by the usual largest step.
 const LOST_STEP: f64 = 0.5;
 
-/// Times by which it exceeds the encoder's resolution, and the usual changes of steps.
+/// Smallest ratio of it to the encoder's resolution and to usual changes of steps.
 const LOST_RATIO: f64 = 4.0;
 
-/// Part of the steps that are usual, though samples are lost.
+/// Fraction of steps that are usual, even if samples are lost.
 const USUAL: f64 = 0.9;
 
-/// Part of the steps that are no jumps.
+/// Fraction of steps that are no jumps.
 const OF_STEPS: f64 = 0.99;
 
-/// A range of less than so many steps between samples is noise: the robot stands still.
+/// Range in steps between samples below which the robot stands still.
 const STILL_STEPS: f64 = 15.0;
 
-/// Part of the samples that lie at an extreme of a torque where it is clipped, and how much more often
-/// the extreme occurs than the value next to it: the peaks of quantised signals reach a ratio of 3.
+/// Smallest fraction of clipped samples, and smallest ratio of counts at the extreme and next to
+/// it.
+///
+/// Peaks of quantised signals reach a ratio of 3.
 const CLIPPED_PART: f64 = 1e-3;
 const CLIPPED_RATIO: usize = 10;
 
 /// Fewest samples at an extreme.
 const FEWEST_CLIPPED: usize = 10;
 
-/// Follows the raw positions and torques of a run.
+/// Statistics of the raw positions and torques of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Monitor {
     frequency: f64,
     samples: usize,
     positions: Vec<Position>,
     torques: Vec<[Extreme; 2]>,
-    /// Means of the torques over a few samples, in the beginning of the run.
+    /// Means of the torques over a few samples, at the start of the run.
     means: Means,
     /// Noise of positions and of torques.
     roughness: [Roughness; 2],
-    /// The last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
+    /// Last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
     recent: Vec<f64>,
-    /// By what the run is known again.
+    /// Hashes of samples, to find repeated ones.
     marks: Marks,
 }
 
@@ -73,10 +76,10 @@ impl Monitor {
         }
     }
 
-    /// Takes the next samples.
+    /// Adds the next samples.
     pub(crate) fn take(&mut self, samples: &Samples) {
         let n = self.positions.len();
-        // A loop for each thing that is watched: short ones let the processor be at several samples at once.
+        // Separate short loops let the processor overlap several samples.
         let mut rows = std::mem::take(&mut self.recent);
         let known = rows.len() / n;
         rows.extend_from_slice(&samples.positions);
@@ -109,7 +112,7 @@ impl Monitor {
         self.samples += all - known;
     }
 
-    /// What another run has of this one, sample by sample.
+    /// Samples in common with another run.
     pub(crate) fn shared(&self, other: &Self) -> Option<Shared> {
         self.marks.shared(&other.marks)
     }
@@ -121,25 +124,24 @@ impl Monitor {
         }
     }
 
-    /// The largest magnitude of each actuator's positions (m, rad).
+    /// Largest magnitude of each actuator's positions (m, rad).
     pub(crate) fn magnitudes(&self) -> Vec<f64> {
         let magnitude = |one: &Position| one.high.abs().max(one.low.abs());
         self.positions.iter().map(magnitude).collect()
     }
 
-    /// The variances of white noise of the positions, and of the torques.
+    /// Variances of white noise of the positions, and of the torques.
     pub(crate) fn noise(&self) -> [Vec<f64>; 2] {
         self.roughness.each_ref().map(Roughness::variances)
     }
 
-    /// The smallest step of each actuator's positions that is not zero: the resolution, if it is one (m,
-    /// rad).
+    /// Smallest non-zero step of each actuator's positions (m, rad): possibly the resolution.
     pub(crate) fn resolutions(&self) -> Vec<f64> {
         let positions = self.positions.iter();
         positions.map(|one| one.smallest.unwrap_or(0.0)).collect()
     }
 
-    /// The range of each actuator's positions (m, rad).
+    /// Range of each actuator's positions (m, rad).
     pub(crate) fn ranges(&self) -> Vec<f64> {
         self.positions
             .iter()
@@ -147,19 +149,19 @@ impl Monitor {
             .collect()
     }
 
-    /// By how much each actuator ends away from where it began (m, rad).
+    /// Distance between each actuator's first and last position (m, rad).
     pub(crate) fn travels(&self) -> Vec<f64> {
         let travel = |one: &Position| (one.last - one.first).abs();
         self.positions.iter().map(travel).collect()
     }
 
-    /// The least and the largest position of each actuator (m, rad).
+    /// Smallest and largest position of each actuator (m, rad).
     pub(crate) fn bounds(&self) -> Vec<(f64, f64)> {
         let positions = self.positions.iter();
         positions.map(|one| (one.low, one.high)).collect()
     }
 
-    /// The largest speed of each actuator over a few samples (m/s, rad/s).
+    /// Largest speed of each actuator over a few samples (m/s, rad/s).
     pub(crate) fn speeds(&self) -> Vec<f64> {
         let per_second = self.frequency / SPEED_SAMPLES as f64;
         self.positions
@@ -168,13 +170,14 @@ impl Monitor {
             .collect()
     }
 
-    /// The sampling frequency, Hz.
+    /// Sampling frequency, Hz.
     pub(crate) const fn frequency(&self) -> f64 {
         self.frequency
     }
 
-    /// The largest speed of each actuator (m/s, rad/s) that is neither noise nor a single jump: that over a few
-    /// samples, or that which one step in a hundred exceeds, whichever is less.
+    /// Largest speed of each actuator (m/s, rad/s) without noise and single jumps.
+    ///
+    /// The smaller one of the speed over a few samples and the 99 % quantile of the steps.
     pub(crate) fn usual_speeds(&self) -> Vec<f64> {
         let positions = self.positions.iter().zip(self.speeds());
         let usual = positions.map(|(one, speed)| {
@@ -184,7 +187,7 @@ impl Monitor {
         usual.collect()
     }
 
-    /// The largest magnitude of each actuator's torques (N, N m).
+    /// Largest magnitude of each actuator's torques (N, N m).
     pub(crate) fn torque_peaks(&self) -> Vec<f64> {
         let torques = self.torques.iter();
         torques
@@ -192,7 +195,7 @@ impl Monitor {
             .collect()
     }
 
-    /// Whether no torque is anything but zero.
+    /// Torques that are always zero.
     fn zeros(&self, names: &[&str]) -> Vec<Suspicion> {
         let is_zero = |[low, high]: &[Extreme; 2]| {
             let zero = |one: &Extreme| one.value == 0.0 && one.count == self.samples;
@@ -217,7 +220,7 @@ impl Monitor {
             .collect()
     }
 
-    /// Columns that are one. Loops may move two actuators in proportion: there they have to be equal.
+    /// Equal columns. Loops may move two actuators in proportion; then they must be equal.
     fn duplicates(&self, names: &[&str], coupled: bool) -> Vec<Suspicion> {
         let of = |what: &str, roughness: &Roughness| -> Vec<Suspicion> {
             let name = |index: usize| names.get(index).copied().unwrap_or_default();
@@ -243,8 +246,10 @@ impl Monitor {
         all
     }
 
-    /// What is suspicious in a run of actuators with these names. Where the loops couple all actuators
-    /// (`coupled`), one that rests while others move is stuck; without loops it may be held.
+    /// Suspicions about a run of actuators with these names.
+    ///
+    /// If loops couple all actuators (`coupled`), one that rests while others move is stuck.
+    /// Without loops it may be at rest.
     pub(crate) fn suspicions(mut self, names: &[&str], coupled: bool) -> Vec<Suspicion> {
         self.finish();
         let mut suspicions = self.clipped(names);
@@ -290,8 +295,7 @@ impl Monitor {
         suspicions
     }
 
-    /// The largest range of a position by its usual step between samples, which is noise where the
-    /// robot stands still.
+    /// Largest range of a position by its RMS step; the step is noise at standstill.
     fn travel(&self) -> f64 {
         let steps = self.samples.saturating_sub(1).max(1) as f64;
         let travel = |one: &Position| {
@@ -302,7 +306,7 @@ impl Monitor {
         self.positions.iter().map(travel).fold(0.0, f64::max)
     }
 
-    /// For how long an encoder is stuck (s), and what is told of it.
+    /// Duration for which an encoder is stuck (s), with a description.
     fn stuck(&self, actuator: usize, coupled: bool) -> Option<(f64, String)> {
         let own = &self.positions[actuator];
         let long = |rest: &&Rest| rest.samples as f64 >= REST_SECONDS * self.frequency;
@@ -372,7 +376,7 @@ impl Monitor {
         })
     }
 
-    /// Torques that lie at an extreme too often.
+    /// Torques that are too often at an extreme.
     fn clipped(&self, names: &[&str]) -> Vec<Suspicion> {
         let clipped = |extreme: &Extreme| {
             let enough = FEWEST_CLIPPED.max((CLIPPED_PART * self.samples as f64) as usize);

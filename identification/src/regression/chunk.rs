@@ -1,4 +1,4 @@
-//! Some successive samples as equations: conditions of the kept actuators, and rows projected on them.
+//! Equations of some successive samples, with the actuator projection.
 
 use pulp::NullaryFnOnce;
 
@@ -7,7 +7,7 @@ use crate::{
     widest::widest,
 };
 
-/// Some successive samples, evaluated: for each projection and line samples x (columns + 1), Y last.
+/// Evaluated samples: for each projection and line, samples × (columns + 1), Y last.
 pub(crate) struct Chunk {
     pub(crate) lines: Vec<Vec<Vec<f64>>>,
     /// For each projection, the conditions of its kept actuators.
@@ -21,8 +21,9 @@ impl Chunk {
     }
 }
 
-/// Rows of Γ² = J_a^-T Γ¹ from rows of Γ¹, line by line, and the first sample at which J_a is singular: the rows
-/// from there on are not valid.
+/// Rows of Γ² = J_a^-T Γ¹ from rows of Γ¹, line by line, and the first singular sample.
+///
+/// Rows from the singular sample on are invalid.
 pub(crate) fn projected(
     platform: &[Vec<f64>],
     choice: &KeptActuators,
@@ -46,7 +47,7 @@ pub(crate) fn projected(
         });
     }
     for (sample, jacobian) in jacobians.chunks_exact(size).enumerate() {
-        // Numbers that are not changed at all keep all of their digits and signs.
+        // Copy unchanged numbers to keep all digits and signs.
         if choice.is_identity(jacobian) {
             let range = sample * width..(sample + 1) * width;
             for (line, rows) in lines.iter_mut().zip(platform) {
@@ -57,10 +58,10 @@ pub(crate) fn projected(
     (lines, singular)
 }
 
-/// A line of Γ²: at each sample, the sum of the lines of Γ¹ by the entries of a column of the inverse.
+/// Vectorised computation of a line of Γ²: combination of the lines of Γ¹.
 struct Combined<'a> {
     platform: &'a [Vec<f64>],
-    /// r x r for each sample.
+    /// Inverses, r × r for each sample.
     inverses: &'a [f64],
     line: usize,
     width: usize,

@@ -1,20 +1,19 @@
-//! The columns of the identification model: standard parameters, the payload's, and friction split
-//! by the direction of motion.
+//! Columns of the identification model: standard parameters, payload, and friction by direction.
 //!
-//! With asymmetric friction the columns fv, fs and off of a joint become fv_pos, fs_pos, fv_neg and
-//! fs_neg: the columns fv and fs where the joint's velocity is positive or negative, zero
-//! elsewhere. The offset is (fs_pos - fs_neg)/2 then and has no column of its own.
+//! **Asymmetric friction.** The columns fv, fs and off of a joint become fv_pos, fs_pos, fv_neg and
+//! fs_neg. They equal the columns fv and fs for positive or negative joint velocity, and are zero
+//! otherwise. The offset is then (fs_pos - fs_neg)/2 and has no column of its own.
 //!
-//! The sign of a joint's velocity changes between two samples. Torques and accelerations stand for the
-//! means over the sampling intervals, so the columns fs can take the mean of the sign over the interval,
-//! too; the sign at the sample alone is early or late by up to half an interval, at every reversal.
+//! **Reversals.** The sign of a velocity changes between two samples. Torques and accelerations
+//! represent means over the sampling intervals, so the columns fs can use the mean sign over the
+//! interval. The sign at the sample itself is wrong by up to half an interval at every reversal.
 //!
-//! Around standstill the sign of a measured velocity is noise. Within a dead band the columns fs can
-//! be zero.
+//! **Dead band.** Near standstill, the sign of a measured velocity is noise. Within a dead band the
+//! columns fs can be zero.
 //!
-//! Friction that the description itself gives by direction is treated alike: where the mean of the sign over
-//! the interval is none of either direction, both columns have their part, which is told from their sum, the
-//! column of the sign. Friction that rises towards standstill (Stribeck) takes its own mean over the interval.
+//! **Described asymmetric friction** is treated alike. If the mean sign over the interval belongs
+//! to neither direction, both columns contribute, derived from their sum, the column of the sign.
+//! Stribeck friction has its own mean over the interval.
 
 use std::cell::Cell;
 
@@ -28,20 +27,20 @@ use crate::{data::Load, error::Error, settings::Settings};
 use StandardParameter as P;
 
 thread_local! {
-    /// Memory for the numbers of the model's columns, which are many, from one block to the next.
+    /// Buffer for the numbers of the model's columns, reused between blocks.
     static NUMBERS: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
 }
 
-/// Where the numbers of a column come from.
+/// Source of the numbers of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Origin {
     /// A column of [`Function::IdmRedPlatform`].
     Robot(usize),
-    /// The sum of two of them, which are friction of the two directions.
+    /// The sum of two of them, friction of both directions.
     Both([usize; 2]),
     /// A column of [`Function::IdmRedPayload`].
     Payload(usize),
-    /// A column of [`Function::IdmRedPlatform`] that counts in runs with the payload alone.
+    /// A column of [`Function::IdmRedPlatform`] that counts only in loaded runs.
     Carried(usize),
 }
 
@@ -51,9 +50,10 @@ impl Origin {
     }
 }
 
-/// Whether a parameter is one of the payload of a robot without platform: of a body with the name `payload`,
-/// which the model has in all runs. Where some runs are labelled as runs with payload, its columns are zero in
-/// the others.
+/// Whether a parameter belongs to the payload of a robot without platform.
+///
+/// This is a body named `payload`, which the model has in all runs. If some runs are labelled as
+/// loaded, its columns are zero in the others.
 #[must_use]
 pub fn is_carried(parameter: &Parameter) -> bool {
     let of_leg = matches!(parameter.body, Body::Leg { .. });
@@ -66,12 +66,12 @@ pub(crate) fn has_payload(info: &Info<'_>) -> bool {
     !info.payload_parameters.is_empty() || info.parameters.iter().any(is_carried)
 }
 
-/// The direction of motion in which a friction parameter acts.
+/// Direction of motion in which a friction parameter acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Direction {
-    /// Where the joint's velocity is positive.
+    /// Positive joint velocity.
     Positive,
-    /// Where the joint's velocity is negative.
+    /// Negative joint velocity.
     Negative,
 }
 
@@ -81,36 +81,36 @@ pub enum Direction {
 pub struct Column {
     /// Name of its parameter.
     pub name: String,
-    /// Name of the standard parameter that it comes from.
+    /// Name of its standard parameter.
     pub standard: String,
     /// SI unit of the parameter.
     pub unit: &'static str,
-    /// Which standard parameter it is.
+    /// Symbol of its standard parameter.
     pub symbol: StandardParameter,
-    /// Where its body is.
+    /// Body of the parameter.
     pub body: Body,
-    /// The direction of motion to which a friction parameter is confined.
+    /// Direction of motion of a friction parameter, if split.
     pub direction: Option<Direction>,
-    /// The rate, of a joint or a combination of joints, on which the column depends beside the model.
+    /// Rate of a joint, or of a combination of joints, that the column depends on.
     rate: Option<Rate>,
-    /// How the column of a Coulomb parameter is evaluated around reversals.
+    /// Treatment of reversals, for a Coulomb parameter.
     reversal: Option<Reversal>,
     origin: Origin,
-    /// Of one payload of several, its name.
+    /// Name of its payload, if there are several.
     pub(crate) load: Option<String>,
 }
 
-/// How the sign of a velocity is taken around reversals.
+/// Treatment of the sign of a velocity around reversals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reversal {
-    /// The speed below which there is none.
+    /// Speed below which there is no sign.
     band: f64,
     /// Whether it is the mean over the sampling interval.
     averaged: bool,
 }
 
 impl Reversal {
-    /// As the settings ask for it.
+    /// From the settings.
     pub(crate) fn new(settings: &Settings) -> Self {
         Self {
             band: settings.velocity_dead_band,
@@ -118,25 +118,25 @@ impl Reversal {
         }
     }
 
-    /// The sign of a velocity that changes by `step` in a sampling interval; none within the dead band.
+    /// Sign of a velocity that changes by `step` in a sampling interval; `None` in the dead band.
     pub(crate) fn sign(self, velocity: f64, step: f64) -> Option<f64> {
         (velocity.abs() >= self.band).then(|| mean_sign(velocity, self.step(step)))
     }
 
-    /// Whether the velocity has one sign in the whole interval, beyond the dead band.
+    /// Whether the velocity has one sign in the whole interval, outside the dead band.
     const fn is_steady(self, velocity: f64, step: f64) -> bool {
         let speed = velocity.abs();
         speed > 0.0 && speed >= self.band && 2.0 * speed >= self.step(step).abs()
     }
 
-    /// By how much the velocity changes in the interval that counts.
+    /// Effective change of the velocity in the interval.
     const fn step(self, step: f64) -> f64 {
         if self.averaged { step } else { 0.0 }
     }
 }
 
 impl Column {
-    /// The whole column of a standard parameter.
+    /// The unsplit column of a standard parameter.
     fn new(parameter: &Parameter, origin: Origin) -> Self {
         Self {
             name: parameter.name.to_owned(),
@@ -152,12 +152,12 @@ impl Column {
         }
     }
 
-    /// Whether it is one of the payload.
+    /// Whether it belongs to the payload.
     pub(crate) const fn is_of_payload(&self) -> bool {
         self.origin.is_of_payload()
     }
 
-    /// Whether the column counts where the robot carries this.
+    /// Whether the column counts with this payload.
     fn counts(&self, carried: Load<'_>) -> bool {
         !self.origin.is_of_payload()
             || match (carried, &self.load) {
@@ -167,7 +167,7 @@ impl Column {
             }
     }
 
-    /// The payload's column as that of the payload with this name.
+    /// The payload's column for the payload with this name.
     fn named(&self, load: &str) -> Self {
         Self {
             name: format!("{}_{load}", self.name),
@@ -177,8 +177,9 @@ impl Column {
         }
     }
 
-    /// The factor of the model's column at a velocity of its coordinate, which changes by `step` in a sampling
-    /// interval.
+    /// Factor of the model's column at a velocity of its coordinate.
+    ///
+    /// The velocity changes by `step` in a sampling interval.
     fn factor(&self, velocity: f64, step: f64) -> f64 {
         if let (Some(rate), Some(own)) = (&self.rate, self.reversal)
             && let Some(factor) = rate.mean_factor(velocity, own.step(step))
@@ -190,7 +191,7 @@ impl Column {
             };
         }
         let sign = match self.reversal {
-            // As nearly always: the sign is that of the sample throughout the interval.
+            // The usual case: one sign throughout the interval.
             Some(own) if self.direction.is_none() && own.is_steady(velocity, step) => return 1.0,
             Some(reversal) => reversal.sign(velocity, step),
             None => Some(mean_sign(velocity, 0.0)),
@@ -198,7 +199,7 @@ impl Column {
         let Some(sign) = sign else {
             return 0.0;
         };
-        // The model's column has the sign of the velocity or, of fv, the velocity itself.
+        // The model's column has the sign of the velocity, or for fv the velocity itself.
         match self.direction {
             None => sign * velocity.signum(),
             Some(Direction::Positive) => 0.5 * (1.0 + sign) * velocity.signum(),
@@ -206,7 +207,7 @@ impl Column {
         }
     }
 
-    /// The column of a friction parameter split by the direction of its rate.
+    /// Splits the column of a friction parameter by the direction of its rate.
     fn split(self, rate: &Rate) -> [Self; 2] {
         let symbol = self.symbol.name();
         [(Direction::Positive, "pos"), (Direction::Negative, "neg")].map(|(direction, suffix)| {
@@ -221,18 +222,19 @@ impl Column {
     }
 }
 
-/// The columns of an identification, in the order of the model: the robot's, then the payload's.
+/// Columns of an identification, in the order of the model: the robot's, then the payload's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnSet {
     columns: Vec<Column>,
 }
 
 impl ColumnSet {
-    /// The columns of a model, with those of the payload when a run carries it, and with
-    /// friction split by direction on request.
+    /// Columns of a model, with those of the payload if a run carries it.
+    ///
+    /// Friction is split by direction on request.
     ///
     /// # Errors
-    /// A friction parameter whose rate can't be recognised.
+    /// A friction parameter whose rate cannot be recognised.
     pub fn new(
         model: &dyn Model,
         payload: bool,
@@ -274,8 +276,9 @@ impl ColumnSet {
         Ok(Self { columns })
     }
 
-    /// These columns with those of the payload once for each of these payloads, `m_payload_A` for instance; as
-    /// they are without names.
+    /// Repeats the payload's columns for each of these payloads, such as `m_payload_A`.
+    ///
+    /// Without names the columns stay unchanged.
     #[must_use]
     pub fn with_payloads(self, names: &[String]) -> Self {
         if names.is_empty() {
@@ -289,13 +292,13 @@ impl ColumnSet {
         Self { columns }
     }
 
-    /// Whether a payload of this name is among them, or one without a name.
+    /// Whether there are columns for a payload of this name, or for an unnamed one.
     pub(crate) fn has_load(&self, name: &str) -> bool {
         let mut loads = { self.columns.iter() }.filter(|column| column.origin.is_of_payload());
         loads.any(|column| column.load.as_deref().is_none_or(|own| own == name))
     }
 
-    /// Indices of the columns of each payload.
+    /// Column indices of each payload.
     #[must_use]
     pub fn loads(&self) -> Vec<Vec<usize>> {
         let mut loads: Vec<(Option<&str>, Vec<usize>)> = Vec::new();
@@ -309,12 +312,13 @@ impl ColumnSet {
         loads.into_iter().map(|(_, all)| all).collect()
     }
 
-    /// These columns, those of Coulomb friction being zero where the speed of their joint is below the
-    /// dead band of the settings, and having the mean sign over a sampling interval where these ask
-    /// for it.
+    /// Applies the settings for reversals to the columns of Coulomb friction.
+    ///
+    /// They are zero below the dead band of the joint's speed, and can use the mean sign over a
+    /// sampling interval.
     ///
     /// # Errors
-    /// A friction parameter whose rate can't be recognised.
+    /// A friction parameter whose rate cannot be recognised.
     pub fn with_reversals(mut self, model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
         let reversal = Reversal::new(settings);
         if reversal.band > 0.0 || reversal.averaged {
@@ -335,7 +339,7 @@ impl ColumnSet {
                     _ => continue,
                 };
                 if let Some(other) = other {
-                    // Friction of one direction alone keeps the sign at the sample.
+                    // Friction of a single direction keeps the sign at the sample.
                     let Some(other) = of(other, column.body) else {
                         continue;
                     };
@@ -349,13 +353,13 @@ impl ColumnSet {
         Ok(self)
     }
 
-    /// The columns.
+    /// All columns.
     #[must_use]
     pub fn as_slice(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The columns' names and what they are.
+    /// Names and symbols of the columns.
     pub(crate) fn named(&self) -> Vec<(&str, StandardParameter)> {
         let columns = self.columns.iter();
         columns.map(|one| (one.name.as_str(), one.symbol)).collect()
@@ -381,9 +385,10 @@ impl ColumnSet {
             .collect()
     }
 
-    /// Evaluates the columns `picked` in case 1 at samples one sampling `interval` (s) apart: for each of
-    /// the r lines, samples x (picked + `more`), row-major, with room for more columns behind. The
-    /// payload's are zero in an unloaded run, eq. (49), and in one with another payload.
+    /// Evaluates the columns `picked` of Γ¹ at samples one sampling `interval` (s) apart.
+    ///
+    /// For each of the r lines, the result is samples × (picked + `more`), row-major, with zeros in
+    /// the additional columns. The payload's columns are zero without this payload, eq. (49).
     ///
     /// # Errors
     /// The first sample at which the model has no value.
@@ -421,7 +426,7 @@ impl ColumnSet {
         let velocities = ask(Function::JointVelocities, split)?;
         let accelerations = ask(Function::JointAccelerations, averaged)?;
         let width = picked.len() + more;
-        // Where the numbers of a row come from: places of the robot's columns, then the payload's.
+        // Sources of the numbers of a row: the robot's columns, then the payload's.
         let (mut own, mut load) = (Vec::new(), Vec::new());
         for (to, column) in columns().enumerate() {
             if !column.counts(carried) {
@@ -460,7 +465,7 @@ impl ColumnSet {
     }
 }
 
-/// The mean of the sign over an interval in which a value changes by `step`, `value` in its middle.
+/// Mean sign over an interval in which a value changes by `step`, with `value` at its centre.
 fn mean_sign(value: f64, step: f64) -> f64 {
     if value == 0.0 {
         0.0

@@ -1,30 +1,30 @@
-//! Which columns of a matrix depend on those before them, and how: Householder QR without
-//! pivoting, eq. (42), column after column in a given order.
+//! Linear dependence of matrix columns on earlier ones, by Householder QR without pivoting, eq.
+//! (42).
 //!
-//! A column whose part outside the span of the kept ones is smaller than a tolerance times its own
-//! norm is dependent: |R_kk| < α. It makes no reflection, and its coefficients on the kept columns
-//! are R_1^-1 times its part inside.
+//! Columns are processed in a given order. A column is dependent if its part outside the span of
+//! the kept ones is below a tolerance times its norm: |R_kk| < α. It then causes no reflection, and
+//! its coefficients on the kept columns are R_1^-1 times its part inside the span.
 
 use nalgebra::DMatrix;
 
-/// Coefficients smaller than this, for columns scaled to unit norm, are rounding.
+/// Coefficients below this, for columns of unit norm, are rounding errors.
 const COEFFICIENT_TOLERANCE: f64 = 1e-9;
 
-/// Columns with less than this part of the largest column's norm are zero.
+/// Columns below this fraction of the largest column norm are zero.
 const ZERO_TOLERANCE: f64 = 1e-13;
 
-/// What the factorisation found; all numbers are column indices of the matrix.
+/// Result of the factorisation; all numbers are column indices of the matrix.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Elimination {
     /// Independent columns, in the given order.
     pub(crate) kept: Vec<usize>,
-    /// Dependent columns and their coefficients on kept ones.
+    /// Dependent columns, with their coefficients on kept ones.
     pub(crate) dependent: Vec<(usize, Vec<(usize, f64)>)>,
-    /// Columns that are zero.
+    /// Zero columns.
     pub(crate) zero: Vec<usize>,
 }
 
-/// Splits the columns of `matrix` named by `order` into independent, dependent and zero ones.
+/// Splits the columns `order` of `matrix` into independent, dependent and zero ones.
 pub(crate) fn eliminate(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) -> Elimination {
     let norms: Vec<f64> = order
         .iter()
@@ -40,7 +40,7 @@ pub(crate) fn eliminate(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) 
         }
     }
     let mut result = Elimination::default();
-    // Positions in `order` of the kept columns.
+    // Positions of the kept columns in `order`.
     let mut places: Vec<usize> = Vec::new();
     for k in 0..order.len() {
         let rank = places.len();
@@ -64,8 +64,7 @@ pub(crate) fn eliminate(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) 
     result
 }
 
-/// The rank of the columns of `matrix` named by `order`, and the norm of the part of its last column that
-/// lies outside their span.
+/// Rank of the columns `order` of `matrix`, and distance of its last column from their span.
 pub(crate) fn residual(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) -> (usize, f64) {
     let count = order.len();
     let mut work = DMatrix::zeros(matrix.nrows(), count + 1);
@@ -92,12 +91,12 @@ pub(crate) fn residual(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) -
     (rank, work.view((rank, count), (rest, 1)).norm())
 }
 
-/// Zeroes column `k` below row `row` by a Householder reflection of it and all columns after it.
+/// Zeroes column `k` below row `row` by a Householder reflection of it and all later columns.
 fn reflect(work: &mut DMatrix<f64>, row: usize, k: usize) {
     let (rows, columns) = work.shape();
     let mut normal = work.view((row, k), (rows - row, 1)).clone_owned();
     let norm = normal.norm();
-    // The sign that adds magnitudes instead of cancelling them.
+    // The sign that avoids cancellation.
     normal[0] += norm.copysign(normal[0]);
     let square = normal.norm_squared();
     let mut rest = work.view_mut((row, k), (rows - row, columns - k));
@@ -105,7 +104,7 @@ fn reflect(work: &mut DMatrix<f64>, row: usize, k: usize) {
     rest -= normal * projection;
 }
 
-/// Solves R_1 c = (column k above row `places.len()`), R_1 being the kept columns' triangle.
+/// Solves R_1 c = (column k above row `places.len()`), with the triangle R_1 of the kept columns.
 fn back_substitute(work: &DMatrix<f64>, places: &[usize], k: usize) -> Vec<f64> {
     let rank = places.len();
     let mut c: Vec<f64> = (0..rank).map(|row| work[(row, k)]).collect();
@@ -126,7 +125,7 @@ mod tests {
 
     #[test]
     fn relations_come_back() {
-        // Column 2 = 3 x column 0 - 0.5 x column 1, column 3 is zero, column 4 is new.
+        // Column 2 = 3 × column 0 - 0.5 × column 1, column 3 is zero, column 4 is independent.
         let matrix = DMatrix::from_fn(6, 5, |row, column| {
             let x = [(row as f64).sin(), (row * row) as f64 * 0.1];
             match column {
@@ -142,7 +141,7 @@ mod tests {
         let (column, coefficients) = &result.dependent[0];
         assert_eq!(*column, 2);
         assert!((coefficients[0].1 - 3.0).abs() < 1e-13 && (coefficients[1].1 + 0.5).abs() < 1e-13);
-        // Column 4 lies outside the span of the first three, by what it has left.
+        // Column 4 is outside the span of the first three by its remainder.
         let (rank, norm) = residual(&matrix, &[0, 1, 2, 3], 1e-9);
         let plane = matrix.columns(0, 2).clone_owned();
         let y = matrix.column(4).clone_owned();
@@ -153,7 +152,7 @@ mod tests {
             .expect("a solution");
         assert_eq!(rank, 2);
         assert!((norm - (y - plane * nearest).norm()).abs() < 1e-10);
-        // In another order another column is the dependent one.
+        // In another order, another column is dependent.
         assert_eq!(eliminate(&matrix, &[2, 1, 0], 1e-9).kept, [2, 1]);
     }
 }

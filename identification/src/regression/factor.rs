@@ -1,8 +1,8 @@
-//! The least-squares system [W Y] of one line j of Γ, kept as its upper triangular factor R.
+//! Least-squares system [W Y] of one line j of Γ, stored as its upper triangular factor R.
 //!
 //! Rows are added block by block: the QR factorisation of [R; block] is the factor of all rows so
-//! far, so memory does not grow with the number of equations. Residuals, norms, subsets of columns
-//! and weights all follow from R: ||Y - W χ|| = ||R_Y - R_W χ||.
+//! far, so memory is independent of the number of equations. Residuals, norms, subsets of columns
+//! and weights follow from R: ||Y - W χ|| = ||R_Y - R_W χ||.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,15 +12,15 @@ use super::{
     update::{update, update_by_triangle},
 };
 
-/// Columns whose part outside the others is below this part of their norm are dependent on the
-/// data.
+/// A column is dependent on the data if its part outside the others is below this fraction.
 pub(crate) const DATA_RANK_TOLERANCE: f64 = 1e-10;
 
-/// Numbers that are taken together, at most, unless rows are as many as columns: all reflections go through them, so
-/// they have to stay in the nearest cache.
+/// Largest number of values in one update, unless rows are as many as columns.
+///
+/// All reflections use them, so they should fit the first-level cache.
 const TOGETHER: usize = 6144;
 
-/// R factor of [W Y], with the sums of all columns for the mean of the residual.
+/// R factor of [W Y], with the sums of all columns for the mean residual.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factor {
     r: DMatrix<f64>,
@@ -29,7 +29,7 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// The factor of no equations in `parameters` unknowns.
+    /// A factor without equations in `parameters` unknowns.
     #[must_use]
     pub fn new(parameters: usize) -> Self {
         let size = parameters + 1;
@@ -40,7 +40,7 @@ impl Factor {
         }
     }
 
-    /// The factor with this R, upper triangular, of so many equations with these sums of columns.
+    /// The upper triangular factor `r` of `equations` equations with these column sums.
     pub(crate) fn of(r: DMatrix<f64>, equations: usize, sums: Vec<f64>) -> Self {
         Self {
             r,
@@ -49,8 +49,9 @@ impl Factor {
         }
     }
 
-    /// Adds equations: rows x (parameters + 1), the last column being Y. A matrix of another
-    /// width is ignored.
+    /// Adds equations: rows × (parameters + 1), with Y last.
+    ///
+    /// A matrix of another width is ignored.
     pub fn push(&mut self, rows: &DMatrix<f64>) {
         let size = self.r.ncols();
         if rows.ncols() != size {
@@ -65,7 +66,7 @@ impl Factor {
         }
     }
 
-    /// Adds equations that come row by row, row-major.
+    /// Adds equations in row-major order.
     pub(crate) fn push_rows(&mut self, rows: &[f64]) {
         let size = self.r.ncols();
         for rows in rows.chunks(self.worthwhile() * size) {
@@ -76,7 +77,7 @@ impl Factor {
         }
     }
 
-    /// Rows that are worth a factorisation.
+    /// Number of rows for an efficient update.
     pub(crate) fn worthwhile(&self) -> usize {
         let size = self.r.ncols();
         (TOGETHER / size).max(size)
@@ -89,7 +90,7 @@ impl Factor {
         update_by_triangle(&mut self.r, &mut other.r.clone());
     }
 
-    /// Adds the equations of other factors, each scaled by a weight.
+    /// Combines factors, each scaled by a weight.
     #[must_use]
     pub fn merged(factors: &[Self], weights: &[f64]) -> Self {
         let parameters = factors.first().map_or(0, Self::parameters);
@@ -107,8 +108,7 @@ impl Factor {
         update(&mut self.r, &mut block);
     }
 
-    /// The factor of the same equations in unknowns whose columns are combinations of these, a column of
-    /// `coefficients` for each.
+    /// Factor of the same equations with columns W `coefficients`.
     pub(crate) fn combined(&self, coefficients: &DMatrix<f64>) -> Self {
         let own = self.parameters();
         let y = DVector::from_fn(own + 1, |row, _| f64::from(u8::from(row == own)));
@@ -116,14 +116,14 @@ impl Factor {
         self.of_columns(&rows, &y)
     }
 
-    /// The same with a combination of the columns in the place of Y.
+    /// The same with a combination of the columns instead of Y.
     pub(crate) fn combined_with(&self, coefficients: &DMatrix<f64>, y: &DVector<f64>) -> Self {
         let own = self.parameters();
         let rows = coefficients.clone().insert_row(own, 0.0);
         self.of_columns(&rows, &y.clone().insert_row(own, 0.0))
     }
 
-    /// The factor of combinations of all columns, Y among them.
+    /// Factor of combinations of all columns, including Y.
     fn of_columns(&self, coefficients: &DMatrix<f64>, y: &DVector<f64>) -> Self {
         let count = coefficients.ncols();
         let all = coefficients.clone().insert_column(count, 0.0);
@@ -148,13 +148,13 @@ impl Factor {
         self.equations
     }
 
-    /// The factor R of [W Y], square.
+    /// Factor R of [W Y], square.
     #[must_use]
     pub const fn matrix(&self) -> &DMatrix<f64> {
         &self.r
     }
 
-    /// The sums of all columns, Y's last.
+    /// Sums of all columns, Y last.
     pub(crate) fn sums(&self) -> &[f64] {
         self.sums.as_slice()
     }
@@ -165,7 +165,7 @@ impl Factor {
         self.r.column(self.parameters()).norm()
     }
 
-    /// ||Y - W χ|| of parameters in the columns `selected`.
+    /// ||Y - W χ|| for the parameters `values` of the columns `selected`.
     #[must_use]
     pub fn residual_norm(&self, selected: &[usize], values: &[f64]) -> f64 {
         let mut residual = self.r.column(self.parameters()).clone_owned();
@@ -175,7 +175,7 @@ impl Factor {
         residual.norm()
     }
 
-    /// The smallest ||Y - W χ|| of parameters in the columns `selected`, which may be dependent.
+    /// Smallest ||Y - W χ|| for the columns `selected`, which may be dependent.
     pub(crate) fn smallest_residual(&self, selected: &[usize]) -> f64 {
         residual(&self.r, selected, DATA_RANK_TOLERANCE).1
     }
@@ -191,13 +191,14 @@ impl Factor {
         self.sums[self.parameters()] - explained
     }
 
-    /// The factor of the columns `selected` and Y: R_1 (upper triangular), the right-hand side
-    /// Q_1ᵀ Y and the smallest possible residual norm.
+    /// Factor of the columns `selected` and Y.
+    ///
+    /// R_1 (upper triangular), the right-hand side Q_1ᵀ Y and the smallest residual norm.
     pub(crate) fn reduced(&self, selected: &[usize]) -> Reduced {
         Self::reduced_together(std::slice::from_ref(self), &[1.0], selected)
     }
 
-    /// The reduced system of the equations of several factors, each scaled by a weight.
+    /// Reduced system of several factors, each scaled by a weight.
     pub(crate) fn reduced_together(
         factors: &[Self],
         weights: &[f64],

@@ -1,20 +1,19 @@
-//! The equations of a motion that returns, in the mean at each phase.
+//! Mean equations of a periodic motion at each phase.
 //!
-//! What goes with the motion returns with it, noise does not: of K returns the mean has a K-th of the
-//! variance of the noise, and all of the rest. The phases of a period are told apart to a power of two,
-//! so that their transform is quick.
+//! Periodic signals remain in the mean over K periods, while the variance of noise decreases by K.
+//! The number of phases is a power of two, for a fast Fourier transform.
 
 use nalgebra::DMatrix;
 
 use crate::data::periods::Return;
 
-/// Equations of a period, at least: of fewer there is nothing to be told.
+/// Fewest equations of a period.
 const FEWEST: usize = 16;
 
-/// Phases of a period, at most.
+/// Largest number of phases of a period.
 const MOST_PHASES: usize = 2048;
 
-/// At which phase of its motion each equation of a run is.
+/// Phases of a run's equations in its motion.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Phases {
     /// Number of the first run with this motion.
@@ -25,7 +24,7 @@ pub(crate) struct Phases {
 }
 
 impl Phases {
-    /// Those of a run decimated to one sample in so many; none of a period of too few equations.
+    /// Phases of a run with this decimation; `None` for a period of too few equations.
     pub(crate) fn new(motion: Return, decimation: usize) -> Option<Self> {
         let period = motion.samples as f64 / decimation as f64;
         let largest = (period as usize).min(MOST_PHASES);
@@ -36,7 +35,7 @@ impl Phases {
         })
     }
 
-    /// The phase of an equation.
+    /// Phase of an equation.
     fn of(&self, equation: usize) -> usize {
         let part = (equation as f64 / self.period).fract();
         ((part * self.count as f64) as usize).min(self.count - 1)
@@ -54,7 +53,7 @@ pub(crate) struct Fold {
 }
 
 impl Fold {
-    /// That of no rows.
+    /// Sums of no rows.
     pub(crate) fn new(phases: Phases, width: usize) -> Self {
         Self {
             phases,
@@ -73,7 +72,7 @@ impl Fold {
         self.counts[phase] += 1;
     }
 
-    /// Adds what another run has of the same motion.
+    /// Adds the sums of another run of the same motion.
     pub(crate) fn merge(&mut self, other: &Self) {
         if self.sums.len() != other.sums.len() {
             return;
@@ -84,8 +83,9 @@ impl Fold {
         counts.for_each(|(count, own)| *count += own);
     }
 
-    /// The mean rows, phases x values, times the root of the equations of a phase: products of them are
-    /// about those of all rows. None where a phase has no equation.
+    /// Mean rows, phases × values, times the square root of the equations per phase.
+    ///
+    /// Products of them approximate those of all rows. `None` if a phase has no equation.
     pub(crate) fn means(&self) -> Option<DMatrix<f64>> {
         if self.counts.contains(&0) {
             return None;
@@ -99,10 +99,12 @@ impl Fold {
     }
 }
 
-/// What the lines have of a motion that returns.
+/// Sums of all lines for a periodic motion.
 pub(crate) type Folds = Vec<Fold>;
 
-/// Adds the folds of a run to those of all, which have one entry for each motion, and gives the place of its own.
+/// Adds the folds of a run to `all`, which has one entry for each motion.
+///
+/// Returns the index of the run's motion.
 pub(crate) fn add(all: &mut Vec<Folds>, own: Folds) -> usize {
     let motion = |folds: &Folds| folds.first().map(|fold| fold.phases.motion);
     let same = all.iter().position(|one| motion(one) == motion(&own));
@@ -127,7 +129,7 @@ mod tests {
 
     #[test]
     fn products_of_means_are_those_of_all_rows_of_a_motion_that_returns() {
-        // Five periods of 60 equations, of which 32 phases are kept.
+        // Five periods of 60 equations, with 32 phases.
         let phases = phases(600, 10).expect("long enough");
         let row = |equation: usize| {
             let angle = std::f64::consts::TAU * equation as f64 / 60.0;

@@ -1,11 +1,13 @@
-//! At which rate the coordinate of a friction parameter moves, found out by the power that its column takes.
+//! Finds the joint rate of each friction parameter from the power of its column.
 //!
-//! A joint of its own has its own rate. One that follows others, and a motor that turns several joints, has
-//! a constant combination of their rates, c·q̇. The power of its friction gives (c·q̇)² = q̇ᵀ (c cᵀ) q̇ at every
-//! state, which is linear in the matrix c cᵀ; c is its only eigenvector whose eigenvalue isn't zero. States are
-//! so slow that friction which rises towards standstill (Stribeck) has all of its height, and is dry friction
-//! like any other; how fast it falls is seen at speed. Friction in proportion to a load takes |load| |u|, and the
-//! load of a pose is the same for two motions: their ratio is that of the rates.
+//! A friction parameter usually belongs to the rate of a joint. Coupled joints, and motors that
+//! move several joints, have a constant combination of joint rates, c·q̇. The power of viscous
+//! friction is (c·q̇)² = q̇ᵀ (c cᵀ) q̇ at every state, linear in the matrix c cᵀ. c is its only
+//! eigenvector with a non-zero eigenvalue.
+//!
+//! The states are so slow that Stribeck friction has its full height, like dry friction. Its
+//! decrease is seen at speed. Load-dependent friction has the power |load| |u|, and the load is
+//! equal for two motions at the same pose, so their ratio is that of the rates.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use overact::Code;
@@ -14,17 +16,16 @@ use overact::{Columns, Function, Model, StandardParameter};
 use super::states::{States, random_states};
 use crate::error::{Error, Problem};
 
-/// States from which the rate of a friction parameter is recognised, beyond those that a combination of
-/// joints needs.
+/// States for the recognition of a rate, in addition to those for a combination of joints.
 const RECOGNITION_STATES: usize = 12;
 
-/// Relative tolerance of that recognition.
+/// Relative tolerance of the recognition.
 const RECOGNITION_TOLERANCE: f64 = 1e-6;
 
-/// Part of the speed of random states at which friction is recognised, a power of two.
+/// Fraction of the speed of random states at which friction is recognised, a power of two.
 const SLOW: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// Factors of joints in a combination below this part of the largest one are rounding.
+/// Factors in a combination below this fraction of the largest one are rounding errors.
 const NEGLIGIBLE: f64 = 1e-7;
 
 /// A rate as a constant combination of joint rates.
@@ -32,7 +33,7 @@ const NEGLIGIBLE: f64 = 1e-7;
 pub(crate) struct Rate {
     /// Joints with their factors.
     joints: Vec<(usize, f64)>,
-    /// The Stribeck velocity of friction that falls with it.
+    /// Stribeck velocity of the friction, if it has one.
     stribeck: Option<f64>,
 }
 
@@ -44,7 +45,7 @@ impl Rate {
         }
     }
 
-    /// Its value where all joints have these rates, or accelerations.
+    /// Value for these rates, or accelerations, of all joints.
     pub(crate) fn of(&self, joints: &[f64]) -> f64 {
         let terms = self.joints.iter();
         terms.map(|(joint, factor)| factor * joints[*joint]).sum()
@@ -55,14 +56,15 @@ impl Rate {
         Self::new(joints.map(|(joint, factor)| (joint, -factor)).collect())
     }
 
-    /// By how much the mean over an interval in which the rate changes by `step` differs from the friction at
-    /// its middle, as a factor; for friction that falls with the rate.
+    /// Ratio of the mean friction over an interval to that at its centre, for Stribeck friction.
+    ///
+    /// The rate changes by `step` in the interval.
     pub(crate) fn mean_factor(&self, rate: f64, step: f64) -> Option<f64> {
         let velocity = self.stribeck?;
         if rate == 0.0 || step == 0.0 {
             return Some(1.0);
         }
-        // ∫ sign(u)/(1 + (u/v)²) du = v atan(|u|/v), and the difference of two such.
+        // ∫ sign(u)/(1 + (u/v)²) du = v atan(|u|/v), and the difference of two such values.
         let [before, after] = [rate - step / 2.0, rate + step / 2.0].map(|u| u.abs() / velocity);
         let mean = velocity * ((after - before) / (1.0 + after * before)).atan() / step;
         let middle = rate.signum() / (1.0 + (rate / velocity).powi(2));
@@ -70,7 +72,7 @@ impl Rate {
     }
 }
 
-/// The part of a rate that a column of friction is about.
+/// The part of a rate that affects a friction column.
 fn part(rate: f64, symbol: StandardParameter) -> f64 {
     use StandardParameter as P;
     match symbol {
@@ -80,18 +82,19 @@ fn part(rate: f64, symbol: StandardParameter) -> f64 {
     }
 }
 
-/// Motion and regressor on random states, by which the rate u of a friction parameter is recognised: the
-/// power of friction is vᵀ W_fv = u² and vᵀ W_fs = |u|, or that of one direction.
+/// Motion and regressor on random states, to recognise the rate u of a friction parameter.
+///
+/// The power of friction is vᵀ W_fv = u² and vᵀ W_fs = |u|, or that of one direction.
 struct FrictionPower {
     samples: usize,
     dof: usize,
     joints: usize,
     parameters: usize,
     twist: Vec<f64>,
-    /// At these states, and at their poses with a small part of the twist.
+    /// Regressors at these states, and at the same poses with a small fraction of the twist.
     regressors: [Vec<f64>; 2],
     velocities: Vec<f64>,
-    /// The same motion at each state's pose and at the next one's twist, where friction has a load.
+    /// The motion at each state's pose with the next state's twist, for load-dependent friction.
     other: Option<Box<FrictionPower>>,
 }
 
@@ -101,7 +104,7 @@ impl FrictionPower {
         let sizes = model.info().sizes;
         let unknown = sizes.joints * (sizes.joints + 1) / 2;
         let friction = |one: &overact::Parameter| part(-1.0, one.symbol) != part(1.0, one.symbol);
-        // Friction of one direction shows at every other state.
+        // Friction of one direction appears in half of the states.
         let times = 1 + usize::from(model.info().parameters.iter().any(friction));
         let states = random_states(model, times * (RECOGNITION_STATES + unknown), seed)?;
         let is_load = |one: &overact::Parameter| one.symbol == StandardParameter::Fl;
@@ -121,7 +124,7 @@ impl FrictionPower {
         Ok(own)
     }
 
-    /// At the poses of some states, and twists.
+    /// Evaluates the model at the poses of some states, with these twists.
     fn at(model: &dyn Model, states: &States, twist: &[f64]) -> Result<Self, Error> {
         let sizes = model.info().sizes;
         let slow: Vec<f64> = twist.iter().map(|v| SLOW * v).collect();
@@ -147,7 +150,7 @@ impl FrictionPower {
         })
     }
 
-    /// vᵀ W of a column at a state, of friction at its speed or at a small part of it.
+    /// vᵀ W of a column at a state, at its speed or at a small fraction of it.
     fn power(&self, slow: bool, sample: usize, column: usize) -> f64 {
         let rows = sample * self.dof..(sample + 1) * self.dof;
         let regressor = &self.regressors[usize::from(slow)];
@@ -155,12 +158,12 @@ impl FrictionPower {
             .sum()
     }
 
-    /// The rates of all joints at a state.
+    /// Rates of all joints at a state.
     fn joints(&self, sample: usize) -> &[f64] {
         &self.velocities[sample * self.joints..(sample + 1) * self.joints]
     }
 
-    /// The part of u that a friction column is about, at a state.
+    /// The part of u that affects a friction column, at a state.
     fn speed(&self, sample: usize, column: usize, symbol: StandardParameter) -> f64 {
         let power = self.power(true, sample, column).max(0.0);
         match symbol.is_viscous() {
@@ -169,7 +172,7 @@ impl FrictionPower {
         }
     }
 
-    /// Whether a friction column is that of a rate.
+    /// Whether a friction column belongs to a rate.
     fn matches(&self, rate: &Rate, column: usize, symbol: StandardParameter) -> bool {
         (0..self.samples).all(|sample| {
             let expected = part(rate.of(self.joints(sample)), symbol);
@@ -178,7 +181,7 @@ impl FrictionPower {
         })
     }
 
-    /// Whether a column of friction under a load is that of a rate.
+    /// Whether a column of load-dependent friction belongs to a rate.
     fn matches_load(&self, rate: &Rate, column: usize) -> bool {
         let Some(other) = self.other.as_deref() else {
             return false;
@@ -193,7 +196,8 @@ impl FrictionPower {
         })
     }
 
-    /// The Stribeck velocity of a column: at speed u friction is 1/(1 + (u/v)²) of what it is at standstill.
+    /// Stribeck velocity v of a column: friction at speed u is 1/(1 + (u/v)²) of that at
+    /// standstill.
     fn stribeck(&self, rate: &Rate, column: usize) -> Option<f64> {
         let velocity = |sample: usize| {
             let speed = rate.of(self.joints(sample)).abs();
@@ -206,7 +210,7 @@ impl FrictionPower {
             .filter(|velocity| velocity.is_normal())
     }
 
-    /// The combination of joint rates that a friction column is about; its first factor is positive.
+    /// Combination of joint rates of a friction column; its first factor is positive.
     fn combination(&self, column: usize, symbol: StandardParameter) -> Option<Rate> {
         let pairs: Vec<(usize, usize)> = (0..self.joints)
             .flat_map(|i| (i..self.joints).map(move |j| (i, j)))
@@ -218,7 +222,7 @@ impl FrictionPower {
         let squares = DVector::from_fn(self.samples, |sample, _| {
             self.speed(sample, column, symbol).powi(2)
         });
-        // Where friction is of the other direction its rate is not seen.
+        // States with friction of the other direction do not show the rate.
         let seen = (0..self.samples).filter(|&sample| squares[sample] > 0.0);
         let seen: Vec<usize> = seen.collect();
         let (products, squares) = (products.select_rows(&seen), squares.select_rows(&seen));
@@ -243,8 +247,9 @@ impl FrictionPower {
     }
 }
 
-/// For each robot parameter, the rate of a friction parameter, or `None`. Joints that always move
-/// alike (a parallelogram) are told apart by their order.
+/// Rate of each friction parameter of the robot; `None` for other parameters.
+///
+/// Joints that always have equal rates (a parallelogram) are distinguished by their order.
 pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<Rate>>, Error> {
     let info = model.info();
     let friction = FrictionPower::new(model, seed)?;
@@ -265,7 +270,7 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
                 false => friction.matches(&own(*joint), column, symbol),
             });
         taken.extend(joint.map(|joint| (symbol, joint)));
-        // Of a joint that follows others, friction without a load tells the rate.
+        // The rate of a coupled joint follows from its friction without load.
         let same_joint = || {
             let before = info.parameters.iter().zip(&found);
             let mut rates = before.filter(|(one, _)| one.body == parameter.body);

@@ -1,10 +1,9 @@
-//! Numbers of a model's functions, put to their places in the rows of a line.
+//! Collects numbers of a model's functions in the rows of a line.
 
-/// Numbers of all samples and lines, as many for each; which of them go to which places of a row.
+/// Numbers of all samples and lines, count per line, and pairs of place in the row and number.
 pub(super) type Gathering<'a> = (&'a [f64], usize, Vec<(usize, usize)>);
 
-/// Rows of so many values of one of the lines of all samples; zeros where nothing goes to a place, sums where
-/// several numbers do.
+/// Rows of `width` values of one line for all samples; zero by default, sums for repeated places.
 pub(super) fn gathered(
     sources: &[Gathering<'_>; 2],
     (line, lines): (usize, usize),
@@ -27,7 +26,7 @@ pub(super) fn gathered(
     for sample in 0..samples {
         let from = &values[of_line(*count, sample)];
         let start = rows.len();
-        // Each number is written once, where it stays.
+        // Each number is written once to its final place.
         let own = first.iter().map(|k| from.get(*k).copied().unwrap_or(0.0));
         rows.extend(own);
         for &(place, index) in &more {

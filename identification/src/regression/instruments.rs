@@ -1,4 +1,4 @@
-//! The motion of the instruments, gone through in step with that of a run.
+//! Motion of the instruments, read in step with that of a run.
 
 use std::ops::Range;
 
@@ -12,18 +12,20 @@ use crate::{
     settings::Settings,
 };
 
-/// A run of instruments: positions that go with those of a measured run, sample by sample, but not with
-/// their errors. Its torques are not used.
+/// A run of instruments.
+///
+/// Its positions correspond to those of a measured run sample by sample but do not have their
+/// errors. Its torques are not used.
 pub(crate) struct Companion<'a> {
     motions: Motions<'a>,
-    /// Its motion at the samples of the run that are gone through.
+    /// Its motion at the current samples of the run.
     motion: Option<Motion>,
-    /// Why it can't be used.
+    /// Reason why it is unusable.
     failed: Option<Error>,
 }
 
 impl<'a> Companion<'a> {
-    /// Starts with the first sample, beside a run of so many samples.
+    /// Starts with the first sample, for a run of `samples` samples.
     ///
     /// # Errors
     /// As [`Motions::new`], or another number of samples.
@@ -51,7 +53,7 @@ impl<'a> Companion<'a> {
         })
     }
 
-    /// Goes to the samples of a motion of the run.
+    /// Moves to the samples of a motion of the run.
     pub(crate) fn advance(&mut self, motion: &Motion) {
         self.motion = None;
         if self.failed.is_none() {
@@ -62,8 +64,9 @@ impl<'a> Companion<'a> {
         }
     }
 
-    /// The equations at the samples of some blocks, with the scales of the platform's coordinates. Without any where
-    /// they can't be had, which is noted.
+    /// Equations at the samples of some blocks, with the scales of the platform's coordinates.
+    ///
+    /// Empty, with a stored error, if they cannot be computed.
     pub(crate) fn chunks(
         &mut self,
         observer: &Observer<'_>,
@@ -98,7 +101,7 @@ impl<'a> Companion<'a> {
         Ok(own)
     }
 
-    /// Why it could not be used.
+    /// Reason why it was unusable.
     pub(crate) fn into_failure(self) -> Option<Error> {
         self.failed
     }

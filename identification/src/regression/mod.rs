@@ -1,17 +1,18 @@
-//! The observation system of a model: columns, one pass over each run, and what is kept of it.
+//! Observation system of a model: columns, one pass over each run, and the stored equations.
 //!
-//! - `columns`: the columns of the model: standard parameters, payload, split friction;
-//! - `friction`, `states`: which joint a friction parameter belongs to, and states to find it out by;
+//! - `columns`: columns of the model: standard parameters, payload, split friction;
+//! - `friction`, `states`: joint of each friction parameter, and random states to find it;
 //! - `gathering`: numbers of the model in rows;
 //! - `chunk`, `observation`: successive samples as equations; the pass over a run;
-//! - `instruments`: the same equations at the motion of the instruments, in step with the run;
+//! - `instruments`: equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
-//! - `fold`: equations of a motion that returns, in the mean at each phase;
-//! - `projection`: on what the inputs are projected;
-//! - `points`: what is plotted of the motion;
-//! - `shares`: what the uncertainty of quantities identified beforehand does to estimates;
+//! - `update`: update of an R factor;
+//! - `fold`: mean equations of a periodic motion at each phase;
+//! - `projection`: projections of the inputs;
+//! - `points`: motion data for plots;
+//! - `shares`: effect of the uncertainty of previous identifications on estimates;
 //! - `system`: the system (39)-(41) of one projection;
-//! - `elimination`: columns that depend on others;
+//! - `elimination`: linearly dependent columns;
 //! - `turned`: rows of numbers as a matrix.
 
 pub(crate) mod chunk;

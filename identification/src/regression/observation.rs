@@ -1,8 +1,7 @@
-//! One pass over a run: motion, columns, projections and decimation block by block, down to what the
-//! systems of all projections keep of it.
+//! One pass over a run: motion, columns, projections and decimation, block by block.
 //!
-//! Evaluation goes in parallel over the samples of a block, decimation and factorisation over the
-//! lines of all projections.
+//! Evaluation is parallel over the samples of a block. Decimation and factorisation are parallel
+//! over the lines of all projections.
 
 use std::ops::Range;
 
@@ -33,7 +32,7 @@ use crate::{
     settings::Settings,
 };
 
-/// What is observed, the same for all runs.
+/// Options of the observation, the same for all runs.
 pub(crate) struct Observer<'a> {
     pub(crate) model: &'a dyn Model,
     pub(crate) columns: &'a ColumnSet,
@@ -43,31 +42,33 @@ pub(crate) struct Observer<'a> {
     pub(crate) settings: &'a Settings,
 }
 
-/// What is told of a run beside its equations.
+/// Other results of a pass over a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen {
-    /// Samples used.
+    /// Number of samples used.
     pub(crate) samples: usize,
     pub(crate) closure_residual: f64,
-    /// Of each line the equations that were left out at standstill; empty where none are to be.
+    /// Equations of each line excluded at standstill; empty if none are to be.
     pub(crate) still: Vec<usize>,
-    /// Motion and conditioning at the points of the plots.
+    /// Motion and conditioning at the plotted points.
     pub(crate) figures: RunFigures,
-    /// Decimated torques at these points, points x n.
+    /// Decimated torques at these points, points × n.
     pub(crate) torques: Vec<f64>,
-    /// What has been watched of its raw numbers.
+    /// Statistics of its raw numbers.
     pub(crate) monitor: Monitor,
-    /// Why its instruments can't be used, where that was found on the way.
+    /// Reason why its instruments are unusable, if found during the pass.
     pub(crate) unusable: Option<Error>,
 }
 
 impl Observer<'_> {
-    /// Goes through a run, beside its instruments where it has some. Gives, for each projection, what
-    /// its system keeps, or why it has none; and what is told of the run. `budget` is the number of
-    /// values that may be kept as stretches; `returns` is the motion of the run, where it returns.
+    /// Reads a run, with its instruments if it has some.
+    ///
+    /// Returns the equations for each projection, or the error, and the other results. `budget` is
+    /// the largest number of values in stretches. `returns` is the run's periodic motion, if it has
+    /// one.
     ///
     /// # Errors
-    /// A run that does not fit, a sample outside the workspace, a file that can't be read.
+    /// A run that does not fit, a sample outside the workspace, a file that cannot be read.
     pub(crate) fn run(
         &self,
         number: usize,
@@ -84,7 +85,7 @@ impl Observer<'_> {
             .settings
             .decimator(self.settings.decimation, log.sampling_frequency())?;
         let (lines, n) = (info.sizes.dof, info.sizes.actuators);
-        // Columns and Y, and the instruments where there are some.
+        // Columns and Y, and instruments if there are some.
         let width = self.base.len() * if companion.is_some() { 2 } else { 1 } + 1;
         let equations = decimator.kept(samples);
         let plan = Plan::new(
@@ -111,7 +112,7 @@ impl Observer<'_> {
                 own.advance(&motion);
             }
             let (blocks, mut conditions) = (motion.samples.div_ceil(BLOCK), Vec::new());
-            // Rows are decimated while they are in the caches.
+            // Decimate rows while they are in the cache.
             let together = rayon::current_num_threads().max(1);
             for first in (0..blocks).step_by(together) {
                 let range = first..(first + together).min(blocks);
@@ -167,7 +168,7 @@ impl Observer<'_> {
         Ok((systems, seen))
     }
 
-    /// Where the equations of a run go: a sink for each line of each projection.
+    /// Sinks for the equations of a run, one for each line of each projection.
     fn sinks(
         &self,
         plan: &Plan,
@@ -185,8 +186,9 @@ impl Observer<'_> {
         (0..lines * self.projections.len()).map(sink).collect()
     }
 
-    /// Evaluates some blocks of a motion in parallel. Projections whose kept actuators are singular at a sample are
-    /// noted in `failed`.
+    /// Evaluates some blocks of a motion in parallel.
+    ///
+    /// Projections with singular kept actuators at a sample are recorded in `failed`.
     ///
     /// # Errors
     /// A sample at which the model has no value.
@@ -200,7 +202,7 @@ impl Observer<'_> {
         self.chunks_with(motion, blocks, failed, (&scales, true))
     }
 
-    /// The same with the scales of the platform's coordinates; with conditions or without.
+    /// The same with the scales of the platform's coordinates, with or without conditions.
     ///
     /// # Errors
     /// A sample at which the model has no value.
@@ -225,8 +227,9 @@ impl Observer<'_> {
         Ok(chunks.into_iter().map(|(chunk, _)| chunk).collect())
     }
 
-    /// Evaluates up to [`BLOCK`] samples from number `first` of the motion on, and tells for each
-    /// projection at which sample it is singular.
+    /// Evaluates up to [`BLOCK`] samples from number `first` of the motion on.
+    ///
+    /// It also returns the first singular sample of each projection.
     fn chunk(
         &self,
         motion: &Motion,
@@ -267,7 +270,7 @@ impl Observer<'_> {
                 singular.push(failed.map(|sample| first + sample));
             }
         }
-        // The rows on the platform are made into the others first.
+        // Compute other projections before moving the platform's rows.
         let places = self.projections.iter().zip(&mut chunk.lines);
         let mut places = places.filter(|(projection, _)| **projection == Projection::Platform);
         if let Some((_, own)) = places.next() {

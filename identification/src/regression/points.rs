@@ -1,4 +1,4 @@
-//! What is plotted of a run's motion, and how badly the kept actuators determine the platform along it.
+//! Motion data for plots, and the worst condition of the kept actuators along a run.
 
 use overact::Model;
 
@@ -12,10 +12,10 @@ use crate::{
     settings::Settings,
 };
 
-/// Relative difference of conditions that are one but for rounding.
+/// Relative difference of conditions that are equal up to rounding.
 const SAME: f64 = 1e-9;
 
-/// Collects what is plotted of a run's motion, and the worst conditions.
+/// Collects motion data for plots, and the worst conditions.
 pub(crate) struct Points<'a> {
     pub(crate) figures: RunFigures,
     tracks: Vec<Track>,
@@ -28,18 +28,18 @@ pub(crate) struct Points<'a> {
     frequency: f64,
 }
 
-/// The conditioning of one projection along a run.
+/// Conditioning of one projection along a run.
 struct Track {
     series: ConditionSeries,
-    /// The worst condition and its sample.
+    /// Worst condition and its sample.
     worst: Option<(f64, usize)>,
-    /// The last determinant that was not zero.
+    /// Last non-zero determinant.
     determinant: f64,
     crossings: usize,
 }
 
 impl<'a> Points<'a> {
-    /// Points of a run of `samples` that are used, by the plan for its equations.
+    /// Points of a run with `samples` used samples, by the plan for its equations.
     pub(crate) fn new(
         (model, projections, settings): (&dyn Model, &[Projection], &'a Settings),
         log: &Log,
@@ -81,7 +81,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Takes the next samples, with the conditions of each projection block by block.
+    /// Adds the next samples, with the conditions of each projection block by block.
     pub(crate) fn take(&mut self, motion: &Motion, blocks: &[Vec<Vec<Condition>>]) {
         let poses = motion.pose.chunks_exact(self.figures.pose.len().max(1));
         let start = motion.first_sample - self.settings.skip_start;
@@ -106,7 +106,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The worst conditions of the projections on actuators; the plots keep the conditions that vary.
+    /// Worst conditions of the projections on actuators; plots keep conditions that vary.
     pub(crate) fn partitions(
         &mut self,
         projections: &[Projection],
@@ -130,7 +130,7 @@ impl<'a> Points<'a> {
             if platform {
                 series.determinant.clear();
             }
-            // Without a loop there is nothing to see.
+            // Without a loop, all conditions are 1.
             if series.condition.iter().any(|condition| *condition != 1.0) {
                 self.figures.conditions.push(series);
             }
@@ -140,9 +140,9 @@ impl<'a> Points<'a> {
 }
 
 impl Track {
-    /// Takes the condition at a sample, which belongs to a point of the plots.
+    /// Adds the condition at a sample, which belongs to a point of the plots.
     fn take(&mut self, sample: usize, point: usize, condition: Condition) {
-        // Of samples that are one but for rounding, as where a motion repeats itself, the first one is told.
+        // For equal conditions up to rounding, as in periodic motion, keep the first sample.
         let is_worse = |(worst, _)| condition.number > worst * (1.0 + SAME);
         if self.worst.is_none_or(is_worse) {
             self.worst = Some((condition.number, sample));

@@ -1,19 +1,19 @@
-//! On what the inputs are projected, and which model explains them then.
+//! Projections of the inputs, and the corresponding models.
 
 use std::fmt;
 
 use overact::Info;
 use serde::{Deserialize, Serialize};
 
-/// Which inputs a model explains.
+/// Model, by the projection of its inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ModelKind {
-    /// Case 1: inputs projected on the platform.
+    /// Platform projection Γ¹; case 1 in the paper.
     Platform,
-    /// Case 2: inputs projected on as many actuators as there are degrees of freedom.
+    /// Actuator projection Γ² on r kept actuators; case 2 in the paper.
     Actuators,
-    /// The inputs of all joints of a robot without redundancy.
+    /// Inputs of all joints of a robot without redundancy.
     Joints,
 }
 
@@ -28,7 +28,7 @@ impl ModelKind {
         }
     }
 
-    /// The paper's name: `case 1`, `case 2`; `joint model` without redundancy.
+    /// Name in the paper: `case 1`, `case 2`; `joint model` without redundancy.
     #[must_use]
     pub const fn case(self) -> &'static str {
         match self {
@@ -45,19 +45,19 @@ impl fmt::Display for ModelKind {
     }
 }
 
-/// On what the inputs are projected.
+/// Projection of the inputs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Projection {
-    /// Case 1: the platform.
+    /// Platform projection; case 1 in the paper.
     Platform,
-    /// Case 2: these r kept actuators of a redundant robot.
+    /// Actuator projection on these r kept actuators of a redundant robot; case 2 in the paper.
     Actuators(Vec<usize>),
     /// All actuators of a robot without redundancy.
     Joints,
 }
 
 impl Projection {
-    /// The projections of a robot: case 1 and case 2 for these kept actuators, or its joints without redundancy.
+    /// Projections of a robot: platform and actuator projection, or its joints without redundancy.
     #[must_use]
     pub fn usual(info: &Info<'_>, kept_actuators: &[usize]) -> Vec<Self> {
         match info.sizes.actuators > info.sizes.dof {
@@ -66,7 +66,7 @@ impl Projection {
         }
     }
 
-    /// Which model explains these inputs.
+    /// Model of this projection.
     #[must_use]
     pub const fn model(&self) -> ModelKind {
         match self {
@@ -76,7 +76,7 @@ impl Projection {
         }
     }
 
-    /// The kept actuators, or `None` on the platform.
+    /// Kept actuators; `None` for the platform projection.
     #[must_use]
     pub fn kept(&self, info: &Info<'_>) -> Option<Vec<usize>> {
         match self {

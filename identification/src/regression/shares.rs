@@ -1,20 +1,22 @@
-//! What the uncertainty of quantities that were identified beforehand does to estimates that are made with them.
+//! Effect of the uncertainty of previous identifications on estimates.
 //!
-//! With v_j what a change of quantity j adds to the torques, P_j is the estimate from v_j alone, with the same
-//! columns and weights: the estimate is off by P δ, and C being the covariance of δ its covariance grows by
-//! P C Pᵀ.
+//! Let v_j be the change of the torques with quantity j, and P_j the estimate from v_j alone, with
+//! the same columns and weights. The error of the estimate is P δ. With the covariance C of δ, its
+//! covariance increases by P C Pᵀ.
 
 use nalgebra::DMatrix;
 
 use super::factor::Factor;
 
-/// What each quantity contributes to the equations of each projection.
+/// Contribution of each quantity to the equations of each projection.
 #[derive(Debug, Clone)]
 pub(crate) struct Shares {
-    /// For each projection the factors of its lines: columns of the base parameters, then one for each
-    /// quantity, the last in the place of Y. None where a projection has no equations.
+    /// For each projection the factors of its lines; empty without equations.
+    ///
+    /// Columns are those of the base parameters, then one for each quantity; the last one replaces
+    /// Y.
     projections: Vec<Vec<Factor>>,
-    /// Number of the base parameters.
+    /// Number of base parameters.
     parameters: usize,
     /// C.
     covariance: DMatrix<f64>,
@@ -33,8 +35,9 @@ impl Shares {
         }
     }
 
-    /// P C Pᵀ of an estimate of the columns `selected` with the weights of the lines; none where they are
-    /// dependent.
+    /// P C Pᵀ of an estimate of the columns `selected` with the weights of the lines.
+    ///
+    /// `None` if the columns are dependent.
     pub(crate) fn covariance(
         &self,
         projection: usize,

@@ -1,5 +1,4 @@
-//! Where the decimated equations of a line go: into R factors of parts of the run, and some of them
-//! into stretches of successive equations and into the points of the plots.
+//! Stores the decimated equations of a line: R factors of parts of the run, stretches, plots.
 
 use std::ops::Range;
 
@@ -11,30 +10,30 @@ use super::{
 };
 use crate::{error::Error, filters::Decimation, series::LARGEST_SERIES};
 
-/// Parts of a run, of which each can be held out.
+/// Number of parts of a run, which are folds of the cross-validation.
 const PARTS: usize = 5;
 
-/// Equations of a stretch, where a run has more than are kept.
+/// Equations of a stretch, if a run has more than are kept.
 const STRETCH: usize = 2048;
 
-/// Equations of a line of a run that are kept as stretches, at least.
+/// Fewest equations of a line of a run kept in stretches.
 const FEWEST_KEPT: usize = 512;
 
-/// What is kept of the equations of a run, told before the first one comes.
+/// Plan of the stored equations of a run, made before the first one.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
     equations: usize,
-    /// Number of the first equation behind each part.
+    /// First equation after each part.
     ends: Vec<usize>,
     stretches: Vec<Range<usize>>,
-    /// Of a motion that returns, the phases of the equations.
+    /// Phases of the equations, for a periodic motion.
     phases: Option<Phases>,
-    /// Distance of the equations at the points of the plots.
+    /// Distance of the equations at the plotted points.
     stride: usize,
 }
 
 impl Plan {
-    /// A plan for `equations` of each line, of which about `budget` may be kept as they are.
+    /// A plan for `equations` of each line, of which about `budget` may be kept.
     pub(crate) fn new(equations: usize, budget: usize) -> Self {
         let mut ends: Vec<usize> = (1..=PARTS).map(|part| part * equations / PARTS).collect();
         ends.dedup();
@@ -48,17 +47,17 @@ impl Plan {
         }
     }
 
-    /// The same for a motion that returns.
+    /// Sets the phases of a periodic motion.
     pub(crate) fn returning(self, phases: Option<Phases>) -> Self {
         Self { phases, ..self }
     }
 
-    /// Distance of the equations at the points of the plots.
+    /// Distance of the equations at the plotted points.
     pub(crate) const fn stride(&self) -> usize {
         self.stride
     }
 
-    /// Number of points of the plots.
+    /// Number of plotted points.
     pub(crate) const fn points(&self) -> usize {
         self.equations.div_ceil(self.stride)
     }
@@ -70,14 +69,14 @@ impl Plan {
         stretches.map(room).collect()
     }
 
-    /// Of rows of `width` values for every equation, those at the points of the plots.
+    /// Selects the rows at the plotted points from rows of `width` values.
     pub(crate) fn at_points(&self, rows: &[f64], width: usize) -> Vec<f64> {
         let rows = rows.chunks_exact(width).step_by(self.stride);
         rows.flatten().copied().collect()
     }
 }
 
-/// All equations where these are few enough, else stretches spread evenly.
+/// All equations if these are few enough; otherwise evenly distributed stretches.
 fn stretches(equations: usize, budget: usize) -> Vec<Range<usize>> {
     if equations <= budget {
         return std::iter::once(0..equations).collect();
@@ -93,16 +92,16 @@ fn stretches(equations: usize, budget: usize) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// The equations of one line of a run.
+/// Stored equations of one line of a run.
 #[derive(Debug)]
 pub(crate) struct LineSink {
     decimation: Decimation,
-    /// Columns and Y of an equation.
+    /// Number of columns, including Y.
     width: usize,
     instruments: Option<InstrumentSink>,
-    /// Equations that have come.
+    /// Number of equations so far.
     taken: usize,
-    /// Decimated rows that are in no factor yet.
+    /// Decimated rows that are not yet in a factor.
     rows: Vec<f64>,
     factor: Factor,
     parts: Vec<Factor>,
@@ -112,22 +111,23 @@ pub(crate) struct LineSink {
     standstill: Option<Standstill>,
 }
 
-/// What is left out of a line because its joint stands still. The velocity goes through a decimation as the
-/// other values do. In stretches, which are of successive equations, zeros take the place of what is left out.
+/// Exclusion of equations at standstill of the line's joint.
+///
+/// The velocity is decimated like other values. In stretches, zeros replace excluded equations.
 #[derive(Debug)]
 struct Standstill {
     decimation: Decimation,
-    /// Velocity (rad/s, m/s) below which the joint stands still.
+    /// Velocity (rad/s, m/s) below which the joint is at standstill.
     limit: f64,
-    /// Equations that were left out.
+    /// Number of excluded equations.
     left_out: usize,
 }
 
-/// What is kept of the instruments of a line's equations.
+/// Stored instruments of a line's equations.
 #[derive(Debug)]
 struct InstrumentSink {
     decimation: Decimation,
-    /// Columns, instruments and Y of equations that are in no factor yet.
+    /// Columns, instruments and Y of equations that are not yet in a factor.
     rows: Vec<f64>,
     factor: Factor,
     stretches: Vec<Vec<f64>>,
@@ -143,7 +143,7 @@ impl InstrumentSink {
         }
     }
 
-    /// Takes the instruments of equation number `taken`, whose columns and Y are `own`.
+    /// Adds the instruments of equation number `taken`, whose columns and Y are `own`.
     fn push(&mut self, plan: &Plan, taken: usize, (own, instruments): (&[f64], &[f64])) {
         let (y, columns) = own.split_last().unwrap_or((&0.0, &[]));
         self.rows.extend_from_slice(columns);
@@ -159,7 +159,7 @@ impl InstrumentSink {
         }
     }
 
-    /// Adds the equations that wait.
+    /// Adds pending equations to the factor.
     fn finish(&mut self) {
         self.factor.push_rows(&self.rows);
         self.rows.clear();
@@ -167,9 +167,10 @@ impl InstrumentSink {
 }
 
 impl LineSink {
-    /// A sink for equations in `parameters` unknowns, beside those of instruments if there are some, that are
-    /// decimated first, by what `stream` gives for rows of so many values; with a limit below which the joint's
-    /// velocity leaves its equation out, that is decimated, too.
+    /// A sink for equations in `parameters` unknowns, with instruments if requested.
+    ///
+    /// `stream` gives the decimation for rows of a width. `standstill` is the velocity of the joint
+    /// below which equations are excluded.
     pub(crate) fn new(
         plan: &Plan,
         stream: impl Fn(usize) -> Result<Decimation, Error>,
@@ -204,13 +205,14 @@ impl LineSink {
         })
     }
 
-    /// Equations that were left out at standstill, where some are to be.
+    /// Number of equations excluded at standstill, if exclusion is on.
     pub(crate) fn left_out(&self) -> Option<usize> {
         self.standstill.as_ref().map(|own| own.left_out)
     }
 
-    /// Takes rows at the full rate, beside their instruments, if there are some: they have room for Y, which
-    /// they do not need. `velocities` are those of the line's joint.
+    /// Adds rows at the full rate, with their instruments if there are some.
+    ///
+    /// Instruments have an unused column for Y. `velocities` are those of the line's joint.
     pub(crate) fn push(
         &mut self,
         plan: &Plan,
@@ -223,7 +225,7 @@ impl LineSink {
         if let Some(sink) = &mut self.instruments {
             match instruments.filter(|own| own.len() == rows.len()) {
                 Some(own) => sink.decimation.push(own, &mut beside),
-                // Those of a run whose instruments can't be used are not used.
+                // Zeros replace instruments that are unusable.
                 None => sink.decimation.push(&vec![0.0; rows.len()], &mut beside),
             }
         }
@@ -256,7 +258,7 @@ impl LineSink {
         }
     }
 
-    /// Goes on to the next equation, which may be that of another part.
+    /// Moves to the next equation, possibly in another part.
     fn advance(&mut self, plan: &Plan) {
         self.taken += 1;
         let complete = plan.ends.get(self.parts.len()) == Some(&self.taken);
@@ -270,7 +272,7 @@ impl LineSink {
         }
     }
 
-    /// Whether the joint stands still at an equation, by its decimated velocity.
+    /// Whether the joint is at standstill at an equation, by its decimated velocity.
     fn stands_still(&mut self, velocity: Option<&f64>) -> bool {
         match (&mut self.standstill, velocity) {
             (Some(own), Some(velocity)) if velocity.abs() < own.limit => {
@@ -281,7 +283,7 @@ impl LineSink {
         }
     }
 
-    /// Leaves an equation out; it stays in the plots.
+    /// Excludes an equation, except from the plots.
     fn leave_out(&mut self, plan: &Plan, row: &[f64]) {
         let columns = self.width - 1;
         if self.taken.is_multiple_of(plan.stride) {
@@ -301,7 +303,7 @@ impl LineSink {
     }
 }
 
-/// What the sinks of all lines hold of run number `run`.
+/// Equations of run number `run` from the sinks of all lines.
 pub(crate) fn observed(
     run: usize,
     plan: &Plan,

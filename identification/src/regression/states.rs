@@ -1,7 +1,7 @@
 //! Random states of a model without noise, on which linear relations between columns are exact.
 //!
-//! Poses lie around the home pose. A pose that the robot can't reach is replaced by one of half the
-//! spread, again and again, so that any robot, large or small, yields states.
+//! Poses are around the home pose. An unreachable pose is replaced by one of half the spread,
+//! repeatedly, so that robots of any size have states.
 
 use overact::Code;
 use overact::{Columns, Function, Model};
@@ -10,9 +10,9 @@ use rand_pcg::Pcg64;
 
 use crate::error::{Error, Problem};
 
-/// First spread of the poses around home (m, rad).
+/// Initial spread of the poses around home (m, rad).
 const SPREAD: f64 = 1.0;
-/// How often a spread is halved before the model counts as impossible to evaluate.
+/// Largest number of halvings before the model counts as impossible to evaluate.
 const HALVINGS: usize = 40;
 /// Largest random twist coordinate (m/s, rad/s).
 const LARGEST_TWIST: f64 = 3.0;
@@ -24,18 +24,18 @@ const LARGEST_ACCELERATION: f64 = 10.0;
 pub(crate) struct States {
     /// Number of states.
     pub(crate) samples: usize,
-    /// Poses, samples x pose coordinates (m, rad).
+    /// Poses, samples × pose coordinates (m, rad).
     pub(crate) pose: Vec<f64>,
-    /// Twist coordinates, samples x r (m/s, rad/s).
+    /// Twist coordinates, samples × r (m/s, rad/s).
     pub(crate) twist: Vec<f64>,
-    /// Accelerations, samples x r (m/s², rad/s²).
+    /// Accelerations, samples × r (m/s², rad/s²).
     pub(crate) acceleration: Vec<f64>,
 }
 
-/// Draws `count` random states at which the model has a value; one `seed`, one result.
+/// Draws `count` random states at which the model has a value, reproducibly for a `seed`.
 ///
 /// # Errors
-/// A model that has no value even next to its home pose.
+/// A model without a value even next to its home pose.
 pub(crate) fn random_states(model: &dyn Model, count: usize, seed: u64) -> Result<States, Error> {
     let info = model.info();
     let dof = info.sizes.dof;

@@ -1,14 +1,14 @@
-//! The observation system (39)-(41) of an identification model.
+//! Observation system (39)-(41) of an identification model.
 //!
-//! Case 1 projects the inputs on the platform, Γ¹ = (J_p^inv)ᵀ τ, with the columns of IDM_red (30).
-//! Case 2 projects them on r kept actuators: with J_a the kept rows of J_p^inv, Γ² = J_a^-T Γ¹, and
-//! the same for every column (36). Without redundancy all actuators are kept, which is eq. (19), and
-//! eq. (1) for a robot without a loop.
+//! The platform projection has the inputs Γ¹ = (J_p^inv)ᵀ τ and the columns of IDM_red (30). The
+//! actuator projection has Γ² = J_a^-T Γ¹ with the kept rows J_a of J_p^inv, and likewise for every
+//! column (36). Without redundancy all actuators are kept, which is eq. (19), and eq. (1) for a
+//! robot without loops.
 //!
-//! Y and every column are decimated in parallel (40) and their rows sorted by line of Γ (41). What is
-//! kept of them does not grow with the data: one R `factor` for each line and part of
-//! a run, and some stretches of successive equations, from which the correlation of the residual is
-//! told.
+//! Y and all columns are decimated in parallel (40), and their rows are sorted by line of Γ (41).
+//! The stored data are independent of the number of samples. They are one R `factor` for each line
+//! and part of a run, and some stretches of successive equations for the correlation of the
+//! residual.
 
 use nalgebra::DMatrix;
 use overact::Code;
@@ -22,25 +22,28 @@ use super::{
 };
 use crate::{error::Problem, kinematics::Motion};
 
-/// How badly conditioned the kept rows J_a of J_p^inv get along a trajectory, and where. It depends
-/// on the units of the platform's coordinates; above 30 or so case 2 suffers.
+/// Worst condition number of the kept rows J_a of J_p^inv along a trajectory, and its place.
+///
+/// It depends on the units of the platform's coordinates. Above about 30, the actuator projection
+/// suffers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PartitionCondition {
     /// Largest condition number (2-norm).
     pub largest: f64,
-    /// Name of the run in which it occurs.
+    /// Name of the run.
     pub run: String,
     /// Sample of the log.
     pub sample: usize,
     /// Time of that sample, s from the start of the log.
     pub time: f64,
-    /// How often the determinant of J_a changes its sign: the partition's singularity is crossed, be
-    /// it between two samples.
+    /// Number of sign changes of the determinant of J_a, even between two samples.
+    ///
+    /// Each is a crossing of the partition's singularity.
     pub crossings: usize,
 }
 
 impl PartitionCondition {
-    /// What two runs, or two parts of one, have together.
+    /// Combines the results of two runs, or of two parts of one.
     pub(crate) fn joined(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => {
@@ -53,28 +56,28 @@ impl PartitionCondition {
     }
 }
 
-/// The system of all runs.
+/// System of all runs.
 #[derive(Debug, Clone)]
 pub struct System {
-    /// On what the inputs are projected.
+    /// Projection of the inputs.
     pub projection: Projection,
     /// Names of the lines of Γ.
     pub line_names: Vec<String>,
     /// R factor of each line.
     pub lines: Vec<Factor>,
-    /// Parts of the runs, of which some can be held out.
+    /// Parts of the runs, for cross-validation.
     pub parts: Vec<Part>,
-    /// Successive equations as they are, from which the correlation of the residual is told.
+    /// Successive equations, for the correlation of the residual.
     pub stretches: Vec<Stretch>,
-    /// Of each motion that returns, the mean equations of its phases.
+    /// For each periodic motion, the mean equations of its phases.
     pub(crate) folds: Vec<Folds>,
-    /// Where actuators are kept: how well they determine the platform.
+    /// Condition of the kept actuators, if there is a partition.
     pub partition: Option<PartitionCondition>,
-    /// With instruments, R factor of the columns, the instruments and Y of each line; else empty.
+    /// R factor of columns, instruments and Y of each line; empty without instruments.
     pub instruments: Vec<Factor>,
 }
 
-/// The equations of a part of a run.
+/// Equations of a part of a run.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Part {
@@ -90,9 +93,9 @@ pub struct Part {
 pub struct Stretch {
     /// Number of the run.
     pub run: usize,
-    /// For each line of Γ: equations x (columns + 1), Y last.
+    /// For each line of Γ: equations × (columns + 1), Y last.
     pub lines: Vec<DMatrix<f64>>,
-    /// With instruments, for each line of Γ: equations x columns; else empty.
+    /// For each line of Γ: equations × columns; empty without instruments.
     pub instruments: Vec<DMatrix<f64>>,
 }
 
@@ -112,7 +115,7 @@ impl System {
         }
     }
 
-    /// With instruments to come for every equation.
+    /// Prepares for instruments in every equation.
     pub(crate) fn with_instruments(mut self) -> Self {
         let wide = |line: &Factor| Factor::new(2 * line.parameters());
         self.instruments = self.lines.iter().map(wide).collect();
@@ -128,7 +131,7 @@ impl System {
                 .filter_map(|part| part.lines.get(line));
             of_line.for_each(|part| factor.add(part));
         }
-        // Instruments serve if all equations have them.
+        // Instruments are only usable if all equations have them.
         if observed.instruments.is_empty() {
             self.instruments.clear();
         }
@@ -144,17 +147,17 @@ impl System {
     }
 }
 
-/// What one run adds to a system.
+/// Equations of one run for a system.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Observed {
     pub(crate) parts: Vec<Part>,
     pub(crate) stretches: Vec<Stretch>,
-    /// For a motion that returns, of each line the mean equations of its phases; else empty.
+    /// Mean equations of the phases of each line; empty without periodic motion.
     pub(crate) folds: Folds,
     pub(crate) partition: Option<PartitionCondition>,
     /// As in the system.
     pub(crate) instruments: Vec<Factor>,
-    /// Equations at the points of the plots, line by line: points x (columns + 1).
+    /// Equations at the plotted points, line by line: points × (columns + 1).
     pub(crate) points: Vec<DMatrix<f64>>,
 }
 

@@ -1,11 +1,11 @@
-//! Rows of numbers as a matrix, which holds its columns.
+//! Transposes rows of numbers to a column-major matrix.
 
 use nalgebra::DMatrix;
 
-/// Rows that are turned together: what is read and written stays in the cache.
+/// Number of rows transposed together, to use the cache.
 const TOGETHER: usize = 16;
 
-/// The matrix of rows of `width` numbers, which lie one behind the other.
+/// The matrix of successive rows of `width` numbers.
 pub(super) fn turned(rows: &[f64], width: usize) -> DMatrix<f64> {
     let count = rows.len() / width;
     let mut matrix = DMatrix::zeros(count, width);

@@ -1,29 +1,28 @@
-//! The R factor of more equations than before, by Householder reflections that leave the triangle of those
-//! before alone but for one row each.
+//! Updates an R factor with more equations, by Householder reflections.
 //!
-//! Reflection j takes the entries of column j of the new rows into R_jj; of the rows of R it changes row j
-//! only, since in column j the others are zero already.
+//! Reflection j moves the entries of column j of the new rows into R_jj. It changes row j of R
+//! only, since the others are already zero in column j.
 
 use nalgebra::DMatrix;
 #[cfg(target_arch = "x86_64")]
 use pulp::NullaryFnOnce;
 
-/// Sums that run side by side in a scalar product.
+/// Partial sums of a scalar product.
 const LANES: usize = 8;
 
-/// Makes of the upper triangular factor `r` that of [r; rows]; `rows` are used up.
+/// Replaces the upper triangular factor `r` by that of [r; rows]; overwrites `rows`.
 pub(super) fn update(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>) {
     let count = rows.nrows();
     reflect(r, rows, &|_| count);
 }
 
-/// The same where the rows are upper triangular, too: below its diagonal a column stays zero.
+/// The same for upper triangular rows, whose columns stay zero below the diagonal.
 pub(super) fn update_by_triangle(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>) {
     let count = rows.nrows();
     reflect(r, rows, &|column| count.min(column + 1));
 }
 
-/// Reflects rows of which a column has so many entries that are not zero, from the first one on.
+/// Reflects rows whose columns have `height` leading non-zero entries.
 fn reflect(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>, height: &dyn Fn(usize) -> usize) {
     let work = Update { r, rows, height };
     #[cfg(target_arch = "x86_64")]
@@ -34,11 +33,11 @@ fn reflect(r: &mut DMatrix<f64>, rows: &mut DMatrix<f64>, height: &dyn Fn(usize)
     work.run();
 }
 
-/// An update to do.
+/// Vectorised update.
 struct Update<'a> {
     r: &'a mut DMatrix<f64>,
     rows: &'a mut DMatrix<f64>,
-    /// Entries of a column that are not zero.
+    /// Number of non-zero entries of a column.
     height: &'a dyn Fn(usize) -> usize,
 }
 
@@ -70,7 +69,7 @@ impl Update<'_> {
             }
             let before = self.r[(j, j)];
             let after = (before * before + square).sqrt();
-            // Away from zero, so that no digits cancel; the row changes its sign afterwards.
+            // The sign that avoids cancellation; the row changes its sign afterwards.
             let first = before + after;
             let scale = 2.0 / (first * first + square);
             for (place, column) in others.chunks_exact_mut(count).enumerate() {
@@ -87,7 +86,7 @@ impl Update<'_> {
     }
 }
 
-/// The scalar product, summed in lanes.
+/// Scalar product with partial sums.
 #[inline(always)]
 fn product(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; LANES];

@@ -1,4 +1,4 @@
-//! How well an estimate predicts a run that it was not made from.
+//! Prediction of a validation run by an estimate.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::{
     validation::{TorqueComparison, Validation},
 };
 
-/// How well an estimate reproduces a run that it was not made from.
+/// Prediction of a validation run by an estimate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CrossValidation {
     /// Name of the run.
@@ -23,28 +23,28 @@ pub struct CrossValidation {
     pub stage: Stage,
     /// ||Y - W χ||.
     pub residual_norm: f64,
-    /// 100 ||Y - W χ||/||Y||.
+    /// Relative error, 100 ||Y - W χ||/||Y||.
     pub relative_error_percent: f64,
-    /// Each line of Γ.
+    /// Errors of each line of Γ.
     pub lines: Vec<LineError>,
-    /// Each actuator's torque against the least-norm prediction.
+    /// Errors of each actuator's torque, predicted with least norm.
     pub torques: Vec<LineError>,
-    /// Each measured torque, freed of its internal part (50), against the prediction; empty without
-    /// redundancy.
+    /// Errors of each measured torque without its internal part (50).
+    ///
+    /// Empty without redundancy.
     pub projected_torques: Vec<LineError>,
-    /// Table 3: each actuator's torque against both predictions, the least-norm one and that of
-    /// eq. (26).
+    /// Table 3: errors of each actuator's torque for both predictions, least norm and eq. (26).
     pub table: Vec<TorqueComparison>,
-    /// The lines over time, for plots.
+    /// Lines over time, for plots.
     #[serde(skip)]
     pub line_series: Vec<Series>,
-    /// The torques over time, for plots.
+    /// Torques over time, for plots.
     #[serde(skip)]
     pub torque_series: Vec<Series>,
 }
 
 impl CrossValidation {
-    /// Joins what an estimate explains and of which parameters to its validation.
+    /// Combines a validation with the model and stage of its estimate.
     #[must_use]
     pub fn new((model, stage): (ModelKind, Stage), payload: bool, validation: Validation) -> Self {
         Self {

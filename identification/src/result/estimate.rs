@@ -8,33 +8,35 @@ use crate::{
     regression::{projection::ModelKind, system::PartitionCondition},
 };
 
-/// How parameters are estimated.
+/// Estimation method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Estimator {
-    /// By ordinary or weighted least squares, as the settings ask for.
+    /// Ordinary or weighted least squares, according to the settings.
     LeastSquares,
-    /// By ordinary least squares, beside weighted ones: where the two differ by more than their deviations, the
-    /// model does not explain all lines equally well.
+    /// Ordinary least squares, in addition to weighted ones.
+    ///
+    /// If both differ by more than their standard deviations, the model does not explain all lines
+    /// equally well.
     OrdinaryLeastSquares,
-    /// By instrumental variables.
+    /// Instrumental variables.
     InstrumentalVariables,
 }
 
 /// One estimate of the robot's parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimate {
-    /// Which inputs it explains.
+    /// Model.
     pub model: ModelKind,
-    /// Names of the actuators on which the inputs are projected; empty for the platform.
+    /// Names of the kept actuators; empty for the platform projection.
     pub kept_actuators: Vec<String>,
-    /// Which parameters are estimated.
+    /// Stage: which parameters are estimated.
     pub stage: Stage,
-    /// How.
+    /// Estimation method.
     pub estimator: Estimator,
     /// Whether least squares were weighted.
     pub weighted: bool,
-    /// The parameters.
+    /// Parameters.
     pub parameters: Vec<ParameterEstimate>,
     /// ||ρ||, unweighted.
     pub residual_norm: f64,
@@ -42,27 +44,26 @@ pub struct Estimate {
     pub relative_error_percent: f64,
     /// Condition number of W, neither weighted nor scaled.
     pub condition_number: f64,
-    /// r_c, number of equations.
+    /// Number of equations, r_c.
     pub equations: usize,
-    /// σ_ρ of the system that was solved.
+    /// σ_ρ of the solved system.
     pub residual_deviation: f64,
-    /// Each line of Γ.
+    /// Residual of each line of Γ.
     pub lines: Vec<LineError>,
     /// Weight of each line's equations; all 1 for ordinary least squares.
     pub weights: Vec<f64>,
-    /// Where actuators are kept: how badly they determine the platform at worst.
+    /// Worst condition of the kept actuators, for an actuator projection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub partition: Option<PartitionCondition>,
-    /// The way from the base parameters to the essential ones, with the step that was refused, if
-    /// the second opinion refused one.
+    /// Path from the base to the essential parameters, with the refused step, if there is one.
     pub removals: Vec<Removal>,
-    /// Why the elimination ended where it did, in words; none at the base stage.
+    /// Reason for the end of the elimination, in words; `None` at the base stage.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stop: Option<String>,
 }
 
 impl Estimate {
-    /// Places of the parameters among the base parameters.
+    /// Indices of the parameters among the base parameters.
     #[must_use]
     pub fn columns(&self) -> Vec<usize> {
         self.parameters
@@ -81,36 +82,37 @@ impl Estimate {
     }
 }
 
-/// The estimate of one parameter.
+/// Estimate of one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ParameterEstimate {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// SI unit.
     pub unit: String,
-    /// Its column in the column set.
+    /// Index among the base parameters.
     #[serde(skip)]
     pub column: usize,
     /// Estimate.
     pub value: f64,
-    /// σ under white residuals, (47).
+    /// σ for white residuals, (47).
     pub standard_deviation: f64,
     /// 100 σ/|χ|.
     pub relative_standard_deviation_percent: f64,
-    /// σ under residuals that are correlated over time and between the lines (see the
-    /// module `correlation`), never below the white one: the one to trust.
+    /// σ for residuals correlated over time and between lines; prefer this one.
+    ///
+    /// At least that for white residuals; see the module `correlation`.
     pub correlated_standard_deviation: f64,
-    /// The 95 % interval of the true value, from the base parameters at every stage (see the
-    /// module `intervals`).
+    /// 95 % interval of the true value, from the base estimate at every stage; see `intervals`.
     pub interval_95: [f64; 2],
-    /// Whether the estimate lies outside of its own interval, which is that of the model with all base
-    /// parameters: cancelling others has moved it to where the data speak against it. The deviations above take
-    /// the cancelled parameters for zero and know nothing of it.
+    /// Whether the estimate is outside its interval, which is that of the base model.
+    ///
+    /// Elimination of others has then moved it to a value that the data contradict. The standard
+    /// deviations above assume that eliminated parameters are zero, and do not show this.
     pub outside: bool,
-    /// The regrouped true value, where it is known.
+    /// Regrouped true value, if known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_value: Option<f64>,
-    /// 100 (estimate - true value)/|true value|, where the truth is known and not zero.
+    /// 100 (estimate - true value)/|true value|, if the true value is known and not zero.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_percent: Option<f64>,
 }

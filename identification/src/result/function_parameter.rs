@@ -1,19 +1,21 @@
-//! Parameters as the functions of a model take them.
+//! Parameters of a model's functions.
 
 use serde::Serialize;
 
 use super::regrouping::Regrouping;
 
-/// What a base parameter is that the functions of the robot's model take.
+/// A base parameter of the functions of the robot's model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FunctionParameter {
-    /// Its name in the table of the functions' base parameters. Where an estimated base parameter of that name is
-    /// another sum, the suffix is `F` in the place of `R`.
+    /// Name in the table of the functions' base parameters.
+    ///
+    /// If an estimated base parameter of this name is another combination, the suffix is `F`
+    /// instead of `R`.
     pub name: String,
     /// Name of the kept parameter.
     pub parameter: String,
-    /// What is added to the kept parameter.
+    /// Terms added to the kept parameter.
     pub regrouping: Vec<Regrouping>,
-    /// Its value that the base estimate gives, SI.
+    /// Value from the base estimate (SI units).
     pub value: f64,
 }

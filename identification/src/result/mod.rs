@@ -1,5 +1,6 @@
-//! What is told of estimates and runs, as it is printed and as it is serialised: the names of the
-//! fields are keys of the document.
+//! Results on estimates and runs, for printing and serialisation.
+//!
+//! The field names are keys of the document.
 
 mod cross_validation;
 mod estimate;

@@ -1,20 +1,22 @@
-//! Parameters of drives at the side of the motor.
+//! Motor-side parameters of drives.
 
 use serde::Serialize;
 
-/// What an estimate of a drive's parameter is in front of the gear, where the motor turns.
+/// Motor-side value of an estimated drive parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MotorParameter {
     /// Name of the motor.
     pub motor: String,
-    /// The parameter as it is estimated, behind the gear; friction by direction keeps the direction of that side.
+    /// Name of the estimated joint-side parameter; split friction keeps the joint's direction.
     pub name: String,
-    /// Turns of the rotor for one behind the gear.
+    /// Gear ratio: turns of the rotor per turn of the output.
     pub ratio: f64,
-    /// The estimate in front of the gear: inertia and viscous friction by the square of the ratio smaller, dry
-    /// friction by its magnitude, an offset by the ratio.
+    /// Motor-side value.
+    ///
+    /// Inertia and viscous friction are divided by the squared ratio, dry friction by its
+    /// magnitude, and an offset by the ratio.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the value.
     pub deviation: f64,
     /// SI unit.
     pub unit: String,

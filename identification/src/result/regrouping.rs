@@ -5,8 +5,8 @@ use serde::Serialize;
 /// One term of a base parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Regrouping {
-    /// Name of the parameter that is regrouped.
+    /// Name of the regrouped parameter.
     pub parameter: String,
-    /// Its coefficient.
+    /// Coefficient.
     pub coefficient: f64,
 }

@@ -1,33 +1,34 @@
-//! What is told of a run identified from.
+//! Summary of a training run.
 
 use serde::Serialize;
 
 use crate::{data::Log, regression::observation::Seen};
 
-/// A run identified from.
+/// A training run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Samples used, before decimation.
+    /// Number of samples used, before decimation.
     pub samples: usize,
-    /// f_m, Hz.
+    /// Sampling frequency f_m, Hz.
     pub sampling_frequency: f64,
     /// Whether the platform carried the payload.
     pub payload: bool,
-    /// Name of the payload, where there are several.
+    /// Name of the payload, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub payload_name: Option<String>,
-    /// Largest miss of the loops' closure by the measured actuators (m, rad).
+    /// Largest closure residual of the measured positions (m, rad).
     pub closure_residual: f64,
-    /// Of each actuator's joint the equations that were left out because it stood still; empty where none
-    /// were to be.
+    /// Equations of each actuator's joint excluded at standstill.
+    ///
+    /// Empty if none were to be excluded.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub standstill_equations: Vec<usize>,
 }
 
 impl RunSummary {
-    /// What is told of a run.
+    /// Summary of a run.
     pub(crate) fn new(log: &Log, seen: &Seen) -> Self {
         Self {
             name: log.name().to_owned(),

@@ -1,18 +1,18 @@
-//! Which parameters an estimate has.
+//! Stages of the estimation.
 
 use serde::Serialize;
 
-/// The stages of an identification, by the parameters that are estimated.
+/// Stage of an identification, by the estimated parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
-    /// All base parameters.
+    /// Base parameters.
     Base,
-    /// The fewest that the data do not refute.
+    /// Recommended parameters: the fewest that the data do not refute.
     Recommended,
-    /// Only parameters that the data determine.
+    /// Essential parameters, by the paper's rule.
     Essential,
-    /// Standard parameters that a robot can have.
+    /// Physically consistent standard parameters.
     Consistent,
 }
 

@@ -1,7 +1,7 @@
-//! Units of signals: quantities with the values that robots can have, and the usual slips.
+//! Units of signals: plausible ranges of quantities, and common unit errors.
 //!
-//! - `quantity`: a measured quantity with its bounds, and how it grows with a factor in each signal;
-//! - `slip`: the usual slips, and which explains quantities out of their bounds.
+//! - `quantity`: a measured quantity with its ranges, and its dependence on each signal's unit;
+//! - `slip`: common unit errors, and which one explains quantities out of their ranges.
 
 mod quantity;
 mod slip;

@@ -1,6 +1,6 @@
-//! A measured quantity with its bounds.
+//! A measured quantity with its plausible ranges.
 
-/// By which power of a factor in each signal a quantity grows.
+/// Powers of a quantity in the unit factors of the signals.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Powers {
     pub(crate) time: i32,
@@ -20,7 +20,7 @@ impl Range {
         Self { low, high }
     }
 
-    /// By how many decades a value lies outside.
+    /// Distance of a value from the range, in decades.
     fn decades(self, value: f64) -> f64 {
         (self.low / value).max(value / self.high).log10().max(0.0)
     }
@@ -29,29 +29,29 @@ impl Range {
 /// A positive quantity of a log or of estimates.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Quantity {
-    /// What it is, in words.
+    /// Description in words.
     pub(crate) name: String,
     pub(crate) value: f64,
     pub(crate) unit: &'static str,
-    /// Values that a robot can have.
+    /// Possible values for a robot.
     pub(crate) possible: Range,
-    /// Values that robots usually have.
+    /// Usual values of robots.
     pub(crate) usual: Range,
     pub(crate) powers: Powers,
 }
 
 impl Quantity {
-    /// Whether a robot can have it.
+    /// Whether its value is possible.
     pub(crate) fn is_possible(&self) -> bool {
         self.excess() == 0.0
     }
 
-    /// By how many decades it lies outside of what is possible.
+    /// Distance from the possible range, in decades.
     pub(crate) fn excess(&self) -> f64 {
         self.possible.decades(self.value)
     }
 
-    /// By how many decades a value in its place is unusual.
+    /// Distance of another value from the usual range, in decades.
     pub(crate) fn unusual(&self, value: f64) -> f64 {
         self.usual.decades(value)
     }

@@ -1,4 +1,4 @@
-//! The usual slips of units, and which of them explains quantities out of their bounds.
+//! Common unit errors, and which one explains quantities out of their ranges.
 
 use std::f64::consts::{PI, TAU};
 
@@ -24,15 +24,15 @@ impl Signal {
     }
 }
 
-/// A signal in another unit than that of SI.
+/// A unit error: a signal in a unit other than SI.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Slip {
     pub(crate) signal: Signal,
-    /// The unit that it may be in.
+    /// The assumed unit.
     pub(crate) unit: &'static str,
-    /// Numbers in this unit by those in that of SI.
+    /// Numbers in this unit divided by those in SI.
     pub(crate) factor: f64,
-    /// How one writes the unit in a description; empty for time.
+    /// Spelling of the unit in a description; empty for time.
     pub(crate) scale: &'static str,
 }
 
@@ -45,7 +45,7 @@ const fn slip(signal: Signal, unit: &'static str, factor: f64, scale: &'static s
     }
 }
 
-/// The usual slips, the most usual ones of each signal first.
+/// Common unit errors, the most common ones of each signal first.
 pub(crate) const SLIPS: [Slip; 16] = [
     slip(Signal::Time, "milliseconds", 1e3, ""),
     slip(Signal::Time, "microseconds", 1e6, ""),
@@ -65,21 +65,21 @@ pub(crate) const SLIPS: [Slip; 16] = [
     slip(Signal::Torques, "µN m (or µA)", 1e6, "0.000001"),
 ];
 
-/// Which kinds of drives there are.
+/// Kinds of drives.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kinds {
     pub(crate) revolute: bool,
     pub(crate) prismatic: bool,
 }
 
-/// Decades by which a slip has to bring quantities nearer to usual values.
+/// Smallest improvement towards usual values, in decades.
 const NEARER: f64 = 0.5;
 
-/// Decades that a less usual slip has to be better.
+/// Improvement required of a less common unit error, in decades.
 const LESS_USUAL: f64 = 0.01;
 
 impl Slip {
-    /// The factor by which the slip has multiplied a quantity.
+    /// Factor by which the unit error multiplies a quantity.
     fn on(&self, quantity: &Quantity) -> f64 {
         let powers = quantity.powers;
         self.factor.powi(match self.signal {
@@ -89,7 +89,7 @@ impl Slip {
         })
     }
 
-    /// Whether a robot with such drives can have it.
+    /// Whether it is possible for a robot with such drives.
     const fn fits(&self, kinds: Kinds) -> bool {
         match self.signal {
             Signal::Angles => kinds.revolute,
@@ -99,8 +99,9 @@ impl Slip {
     }
 }
 
-/// The slip that brings quantities back to what is possible and nearest to what is usual; of a single drive none
-/// in the time, which all drives share.
+/// The unit error that makes quantities possible and most usual.
+///
+/// For a single drive, time is excluded, since all drives share it.
 pub(crate) fn explanation(
     quantities: &[Quantity],
     kinds: Kinds,
@@ -125,10 +126,10 @@ pub(crate) fn explanation(
     (left + NEARER < unusual(None)).then_some(best)
 }
 
-/// Sampling frequencies that are usual, Hz.
+/// Usual sampling frequencies, Hz.
 const USUAL_SAMPLING: std::ops::RangeInclusive<f64> = 100.0..=2e5;
 
-/// The unit of time in which a run of this sampling frequency could pass a filter of this cutoff (Hz).
+/// Unit of time in which a run of this sampling frequency could pass a filter of this cutoff (Hz).
 pub(crate) fn time_of_sampling(frequency: f64, cutoff: f64) -> Option<&'static Slip> {
     let times = SLIPS.iter().filter(|slip| slip.signal == Signal::Time);
     let mut longer = times.filter(|slip| slip.factor > 1.0);
@@ -139,7 +140,7 @@ pub(crate) fn time_of_sampling(frequency: f64, cutoff: f64) -> Option<&'static S
 }
 
 impl Slip {
-    /// The slip as a question, and its cure.
+    /// The unit error as a question, with its remedy.
     pub(crate) fn advice(&self) -> String {
         let unit = self.unit;
         match self.signal {

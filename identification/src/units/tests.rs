@@ -21,7 +21,7 @@ fn quantity(value: f64, possible: Range, usual: Range, powers: [i32; 3]) -> Quan
     }
 }
 
-/// Sampling frequency (Hz), acceleration of the tip (m/s²) and density (kg/m³) of a log and its estimates.
+/// Sampling frequency (Hz), acceleration of the tip (m/s²) and density (kg/m³) of a log.
 fn quantities(sampling: f64, acceleration: f64, density: f64) -> Vec<Quantity> {
     let any = Range::new(0.0, f64::INFINITY);
     vec![
@@ -69,7 +69,7 @@ fn the_unit_that_makes_all_quantities_usual_is_named() {
 #[test]
 fn usual_quantities_have_no_slip() {
     assert_eq!(unit(&quantities(2e3, 5.0, 40.0), false), None);
-    // What no unit makes possible has none either.
+    // A quantity that no unit makes possible.
     let nowhere = [quantity(
         5.0,
         Range::new(0.0, 1.0),

@@ -1,4 +1,4 @@
-//! What stands where in the rows of a validation, and their sums of squares.
+//! Layout of the rows of a validation, and their sums of squares.
 
 use std::ops::Range;
 
@@ -6,21 +6,23 @@ use overact::Sizes;
 
 use crate::{estimation::estimate::LineError, series::Series};
 
-/// Where measured and predicted values of one quantity stand.
+/// Indices of measured and predicted values of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pair {
     pub(super) measured: usize,
     pub(super) predicted: usize,
 }
 
-/// Measured torques, those freed of their internal part where there is redundancy, then for each
-/// candidate predicted torques, measured and predicted Γ, and predicted torques by eq. (26).
+/// Layout of a row.
+///
+/// Measured torques come first, then those without internal part if redundant. For each candidate
+/// follow predicted torques, measured and predicted Γ, and predicted torques by eq. (26).
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     n: usize,
     r: usize,
     candidates: usize,
-    /// Whether torques by eq. (26) are there.
+    /// Whether torques by eq. (26) are included.
     closure: bool,
 }
 
@@ -39,7 +41,7 @@ impl Layout {
         self.start(self.candidates)
     }
 
-    /// The first value of a candidate.
+    /// First value of a candidate.
     fn start(&self, candidate: usize) -> usize {
         let measured = if self.n > self.r { 2 * self.n } else { self.n };
         let closure = if self.closure { self.n } else { 0 };
@@ -62,7 +64,7 @@ impl Layout {
         start..start + self.n
     }
 
-    /// A torque against its prediction.
+    /// A torque and its prediction.
     pub(super) fn torque(&self, candidate: usize, actuator: usize) -> Pair {
         Pair {
             measured: actuator,
@@ -70,14 +72,14 @@ impl Layout {
         }
     }
 
-    /// A torque without its internal part against its prediction.
+    /// A torque without its internal part, and its prediction.
     pub(super) fn projected_torque(&self, candidate: usize, actuator: usize) -> Option<Pair> {
         let measured = self.projected()?.start + actuator;
         let pair = self.torque(candidate, actuator);
         Some(Pair { measured, ..pair })
     }
 
-    /// A line of Γ against its prediction.
+    /// A line of Γ and its prediction.
     pub(super) fn line(&self, candidate: usize, line: usize) -> Pair {
         let measured = self.start(candidate) + self.n + line;
         Pair {
@@ -86,7 +88,7 @@ impl Layout {
         }
     }
 
-    /// Whether torques by eq. (26) are there.
+    /// Whether torques by eq. (26) are included.
     pub(super) const fn closure(&self) -> bool {
         self.closure
     }
@@ -97,7 +99,7 @@ impl Layout {
         self.closure.then_some(start..start + self.n)
     }
 
-    /// A torque against that of eq. (26).
+    /// A torque and that of eq. (26).
     pub(super) fn closure_torque(&self, candidate: usize, actuator: usize) -> Option<Pair> {
         let predicted = self.closure_torques(candidate)?.start + actuator;
         Some(Pair {
@@ -121,12 +123,12 @@ impl Layout {
     }
 }
 
-/// Sums of squares over decimated rows, and the rows at the points of the plots.
+/// Sums of squares over decimated rows, and the rows at the plotted points.
 #[derive(Debug)]
 pub(super) struct Sums<'a> {
     layout: &'a Layout,
     pairs: Vec<Pair>,
-    /// Of each pair, the squares of the differences and of the measured values.
+    /// Squares of the differences and of the measured values of each pair.
     squares: Vec<(f64, f64)>,
     taken: usize,
     stride: usize,
@@ -134,7 +136,7 @@ pub(super) struct Sums<'a> {
 }
 
 impl<'a> Sums<'a> {
-    /// Sums of no rows; one row in `stride` is kept for plots.
+    /// Sums without rows; one row in `stride` is kept for plots.
     pub(super) fn new(layout: &'a Layout, stride: usize) -> Self {
         let pairs = layout.pairs();
         Self {
@@ -147,12 +149,12 @@ impl<'a> Sums<'a> {
         }
     }
 
-    /// The layout of the rows.
+    /// Layout of the rows.
     pub(super) const fn layout(&self) -> &Layout {
         self.layout
     }
 
-    /// Takes decimated rows.
+    /// Adds decimated rows.
     pub(super) fn take(&mut self, rows: &[f64]) {
         for row in rows.chunks_exact(self.layout.width()) {
             if self.taken.is_multiple_of(self.stride) {
@@ -167,14 +169,14 @@ impl<'a> Sums<'a> {
         }
     }
 
-    /// The error of a pair.
+    /// Error of a pair.
     pub(super) fn error(&self, name: &str, pair: Pair) -> LineError {
         let place = self.pairs.iter().position(|other| *other == pair);
         let (residual, measured) = place.map_or((0.0, 0.0), |place| self.squares[place]);
         LineError::new(name, residual.sqrt(), measured.sqrt(), self.taken)
     }
 
-    /// The values of a pair at the points of the plots.
+    /// Values of a pair at the plotted points.
     pub(super) fn series(&self, name: &str, pair: Pair, time: &dyn Fn(usize) -> f64) -> Series {
         let width = self.layout.width();
         let values = |index: usize| self.points.iter().skip(index).step_by(width).copied();

@@ -1,12 +1,12 @@
 //! Validation of estimated parameters on a run, sections 5.3 and 5.4 of the paper.
 //!
-//! Predicted Γ = W χ is compared with the measured one, line by line, after the same decimation as
-//! in the identification. The torques of all actuators are compared, too: the prediction is the
-//! least-norm one, τ = J_p^inv (J_p^invᵀ J_p^inv)^-1 Γ¹, so an internal preload of a redundant robot
-//! counts as error; without it, the measured torques are those of eq. (50).
+//! Predicted Γ = W χ is compared with the measured one, line by line, after the decimation of the
+//! identification. The torques of all actuators are compared, too. Their prediction is the
+//! least-norm one, τ = J_p^inv (J_p^invᵀ J_p^inv)^-1 Γ¹, so a preload of a redundant robot counts
+//! as error. The measured torques without preload are those of eq. (50).
 //!
-//! A run is gone through once, whatever the number of estimates: what is measured and what each
-//! estimate predicts stand side by side in one row per sample, and these rows are decimated.
+//! A run is read once for any number of estimates. Each sample has one row with the measurements
+//! and all predictions, and these rows are decimated.
 
 mod layout;
 
@@ -32,20 +32,22 @@ use crate::{
 
 use layout::{Layout, Pair, Sums};
 
-/// One actuator's entry in Table 3.
+/// Entry of one actuator in Table 3.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TorqueComparison {
     /// Name of the actuator.
     pub actuator: String,
-    /// 100 ||τ - τ*||/||τ||, τ* being the least-norm torque.
+    /// 100 ||τ - τ*||/||τ|| with the least-norm torque τ*.
     pub least_norm_percent: f64,
-    /// 100 ||τ - τ*||/||τ||, τ* being the torque of eq. (26) without overconstraint, which satisfies the model but
-    /// is not of least norm; none without redundancy, and for models that lack the closure matrices.
+    /// 100 ||τ - τ*||/||τ|| with the torque τ* of eq. (26) without overconstraint.
+    ///
+    /// It satisfies the model but is not of least norm. `None` without redundancy, and for models
+    /// without closure matrices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closure_percent: Option<f64>,
 }
 
-/// How well parameters reproduce a run.
+/// Prediction errors of parameters on a run.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Validation {
@@ -55,35 +57,35 @@ pub struct Validation {
     pub residual_norm: f64,
     /// 100 ||Y - W χ||/||Y|| of all lines.
     pub relative_error_percent: f64,
-    /// Each line of Γ.
+    /// Errors of each line of Γ.
     pub lines: Vec<LineError>,
-    /// Each actuator's torque against the least-norm prediction.
+    /// Errors of each actuator's torque, predicted with least norm.
     pub torques: Vec<LineError>,
-    /// Each measured torque, freed of its internal part (50), against the prediction; empty without
-    /// redundancy.
+    /// Errors of each measured torque without its internal part (50).
+    ///
+    /// Empty without redundancy.
     pub projected_torques: Vec<LineError>,
-    /// Each actuator's torque against both predictions.
+    /// Errors of each actuator's torque for both predictions.
     pub table: Vec<TorqueComparison>,
-    /// The lines of Γ over time.
+    /// Lines of Γ over time.
     pub line_series: Vec<Series>,
-    /// The torques over time.
+    /// Torques over time.
     pub torque_series: Vec<Series>,
 }
 
 /// Parameters whose predictions are compared with a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Candidate<'a> {
-    /// Number of their projection among the observer's.
+    /// Index of their projection.
     pub(crate) projection: usize,
-    /// Places of their columns among the base parameters.
+    /// Indices of their columns among the base parameters.
     pub(crate) selected: &'a [usize],
-    /// Their values (SI units).
+    /// Values (SI units).
     pub(crate) values: &'a [f64],
 }
 
 impl Candidate<'_> {
-    /// Predicts the lines of Γ by the equations of a sample, and puts measured and predicted values to
-    /// their places in a row.
+    /// Predicts the lines of Γ for a sample, and writes measured and predicted values to a row.
     fn predict<'e>(
         &self,
         equations: impl Iterator<Item = &'e [f64]>,
@@ -102,23 +104,24 @@ impl Candidate<'_> {
     }
 }
 
-/// What a run that is held out tells.
+/// Results on a validation run.
 pub(crate) struct Validated {
-    /// For each candidate its comparison, or why it has none.
+    /// For each candidate its comparison, or the error.
     pub(crate) validations: Vec<Result<Validation, Error>>,
-    /// The motion of the run, for plots.
+    /// Motion of the run, for plots.
     pub(crate) motion: RunFigures,
-    /// Largest miss of the loops' closure by the measured actuators (m, rad).
+    /// Largest closure residual of the measured positions (m, rad).
     pub(crate) closure_residual: f64,
-    /// What has been watched of its raw numbers.
+    /// Statistics of its raw numbers.
     pub(crate) monitor: Monitor,
 }
 
-/// Compares a run with the predictions of several sets of parameters. A projection that is singular on
-/// the run has no comparison, but an error.
+/// Compares a run with the predictions of several sets of parameters.
+///
+/// A projection that is singular on the run has an error instead.
 ///
 /// # Errors
-/// A run that does not fit, a sample outside the workspace, a file that can't be read.
+/// A run that does not fit, a sample outside the workspace, a file that cannot be read.
 pub(crate) fn validate(
     observer: &Observer<'_>,
     log: &Log,
@@ -192,7 +195,7 @@ pub(crate) fn validate(
     })
 }
 
-/// The comparison of one candidate.
+/// Comparison of one candidate.
 fn validation(
     sums: &Sums<'_>,
     candidate: usize,
@@ -248,7 +251,7 @@ fn validation(
     }
 }
 
-/// The rows of a chunk, of which sample `first` of the motion is the first.
+/// Rows of a chunk, which starts with sample `first` of the motion.
 fn rows(
     observer: &Observer<'_>,
     layout: &Layout,
@@ -313,7 +316,7 @@ fn rows(
     Ok(rows)
 }
 
-/// B_p of the closure at some poses, n x n each, where the model offers it.
+/// B_p of the closure at some poses, n × n each, if the model has it.
 fn closures(model: &dyn Model, poses: &[f64], count: usize) -> Option<Vec<f64>> {
     let sizes = model.info().sizes;
     let mut joints = vec![0.0; count * sizes.joints];
@@ -331,13 +334,13 @@ fn closures(model: &dyn Model, poses: &[f64], count: usize) -> Option<Vec<f64>> 
     Some(closures)
 }
 
-/// Whether the torques of eq. (26) can be told: the robot is redundant and has its closure matrices.
+/// Whether torques by eq. (26) are available: the robot is redundant with closure matrices.
 fn offers_closure(model: &dyn Model) -> bool {
     let info = model.info();
     info.sizes.actuators > info.sizes.dof && closures(model, info.home_pose, 1).is_some()
 }
 
-/// Γ¹ of inputs Γ in the projection: themselves on the platform, J_aᵀ Γ² on kept actuators.
+/// Γ¹ of the inputs Γ of a projection: themselves for the platform, J_aᵀ Γ² for kept actuators.
 pub(crate) fn platform_input(
     projection: &Projection,
     info: &Info<'_>,

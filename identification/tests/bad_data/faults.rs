@@ -1,10 +1,10 @@
-//! What only the model tells: units, signs, columns, labels, drives and times that do not fit it.
+//! Faults that only the model shows: units, signs, columns, labels, drives and times.
 
 use super::*;
 
 #[test]
 fn swapped_columns_are_named() {
-    // Positions: the loops tell.
+    // Positions: found by the closure.
     let swapped =
         with(|_, positions, _| positions.chunks_exact_mut(4).for_each(|row| row.swap(0, 2)));
     match swapped {
@@ -23,7 +23,7 @@ fn swapped_columns_are_named() {
     if !is_full() {
         return;
     }
-    // Torques: the model tells.
+    // Torques: found by the model.
     let swapped = with(|_, _, torques| torques.chunks_exact_mut(4).for_each(|row| row.swap(1, 2)));
     let result = swapped.expect("an identification");
     assert_eq!(
@@ -96,7 +96,7 @@ fn a_drive_of_the_wrong_sign_is_named() {
             "{error}"
         ),
     }
-    // All drives: nothing but the signs of the parameters tells.
+    // All drives: only the signs of the parameters show it.
     let result = with(|_, _, torques| torques.iter_mut().for_each(|tau| *tau = -*tau));
     let result = result.expect("an identification");
     let negative = (CheckKind::NegativeParameter, None, None);
@@ -142,7 +142,7 @@ fn a_payload_run_that_is_labelled_unloaded_is_named() {
     if !is_full() {
         return;
     }
-    // Even if all are said to be unloaded.
+    // Even if all are labelled unloaded.
     let runs: Vec<Log> = RECORDS[..3]
         .iter()
         .map(|record| log(record.clone(), |_, _| {}).with_payload(false))

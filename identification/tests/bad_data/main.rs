@@ -1,6 +1,6 @@
-//! Data that can't be right are found and named, and good data raise no alarm.
+//! Bad data are found and named, and good data cause no alarm.
 //!
-//! Several faults come in variants: the default tier sees one of each, the full tier all.
+//! Several faults have variants: the default tier tests one of each, the full tier all.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -26,7 +26,7 @@ static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
     records(&robot, &experiment)
 });
 
-/// Identifies from the runs, with `change` made to positions and torques of each by its number.
+/// Identifies from the runs after `change` of positions and torques of each run, by number.
 fn with(change: impl Fn(usize, &mut Vec<f64>, &mut Vec<f64>)) -> Result<Identification, Error> {
     let runs = RECORDS.iter().enumerate().map(|(number, record)| {
         log(record.clone(), |positions, torques| {
@@ -48,8 +48,7 @@ fn identified(runs: &[Log]) -> Result<Identification, Error> {
     identify(&robot, &dataset, &settings(&robot).trimmed(1000.0), &|_| {})
 }
 
-/// Kinds, runs and actuators of the checks that found something, whose words all stand among the
-/// warnings, too.
+/// Kinds, runs and actuators of the failed checks, whose words must be among the warnings.
 fn found(result: &Identification) -> Vec<(CheckKind, Option<&str>, Option<&str>)> {
     let found = failed(result);
     for check in &found {
@@ -63,7 +62,7 @@ fn found(result: &Identification) -> Vec<(CheckKind, Option<&str>, Option<&str>)
         .collect()
 }
 
-/// The checks that found something.
+/// The failed checks.
 fn failed(result: &Identification) -> Vec<&Check> {
     let checks = result.checks.iter();
     checks.filter(|check| !check.passed).collect()

@@ -1,4 +1,4 @@
-//! What the numbers of the logs tell by themselves, whatever the model.
+//! Faults that the numbers of the logs show without a model.
 
 use super::*;
 
@@ -21,7 +21,7 @@ fn good_data_raise_no_alarm() {
             .map(|tau| (tau / 0.5).round() * 0.5)
             .collect();
     });
-    // Steps of the encoders bias least squares a little, which their own test tells, and leave peaks.
+    // Coarse encoders bias least squares a little, which has its own test, and cause peaks.
     let coarse = coarse.expect("an identification");
     let others = found(&coarse)
         .into_iter()
@@ -39,7 +39,7 @@ fn clipped_torques_are_named() {
         }
     });
     let result = result.expect("an identification");
-    // Torques that are missing make the run carry something else, too, and leave most where they are.
+    // Clipped torques also resemble another payload and cause outliers.
     let clipped = |result: &Identification| {
         let mut found = found(result);
         found.retain(|(kind, _, _)| !matches!(kind, CheckKind::PayloadLabel | CheckKind::Outliers));
@@ -53,7 +53,7 @@ fn clipped_torques_are_named() {
     if !is_full() {
         return;
     }
-    // The same with the noise of a measurement on top.
+    // The same with measurement noise.
     let result = with(|run, _, torques| {
         if run == 2 {
             torques
@@ -93,7 +93,7 @@ fn stuck_encoders_are_named() {
     if !is_full() {
         return;
     }
-    // From start to end, which the loops do not allow.
+    // From start to end, which violates the closure.
     let result = with(|run, positions, _| {
         if run == 1 {
             let held = positions[2];
@@ -120,7 +120,7 @@ fn dropped_and_repeated_samples_are_named() {
         let result = with(|run, positions, torques| {
             if run == 0 {
                 for rows in [positions, torques] {
-                    // Twenty samples are gone; or ten are what the one before was.
+                    // Twenty samples are missing, or ten repeat the previous one.
                     if repeated {
                         let held: Vec<f64> = rows[4 * 1500..4 * 1501].to_vec();
                         rows[4 * 1500..4 * 1510]

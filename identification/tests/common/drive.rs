@@ -8,7 +8,7 @@ use overact_identification::{Error, Log, Mapping, Time, data::read};
 
 use crate::common::EMPS;
 
-/// A mapping of one drive with its time in `t`.
+/// A mapping of one drive with time in `t`.
 pub(crate) fn timed(position: &str, torque: &str) -> Mapping {
     Mapping {
         time: Time::Column(String::from("t")),
@@ -39,11 +39,11 @@ pub(crate) fn run(name: &str, files: &[(&str, &[u8])], mapping: &Mapping) -> Res
     log.map_err(|error: Error| error.to_string().replace(&prefix, ""))
 }
 
-/// Reads `q` of a file and `tau` of another one.
+/// Reads `q` of one file and `tau` of another one.
 pub(crate) fn joined(first: (&str, &[u8]), second: (&str, &[u8])) -> Result<Log, String> {
     let name = format!("{}+{}", first.0, second.0);
     let log = run(&name, &[first, second], &timed("q", "tau"))?;
-    // The folder is gone: what is kept in memory only is enough here.
+    // The folder is deleted, so the log must be in memory.
     assert!(log.in_memory());
     Ok(log)
 }

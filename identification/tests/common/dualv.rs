@@ -1,5 +1,7 @@
-//! Virtual experiments of a DualV with the inertia of its legs at the motors: the nine parameters of
-//! Table 2, friction at the motors, and the trajectories of `robots/dualv.toml`.
+//! Virtual experiments of a DualV whose legs have rotor inertia only.
+//!
+//! They use the nine parameters of Table 2, friction at the motors, and the trajectories of
+//! `robots/dualv.toml`.
 #![allow(dead_code, reason = "each test file uses its part")]
 
 #[path = "../../../simulation/tests/support/mod.rs"]
@@ -107,7 +109,7 @@ pub(crate) fn truth() -> BTreeMap<String, f64> {
     truth
 }
 
-/// An angle or a length as descriptions write them, in SI units.
+/// An angle or a length in a description's format, in SI units.
 fn quantity(text: &str) -> f64 {
     let (number, unit) = text.split_once(' ').expect("a unit");
     let factor = match unit {
@@ -152,7 +154,7 @@ pub(crate) fn runs(rotation: f64) -> Vec<Run> {
         .collect()
 }
 
-/// The experiment of those runs at 1 kHz.
+/// The experiment of these runs at 1 kHz.
 pub(crate) fn experiment(robot: &DualV, rotation: f64, seed: u64) -> Experiment {
     let info = robot.info();
     let truth = truth();
@@ -169,7 +171,7 @@ pub(crate) fn experiment(robot: &DualV, rotation: f64, seed: u64) -> Experiment 
     }
 }
 
-/// The usual settings: the robot moves up to 10 Hz.
+/// Usual settings for motion up to 10 Hz.
 pub(crate) fn settings(robot: &DualV) -> Settings {
     Settings {
         filter_cutoff_hz: 100.0,
@@ -178,12 +180,12 @@ pub(crate) fn settings(robot: &DualV) -> Settings {
     }
 }
 
-/// What is recorded.
+/// Simulates the experiment.
 pub(crate) fn records(robot: &DualV, experiment: &Experiment) -> Vec<Record> {
     simulate(robot, experiment, &|_, _| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A record as a run; `change` may alter positions and torques, samples x 4 each.
+/// A record as a run; `change` may alter positions and torques, samples × 4 each.
 pub(crate) fn log(record: Record, change: impl FnOnce(&mut Vec<f64>, &mut Vec<f64>)) -> Log {
     let (mut positions, mut torques) = (record.positions, record.torques);
     change(&mut positions, &mut torques);

@@ -1,13 +1,13 @@
-//! MCAP files, written record by record, right or wrong.
+//! Writes MCAP files record by record, valid or not.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-/// The type that is read.
+/// The supported message type.
 pub(crate) const JOINT_STATE: &str = "sensor_msgs/msg/JointState";
 
-/// What a file starts and ends with.
+/// Magic bytes at both ends of a file.
 pub(crate) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
-/// Seconds since 1970 at which logs begin.
+/// Start of the logs, s since 1970.
 pub(crate) const START: u64 = 1_700_000_000;
 
 fn text(text: &str) -> Vec<u8> {
@@ -24,7 +24,7 @@ pub(crate) fn record(kind: u8, content: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A type and a topic with it, both of one number.
+/// A schema and a topic with it, both with the number `id`.
 pub(crate) fn topic(id: u16, name: &str, (kind, encoding): (&str, &str)) -> Vec<u8> {
     let schema = [
         &id.to_le_bytes()[..],
@@ -45,7 +45,7 @@ pub(crate) fn topic(id: u16, name: &str, (kind, encoding): (&str, &str)) -> Vec<
     [record(3, &schema), record(4, &channel)].concat()
 }
 
-/// A message on a topic, recorded so many nanoseconds after the start.
+/// A message on a topic, recorded `nanos` after the start.
 pub(crate) fn message(id: u16, nanos: u64, content: &[u8]) -> Vec<u8> {
     let time = (START * 1_000_000_000 + nanos).to_le_bytes();
     record(
@@ -54,13 +54,13 @@ pub(crate) fn message(id: u16, nanos: u64, content: &[u8]) -> Vec<u8> {
     )
 }
 
-/// States of joints, stamped so many nanoseconds after the start.
+/// Joint states, stamped `nanos` after the start.
 pub(crate) fn state(nanos: u64, names: &[&str], lists: [&[f64]; 3]) -> Vec<u8> {
     let second = (START + nanos / 1_000_000_000) as u32;
     stamped((second, (nanos % 1_000_000_000) as u32), names, lists)
 }
 
-/// The same with a stamp.
+/// The same with a given stamp.
 pub(crate) fn stamped(stamp: (u32, u32), names: &[&str], lists: [&[f64]; 3]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let align = |bytes: &mut Vec<u8>, to: usize| bytes.resize(bytes.len().next_multiple_of(to), 0);
@@ -89,7 +89,7 @@ pub(crate) fn stamped(stamp: (u32, u32), names: &[&str], lists: [&[f64]; 3]) -> 
     [&[0, 1, 0, 0][..], &bytes].concat()
 }
 
-/// Records in a chunk, packed already: their size before, and their checksum or zero.
+/// A chunk of compressed records, with their size and checksum (or zero).
 pub(crate) fn chunk(packing: &str, packed: &[u8], (size, sum): (u64, u32)) -> Vec<u8> {
     let length = (packed.len() as u64).to_le_bytes();
     record(
@@ -106,12 +106,12 @@ pub(crate) fn chunk(packing: &str, packed: &[u8], (size, sum): (u64, u32)) -> Ve
     )
 }
 
-/// What a file starts with.
+/// Start of a file.
 pub(crate) fn beginning() -> Vec<u8> {
     [MAGIC, &record(1, &[text("ros2"), text("test")].concat())].concat()
 }
 
-/// What a file of so many bytes ends with: a summary with these records, or none.
+/// End of a file of `before` bytes: a summary with these records, or none.
 pub(crate) fn end(before: u64, summary: &[u8]) -> Vec<u8> {
     let data_end = record(15, &[0; 4]);
     let place = if summary.is_empty() {
@@ -123,7 +123,7 @@ pub(crate) fn end(before: u64, summary: &[u8]) -> Vec<u8> {
     [&data_end, summary, &footer, MAGIC].concat()
 }
 
-/// A file of records, without a summary.
+/// A file of records without summary.
 pub(crate) fn file(records: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = beginning();
     bytes.extend(records.concat());

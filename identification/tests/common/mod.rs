@@ -1,4 +1,4 @@
-//! Small robots written by hand, and the place of the reference data.
+//! Small hand-written robots, and the location of reference data.
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use std::path::PathBuf;
@@ -7,8 +7,9 @@ use overact::{
     Body, Columns, Error, Function, Info, Model, Parameter, SampleError, Sizes, StandardParameter,
 };
 
-/// The folder of reference data: `OVERACT_SHARED`, or `shared` beside the repository. `None`, with
-/// a word about it, when there is none.
+/// A file of the reference data: in `OVERACT_SHARED`, or `shared` next to the repository.
+///
+/// `None`, with a message, if it does not exist.
 pub(crate) fn shared(path: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
         || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
@@ -44,14 +45,15 @@ pub(crate) const fn leg(
     }
 }
 
-/// n motors in parallel on one mass that moves along a line: the redundant robot of the paper's
-/// Fig. 1 for n = 2, a single prismatic drive for n = 1. Gear ratios make q̇ = ratio · v.
+/// n motors in parallel on one mass on a line, with gear ratios q̇ = ratio · v.
+///
+/// For n = 2 this is the redundant robot of the paper's Fig. 1; for n = 1 a single prismatic drive.
 pub(crate) struct Drives {
     pub(crate) ratios: &'static [f64],
     pub(crate) names: &'static [&'static str],
     pub(crate) parameters: &'static [Parameter],
     pub(crate) payload: &'static [Parameter],
-    /// A pose beyond this is out of reach.
+    /// Largest reachable pose.
     pub(crate) reach: f64,
 }
 
@@ -100,7 +102,7 @@ pub(crate) const PAIR: Drives = Drives {
 };
 
 impl Drives {
-    /// The scalar column of a parameter, projected on the mass.
+    /// Scalar column of a parameter, projected on the mass.
     fn column(&self, parameter: &Parameter, v: f64, a: f64) -> f64 {
         let ratio = match parameter.body {
             Body::Leg { leg, .. } => self.ratios[usize::from(leg)],
@@ -157,7 +159,7 @@ impl Drives {
         Ok(())
     }
 
-    /// Γ¹ of given parameter values, robot's then payload's.
+    /// Γ¹ for parameter values, the robot's then the payload's.
     pub(crate) fn force(&self, values: &[f64], v: f64, a: f64) -> f64 {
         let parameters = self.parameters.iter().chain(self.payload);
         parameters

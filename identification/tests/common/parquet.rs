@@ -1,4 +1,4 @@
-//! Parquet files, written column by column.
+//! Writes Parquet files column by column.
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use std::{io::Write, sync::Arc};
@@ -15,7 +15,7 @@ use parquet::{
     schema::parser::parse_message_type,
 };
 
-/// The values of a column.
+/// Values of a column.
 pub(crate) enum Cells<'a> {
     Double(&'a [f64]),
     Float(&'a [f32]),
@@ -24,7 +24,7 @@ pub(crate) enum Cells<'a> {
     Flag(&'a [bool]),
     Text(&'a [&'a str]),
     Fixed(&'a [&'a str]),
-    /// Nanoseconds since 1970, in the type that is out of use.
+    /// Nanoseconds since 1970, in the obsolete type.
     Old(&'a [i64]),
     Optional(&'a [Option<f64>]),
     Maybe(&'a [Option<f32>]),
@@ -69,7 +69,7 @@ impl Cells<'_> {
     }
 }
 
-/// Nanoseconds since 1970 as nanoseconds of a Julian day.
+/// Nanoseconds since 1970 as day and nanoseconds of the Julian calendar.
 fn old(nanos: i64) -> Int96 {
     const DAY: i64 = 86_400_000_000_000;
     let (day, rest) = (nanos.div_euclid(DAY), nanos.rem_euclid(DAY));
@@ -107,7 +107,7 @@ pub(crate) fn written(schema: &str, columns: &[Cells<'_>]) -> Vec<u8> {
     )
 }
 
-/// A file of these columns, so many rows in a group.
+/// A file of these columns, with `rows` rows per group.
 pub(crate) fn written_with(
     properties: WriterProperties,
     schema: &str,
@@ -119,7 +119,7 @@ pub(crate) fn written_with(
     file
 }
 
-/// Writes these columns, so many rows in a group.
+/// Writes these columns, with `rows` rows per group.
 pub(crate) fn write_into(
     output: impl Write + Send,
     properties: WriterProperties,

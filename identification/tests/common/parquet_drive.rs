@@ -14,7 +14,7 @@ pub(crate) fn log(content: &[u8], mapping: &Mapping) -> Result<Log, String> {
     run("a.parquet", &[("a.parquet", content)], mapping)
 }
 
-/// Samples at 100 Hz with numbers of all digits, some of which return.
+/// Samples at 100 Hz with full-precision values, some of them repeated.
 pub(crate) fn samples() -> [Vec<f64>; 3] {
     let all = 0..1000_u32;
     [

@@ -1,12 +1,13 @@
-//! A point mass in a vertical plane, pulled and pushed by three telescopic legs: n = 3, r = 2, with
-//! a Jacobian that depends on the pose.
+//! A point mass in a vertical plane with three telescopic legs: n = 3, r = 2.
+//!
+//! Its Jacobian depends on the pose.
 
 use overact::{
     Body, Columns, Error, Function, Info, Model, Parameter, SampleError, Sizes, StandardParameter,
     forward::{Measured, Workspace, gauss_newton},
 };
 
-/// Where the legs are fixed, m.
+/// Anchors of the legs, m.
 pub(crate) const ANCHORS: [[f64; 2]; 3] = [[-1.0, -0.6], [1.0, -0.5], [0.1, 1.2]];
 
 const GRAVITY: f64 = 9.81;
@@ -61,7 +62,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// The state of one leg.
+/// State of one leg.
 pub(crate) fn leg(index: usize, x: [f64; 2], v: [f64; 2], a: [f64; 2]) -> Leg {
     let d = [x[0] - ANCHORS[index][0], x[1] - ANCHORS[index][1]];
     let q = dot(d, d).sqrt();
@@ -75,7 +76,7 @@ pub(crate) fn leg(index: usize, x: [f64; 2], v: [f64; 2], a: [f64; 2]) -> Leg {
     }
 }
 
-/// The column of a parameter on the platform.
+/// Column of a parameter on the platform.
 pub(crate) fn column(index: usize, x: [f64; 2], v: [f64; 2], a: [f64; 2]) -> [f64; 2] {
     if index == 12 {
         return [a[0], a[1] + GRAVITY];

@@ -1,4 +1,4 @@
-//! Whether the sampling frequency is right, as far as gravity and friction tell.
+//! Tests the sampling frequency, which gravity and friction determine.
 
 use super::{
     Context,
@@ -14,10 +14,10 @@ use crate::{
     significant,
 };
 
-/// Errors that are larger are told without a number: the first order, in which they are looked for, tells no size.
+/// Larger relative errors are reported without a number: the first-order test is invalid there.
 const LARGEST: f64 = 0.5;
 
-/// Tests one factor of all times.
+/// Tests one common factor of all time stamps.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());

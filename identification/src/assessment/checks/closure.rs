@@ -1,11 +1,12 @@
-//! Whether the measured positions close the loops, as well as encoders of their resolution and noise
-//! can.
+//! Tests whether the measured positions close the loops within resolution and noise.
 //!
-//! Each encoder is off by half of its resolution at most, and by its noise. The miss of the closure is a
-//! projection of these errors, so its largest component is no larger than their norm. Noise is told from
-//! the positions themselves, by third differences. Geometry that is wrong by a part of the motion's range
-//! makes parameters wrong by about the same part, so a miss that is small beside the range and the
-//! deviations of all parameters does no harm.
+//! Each encoder is wrong by at most half its resolution, plus noise. The closure residual is a
+//! projection of these errors, so its largest component is at most their norm. The noise is
+//! estimated from third differences of the positions.
+//!
+//! A wrong length that is a fraction of the motion's range shifts parameters by about the same
+//! fraction. A residual that is small compared with the range times the smallest relative standard
+//! deviation is therefore harmless.
 
 use super::{
     Context, Watched,
@@ -24,13 +25,13 @@ use crate::{
     significant,
 };
 
-/// Positions are filtered, which rings a little at steps.
+/// Factor for the ringing of the position filter at steps.
 const RINGING: f64 = 1.5;
 
-/// Miss by the range of the motion that does no harm, by the smallest relative deviation of a parameter.
+/// Harmless residual, by range and smallest relative standard deviation of a parameter.
 const HARMLESS: f64 = 0.3;
 
-/// Looks at all runs of a robot whose actuators are more than its degrees of freedom.
+/// Checks all runs of a robot with more actuators than degrees of freedom.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let sizes = context.model.info().sizes;
     let mut checks = Vec::new();
@@ -81,24 +82,26 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(checks)
 }
 
-/// How well the positions of a run close the loops (m, rad).
+/// Closure residual of a run and its limits (m, rad).
 struct Closing {
-    /// The largest miss of positions that are filtered as for the model.
+    /// Largest residual of the filtered positions.
     filtered: f64,
-    /// That of the positions as they were logged, where they have poses and it was looked for. A filter takes of each
-    /// encoder what is fast, and what is left does not close loops that are not linear: positions that shake near the
-    /// cutoff miss the closure once they are filtered, whatever the lengths are.
+    /// Largest residual of the unfiltered positions; `None` if not computed or without poses.
+    ///
+    /// A filter removes fast motion of each encoder separately. Since the closure is nonlinear,
+    /// positions that vibrate near the cutoff violate it after filtering even if the lengths are
+    /// right.
     as_logged: Option<f64>,
-    /// What resolution and noise explain.
+    /// Largest residual that resolution and noise explain.
     limit: f64,
-    /// What does no harm.
+    /// Largest harmless residual.
     harmless: f64,
-    /// The range of the motion.
+    /// Range of the motion.
     range: f64,
 }
 
 impl Closing {
-    /// Whether the positions contradict the loops.
+    /// Whether the positions violate the closure.
     fn misses(&self) -> bool {
         self.filtered > self.limit && self.as_logged.is_none_or(|miss| miss > self.limit)
     }
@@ -129,7 +132,7 @@ impl Closing {
     }
 }
 
-/// The largest miss that resolution and noise explain, and the noise (m, rad).
+/// Largest residual that resolution and noise explain, and the noise (m, rad).
 fn limit(watched: &Watched, samples: usize) -> (f64, f64) {
     let [variances, _] = watched.monitor.noise();
     let resolutions = watched.monitor.resolutions();
@@ -143,7 +146,7 @@ fn limit(watched: &Watched, samples: usize) -> (f64, f64) {
     (RINGING * squares.sum::<f64>().sqrt(), noise)
 }
 
-/// The smallest relative deviation of a recommended parameter.
+/// Smallest relative standard deviation of a recommended parameter.
 fn finest(context: &Context<'_>) -> f64 {
     let estimates = context.estimates_of(Stage::Recommended);
     let all = estimates.flat_map(|one| &one.parameters);
@@ -155,7 +158,7 @@ fn finest(context: &Context<'_>) -> f64 {
     if finest.is_finite() { finest } else { 0.0 }
 }
 
-/// The miss of each run and what resolution and noise explain of it.
+/// Plot of each run's closure residual and its limit.
 fn evidence(context: &Context<'_>) -> Evidence {
     let mut curves =
         ["miss", "explained by resolution and noise"].map(|name| Curve::new(name, &[], &[]));

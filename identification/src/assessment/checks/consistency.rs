@@ -1,4 +1,4 @@
-//! Whether bodies with positive masses and positive definite inertias explain the data.
+//! Tests whether physically consistent bodies explain the data.
 
 use super::{Context, negative_parameters::is_positive};
 use crate::{
@@ -8,8 +8,9 @@ use crate::{
     significant,
 };
 
-/// Looks at the base parameters of the models without physically consistent parameters. Friction may be used all
-/// the same; masses, first moments and inertias may not.
+/// Checks the base parameters of models without a physically consistent solution.
+///
+/// Friction remains usable; masses, first moments and inertias do not.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let estimates = context.estimates_of(Stage::Base);
     let without = estimates.filter(|one| context.inconsistent.contains(&one.model));
@@ -28,7 +29,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(without.map(of_model).collect())
 }
 
-/// What fails, and a way out.
+/// Describes the negative parameters and a remedy.
 fn words(context: &Context<'_>, estimate: &Estimate) -> String {
     let negative = estimate
         .parameters

@@ -1,4 +1,4 @@
-//! Whether a few instants decide, whether the motion is long enough, and whether the filters suit it.
+//! Checks outliers, length of the motion and filters.
 
 use super::{Context, relative_error::times_the_noise, suspected::dry_friction};
 use crate::{
@@ -10,24 +10,29 @@ use crate::{
     significant,
 };
 
-/// The part of the squared residual that one instant in a hundred may hold. White noise leaves 8 % there.
+/// Largest fraction of the squared residual in the worst 1 % of the samples.
+///
+/// White noise has 8 % of its square there.
 const LARGEST_PART: f64 = 0.5;
 
-/// How many times its noise the residual is, at least, where a few instants decide. Friction at reversals leaves
-/// peaks in faultless data, too, but they do not stand out of the noise as a whole.
+/// Outliers count only if the residual exceeds this multiple of the torque noise.
+///
+/// Friction at reversals causes peaks in faultless data, too, but their residual is near the noise.
 const BEYOND_NOISE: f64 = 2.0;
 
-/// Instants of which that is told, at least.
+/// Fewest samples for the outlier check.
 const FEWEST_INSTANTS: usize = 300;
 
-/// Periods that the slowest actuator should move through.
+/// Fewest periods of motion of the slowest actuator.
 const FEWEST_PERIODS: f64 = 2.0;
 
-/// How many times the frequency of the motion the cutoff of the filters should be, at least: at eleven times
-/// dry friction of a faultless five-bar is off by three deviations, at twenty-two by none.
+/// Smallest ratio of filter cutoff to frequency of the motion.
+///
+/// On a faultless five-bar, the ratio 11 shifts dry friction by three standard deviations; the
+/// ratio 22 does not.
 const LEAST_CUTOFF: f64 = 12.0;
 
-/// Looks at all of it.
+/// Runs these checks.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
@@ -66,7 +71,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(checks)
 }
 
-/// Whether every actuator goes through its motion often enough.
+/// Checks that every actuator moves through enough periods.
 fn length(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     let moving = paces.iter().enumerate();
     let moving = moving.filter_map(|(actuator, pace)| Some((actuator, (*pace)?)));
@@ -92,7 +97,7 @@ fn length(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     )
 }
 
-/// Whether the filters leave the motion as it is.
+/// Checks that the filter cutoff lies far above the frequency of the motion.
 fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     let cutoff = context.settings.filter_cutoff_hz;
     let fastest = paces.iter().flatten().map(|pace| pace.frequency);
@@ -125,7 +130,7 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     })
 }
 
-/// Whether columns and torques pass the same filter.
+/// Checks that regressor and torques pass the same filter.
 fn unlike_filters(context: &Context<'_>) -> Option<Check> {
     let settings = context.settings;
     let unlike = settings.decimation <= 1 && !settings.filter_equations;

@@ -1,4 +1,4 @@
-//! Whether torques and motion are of the same time.
+//! Tests for a delay between torques and motion.
 
 use super::{
     Context,
@@ -14,15 +14,18 @@ use crate::{
     significant,
 };
 
-/// Part of a sampling interval that is no delay: how a drive holds its torque between samples and what
-/// encoder noise does to it through the controller shift torques against motion by less.
+/// Harmless delay, in sampling intervals.
+///
+/// The drive's zero-order hold and encoder noise in the controller shift torques against motion by
+/// less than this.
 const HARMLESS: f64 = 0.1;
 
-/// A delay of more than this part of the fastest motion's period is told without a number: the first order, in which it
-/// is looked for, tells no size.
+/// Largest delay that is reported with a number, by the period of the fastest motion.
+///
+/// The first-order test is invalid beyond it.
 const LARGEST: f64 = 0.2;
 
-/// Looks for one delay of all torques, and for one of a single drive.
+/// Tests one delay common to all torques, and one for each drive.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
@@ -100,7 +103,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// How the columns of a log are shifted against a delay of the torques, ms.
+/// Advice on shifting the torque columns against a delay in ms.
 fn shifted(delay: f64, context: &Context<'_>) -> String {
     let rate = context
         .dataset
@@ -120,16 +123,16 @@ fn shifted(delay: f64, context: &Context<'_>) -> String {
     }
 }
 
-/// What delays are held against.
+/// Number of tests, level and threshold of the delay tests.
 struct Told {
     tests: usize,
     level: f64,
-    /// A delay that is none, s.
+    /// Harmless delay, s.
     harmless: f64,
 }
 
 impl Told {
-    /// The check of a delay, without words.
+    /// The check of one delay, without words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
         let accused = &one.accused;
         let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);

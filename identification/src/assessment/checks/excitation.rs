@@ -1,5 +1,7 @@
-//! Whether the runs move every coordinate: parameters whose columns only noise of the positions separates, and
-//! parameters that stand for sums on these runs.
+//! Tests whether the runs excite every base parameter.
+//!
+//! It reports parameters that only position noise separates, and parameters whose columns are
+//! linearly dependent on these runs.
 
 use super::Context;
 use crate::{
@@ -15,19 +17,19 @@ use crate::{
     significant,
 };
 
-/// A direction of the columns of which noise is a larger part holds too little motion.
+/// Directions of the columns with a larger noise fraction have too little motion.
 const LARGEST_NOISE: f64 = 0.1;
 
-/// Part of a parameter's variance along such directions from which on it is not determined.
+/// Fraction of a parameter's variance along such directions that makes it undetermined.
 const LARGEST_SHARE: f64 = 1e-3;
 
-/// Deviations by which noise of the positions may bias a parameter.
+/// Largest bias from position noise, in standard deviations.
 const LARGEST_BIAS: f64 = 2.0;
 
-/// A coordinate that moves by less than this part of the one that moves most hardly moves.
+/// A coordinate hardly moves if its range is below this fraction of the largest range.
 const HARDLY: f64 = 0.02;
 
-/// Looks at the base parameters of all models.
+/// Checks the base parameters of all models.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let base = context.estimates.iter();
     let base = base.filter(|(_, one)| one.stage == Stage::Base);
@@ -84,7 +86,7 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
 }
 
 impl Directions {
-    /// Whether directions without motion are a part of the variance of the parameter at a place.
+    /// Whether badly excited directions contribute to the variance of parameter `place`.
     fn is_undetermined(&self, place: usize) -> bool {
         let steps = self.steps.row(place);
         let lost: f64 = { steps.iter().zip(&self.noise) }
@@ -94,7 +96,7 @@ impl Directions {
         lost > LARGEST_SHARE * steps.norm_squared()
     }
 
-    /// Whether noise of the positions biases a parameter along the other directions.
+    /// Whether position noise biases a parameter along the other directions.
     fn is_biased(&self, place: usize, parameter: &ParameterEstimate) -> bool {
         let steps = self.steps.row(place);
         let all = steps.iter().zip(&self.noise).zip(self.sizes.iter());
@@ -106,7 +108,7 @@ impl Directions {
     }
 }
 
-/// The estimated parameters that stand for sums: on these runs columns of others are combinations of theirs.
+/// Parameters that other columns depend on linearly in these runs.
 fn summed(system: &System, estimate: &Estimate) -> Vec<String> {
     let ones = vec![1.0; system.lines.len()];
     let all = Factor::merged(&system.lines, &ones);
@@ -122,7 +124,7 @@ fn summed(system: &System, estimate: &Estimate) -> Vec<String> {
         .collect()
 }
 
-/// What is told of parameters that the runs do not separate.
+/// Describes parameters that the runs do not separate.
 fn told(context: &Context<'_>, spoiled: &[String]) -> String {
     let names: Vec<String> = spoiled.iter().map(|name| format!("`{name}`")).collect();
     let names = names.join(", ");
@@ -145,7 +147,7 @@ fn told(context: &Context<'_>, spoiled: &[String]) -> String {
     )
 }
 
-/// The coordinates that hardly move in the runs identified from: of the platform, or joints of a robot without loops.
+/// Coordinates that hardly move in the training data: of the platform, or joints.
 fn still(context: &Context<'_>) -> Vec<String> {
     let ranges = context.ranges;
     let largest = ranges.iter().map(|(_, range)| *range).fold(0.0, f64::max);

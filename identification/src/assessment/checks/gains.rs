@@ -1,4 +1,4 @@
-//! Whether the gain of each drive is that of the others.
+//! Tests whether the gains of the drives agree with each other.
 
 use super::{
     Context,
@@ -14,10 +14,10 @@ use crate::{
     significant,
 };
 
-/// Errors of a gain that are larger are told without a number.
+/// Larger relative errors are reported without a number.
 const LARGEST: f64 = 0.5;
 
-/// Tests the gain of each actuator on its own.
+/// Tests the gain of each actuator separately.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
@@ -68,12 +68,12 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     ])
 }
 
-/// A part of one in percent.
+/// A fraction in percent.
 fn percent(value: f64) -> String {
     significant(100.0 * value, 3)
 }
 
-/// What is said where no drive is unlike the others.
+/// The passed check, with its detection limits.
 fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
     let visible: Vec<String> = detectable
         .iter()
@@ -97,7 +97,7 @@ fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
     Check::new(CheckKind::WrongGain, About::Model, words).measured(largest, "standard deviations")
 }
 
-/// What is said of a drive that is unlike the others.
+/// The failed check of one drive.
 fn unlike(
     (context, scores): (&Context<'_>, &Scores),
     (found, worst): (&[Tested], &Tested),
@@ -107,7 +107,7 @@ fn unlike(
     let harm = worst_harm(context, scores, (found, worst), level);
     let size = worst.accused.size();
     let by = match size {
-        // Far from the others the first order, in which it was looked for, tells no size.
+        // The first-order test has no valid size for large errors.
         size if size.abs() > LARGEST => String::from("unlike"),
         size if size < 0.0 => format!("{} % too small beside", percent(-size)),
         size => format!("{} % too large beside", percent(size)),
@@ -128,7 +128,9 @@ fn unlike(
         ))
 }
 
-/// What is said where the data tell no drive from its own parameters; a single drive is right or wrong as a whole.
+/// The check if no gain can be separated from the drive's own parameters.
+///
+/// A single drive has only a common gain, so there is no check.
 fn none_told(names: &[&str]) -> Option<Check> {
     let words = "nothing in these data tells whether the gain of one drive is unlike the others'";
     let check = || Check::new(CheckKind::WrongGain, About::Model, words);

@@ -1,5 +1,6 @@
-//! Whether encoders have offsets or play and lengths are as described, as far as the torques tell. Where there
-//! are more encoders than degrees of freedom the closure of the loops tells much more.
+//! Tests encoder errors and lengths with the torques.
+//!
+//! If there are more encoders than degrees of freedom, the closure determines them far better.
 
 use super::{
     Context,
@@ -15,7 +16,7 @@ use crate::{
     significant,
 };
 
-/// Tests an offset and a play of each actuator's position, and each length that is asked for.
+/// Tests offset, scale, eccentricity and play of each encoder, and each requested length.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
@@ -33,8 +34,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         {
             for one in tested(scores, std::iter::once(Group::suspect(place))) {
                 tests += 1;
-                // What friction at reversals leaves returns with every period, which the deviations do not know,
-                // and looks like an encoder a little out of centre: that is told where it does harm.
+                // Friction errors at reversals repeat with each period, and the standard deviation
+                // ignores that. They look like a slightly eccentric encoder, which is therefore
+                // reported only if harmful.
                 let is_small = matches!(suspect, Suspect::Eccentric(..))
                     && harm(context, scores, &one).worst <= HARMFUL;
                 if is_small {
@@ -138,7 +140,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// What is said where none of the suspects is guilty: from which size on they would have been seen.
+/// The passed check, with its detection limits.
 fn nothing(
     (context, scores): (&Context<'_>, &Scores),
     (suspects, found): (&[Suspect], &[Tested]),
@@ -176,7 +178,7 @@ fn nothing(
         .detecting(detectable.into_iter().map(|(_, one)| one).collect())
 }
 
-/// From which size on each offset and each length would have been seen.
+/// Detection limit of each offset, scale and length.
 fn detectable(
     (context, scores): (&Context<'_>, &Scores),
     (suspects, found): (&[Suspect], &[Tested]),
@@ -199,7 +201,7 @@ fn ratio(one: &Tested) -> f64 {
     one.accused.size().abs() / one.accused.deviation
 }
 
-/// The actuator or the length.
+/// Name of the actuator or the length.
 fn name(context: &Context<'_>, suspect: Suspect) -> String {
     let name = match suspect {
         Suspect::Offset(at)
@@ -212,7 +214,7 @@ fn name(context: &Context<'_>, suspect: Suspect) -> String {
     name.unwrap_or_default().to_owned()
 }
 
-/// The unit of an actuator's position, or of a length.
+/// Unit of the fault's size: of an actuator's position, or of a length.
 fn unit(context: &Context<'_>, suspect: Suspect) -> &'static str {
     match suspect {
         Suspect::Scale(_) | Suspect::Scales => "",

@@ -1,19 +1,22 @@
-//! Whether what looks like a filter is one, told from half of the band.
+//! Distinguishes a filter from position noise by a test in half the band.
 //!
-//! An error e of a position comes into the model as an acceleration, M ë, and so into the residual with the other sign.
-//! The second derivative of what the model explains has it as M e⁗. The two agree as those of a filter do: their
-//! product is -M² ë e⁗, in the mean M² times the square of the third derivative of e. So coarse encoders look like
-//! torques that were smoothed, by as much as errors in the band make of it; the same is in torques with which a
-//! controller answers them. That falls with the seventh power of the band, while a filter smooths by the same time in
-//! any band that it passes.
+//! A position error e enters the model as an acceleration, M ë, and the residual with opposite
+//! sign. The second derivative of the model's torques contains it as M e⁗. Their product is -M² ë
+//! e⁗, with the mean M² times the mean square of the third derivative of e.
+//!
+//! Coarse encoders therefore look like smoothed torques, and so do torques with which a controller
+//! answers encoder noise. That effect falls with the seventh power of the bandwidth. A filter has
+//! the same size in every band that it passes.
 
 use super::{Context, suspected::only};
 use crate::{assessment::suspects::Suspect, error::Error};
 
-/// Of the size in the whole band, so much is there in half of it, too, where a filter was.
+/// Fraction of the size that must remain in half the band if there is a filter.
 const LEFT: f64 = 0.5;
 
-/// Whether a suspect of a `size` that was found is there in half of the band, too; true where that can't be told.
+/// Whether a fault of `size` is also found in half the band.
+///
+/// True if half the band cannot be tested.
 pub(super) fn confirms(context: &Context<'_>, suspect: Suspect, size: f64) -> Result<bool, Error> {
     let Some(narrow) = (context.narrow)()? else {
         return Ok(true);
@@ -30,7 +33,7 @@ pub(super) fn confirms(context: &Context<'_>, suspect: Suspect, size: f64) -> Re
     Ok(remains(size, one.accused.size()))
 }
 
-/// Whether enough of a size is left in half of the band.
+/// Whether enough of the size remains in half the band.
 fn remains(size: f64, half: f64) -> bool {
     half * size.signum() >= LEFT * size.abs()
 }

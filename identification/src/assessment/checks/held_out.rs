@@ -1,8 +1,8 @@
-//! Whether runs that were held out are predicted as well as those identified from.
+//! Tests whether validation runs are predicted as well as training runs.
 //!
-//! The weighted mean square of the residual of a held-out run is compared with those of the parts of the
-//! runs identified from. Their logarithms spread, and one more of the same kind exceeds their mean by
-//! t s √(1 + 1/K) with a probability that Student's distribution tells.
+//! The weighted mean square residual of a validation run is compared with those of K parts of the
+//! training runs. Their logarithms have mean m and standard deviation s. One more part exceeds m +
+//! t s √(1 + 1/K) with the probability of Student's distribution.
 
 use super::{Context, level::level};
 use crate::{
@@ -17,10 +17,10 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// Parts whose spread tells something.
+/// Fewest parts from which the spread is estimated.
 const FEWEST_PARTS: usize = 3;
 
-/// Looks at all estimates on all runs that were held out.
+/// Checks all estimates on all validation runs.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let runs = context.dataset.validation.len();
     let of_one = |one: &CrossValidation| {
@@ -51,7 +51,7 @@ fn of_estimate(
     let mean = logarithms.iter().sum::<f64>() / count;
     let squares: f64 = logarithms.iter().map(|one| (one - mean).powi(2)).sum();
     let spread = (squares / (count - 1.0) * (1.0 + 1.0 / count)).sqrt();
-    // One-sided, shared by the runs; the estimates of a run are judged by one level each.
+    // A one-sided level, divided by the number of runs.
     let quantile = student_quantile(2.0 * level(runs), count - 1.0);
     let largest = (mean + quantile * spread).exp();
     let error = one.relative_error_percent;
@@ -103,7 +103,7 @@ fn of_estimate(
     )
 }
 
-/// Weighted mean squares of the residual in the parts of the runs identified from.
+/// Weighted mean square residual of each part of the training runs.
 fn parts(context: &Context<'_>, estimate: &Estimate) -> Vec<f64> {
     let Some(system) = context.system(estimate.model) else {
         return Vec::new();

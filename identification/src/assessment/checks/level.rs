@@ -1,21 +1,23 @@
-//! How often a report on faultless data may raise a false alarm.
+//! False-alarm rate of a report and its division among the tests.
 //!
-//! The checks with a statistic of known distribution share one rate, by Bonferroni's inequality: each
-//! family of tests has an equal part of it, and within a family each test.
+//! By Bonferroni's inequality, each family of tests has an equal part of the rate, and each test of
+//! a family an equal part of that.
 
-/// The part of the reports on faultless data that may have a false alarm.
+/// Fraction of reports on faultless data with a false alarm, at most.
 pub(crate) const FALSE_ALARMS: f64 = 0.01;
 
-/// Families of tests: closure, delay, smoothing, friction at reversals, clock, gains, geometry, labels, missing parameters, held-out runs,
-/// errors in the regressor, residuals that hang together.
+/// Number of test families.
+///
+/// They are: closure, delay, smoothing, friction at reversals, clock, gains, geometry, labels,
+/// missing parameters, validation runs, regressor errors, residual correlation.
 const FAMILIES: f64 = 12.0;
 
-/// The level of each of so many tests of a family.
+/// Level of each test in a family of `tests`.
 pub(crate) fn level(tests: usize) -> f64 {
     FALSE_ALARMS / FAMILIES / tests.max(1) as f64
 }
 
-/// Where a threshold comes from that keeps this level.
+/// States the origin of a threshold at this level.
 pub(crate) fn origin(tests: usize) -> String {
     let rate = 100.0 * FALSE_ALARMS;
     let tests = match tests {

@@ -1,5 +1,6 @@
-//! Whether the residual depends on velocity, acceleration, position or time in a way that the model
-//! lacks.
+//! Tests whether the residual depends on velocity, acceleration, position or time.
+//!
+//! Such a dependence is an effect that the model lacks.
 
 use super::{
     Context,
@@ -71,7 +72,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// All torques and forces that the data can tell, with their shapes.
+/// All testable torque and force hypotheses, with their shapes.
 fn all_tested(scores: &Scores) -> (Vec<(Suspect, Shape)>, Vec<Tested>) {
     let (mut suspects, mut found) = (Vec::new(), Vec::new());
     for (place, suspect) in scores.suspects.iter().enumerate() {
@@ -85,7 +86,7 @@ fn all_tested(scores: &Scores) -> (Vec<(Suspect, Shape)>, Vec<Tested>) {
     (suspects, found)
 }
 
-/// The sentences on the worst of them; `rest` says what follows from it.
+/// Describes the strongest hypothesis; `rest` is the consequence.
 fn words(
     context: &Context<'_>,
     (suspect, shape): (Suspect, Shape),
@@ -114,8 +115,9 @@ fn words(
     }
 }
 
-/// Of every other drive and coordinate what is worst of it, where that spoils parameters: a fault that all drives have
-/// in common is the worst of one of them only by chance.
+/// Strongest harmful hypothesis of every other drive and coordinate.
+///
+/// If all drives share a fault, chance decides which of them has the strongest result.
 fn others(
     (context, scores): (&Context<'_>, &Scores),
     (suspects, found, worst): (&[(Suspect, Shape)], &[Tested], usize),
@@ -149,7 +151,7 @@ fn others(
     places.into_iter().filter_map(worst_of).collect()
 }
 
-/// The others, as the end of a sentence.
+/// Names the others, as the end of a sentence.
 fn too(others: &[(String, Harm)]) -> String {
     let names: Vec<String> = others.iter().map(|(name, _)| format!("`{name}`")).collect();
     match names.is_empty() {
@@ -158,24 +160,24 @@ fn too(others: &[(String, Harm)]) -> String {
     }
 }
 
-/// What was found.
+/// Data for the words of a finding.
 struct Told {
-    /// What depends on something.
+    /// The dependent torque or force.
     what: String,
     /// δ, with its sign.
     size: f64,
-    /// δ by its deviation.
+    /// δ divided by its standard deviation.
     strength: f64,
-    /// What follows from it.
+    /// Consequence.
     rest: String,
 }
 
 impl Told {
-    /// The sentences on a shape whose size has a unit.
+    /// Sentence for a shape whose size has a unit.
     fn words(&self, shape: Shape, unit: &str) -> String {
         let size = format!(", by {} {unit}", significant(self.size, 3));
         let by = match shape {
-            // Waves that are nearly combinations of others have no size of their own.
+            // The waves are nearly collinear, so their sizes have no meaning.
             Shape::Waves => "",
             _ => size.trim_end(),
         };
@@ -188,7 +190,7 @@ impl Told {
         )
     }
 
-    /// The sentences on friction that is other near standstill: only one that rises is Stribeck's.
+    /// Sentence for friction that differs near standstill; only rising friction is Stribeck's.
     fn near_standstill(&self, context: &Context<'_>, actuator: usize) -> String {
         let info = context.model.info();
         let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
@@ -228,7 +230,7 @@ impl Told {
     }
 }
 
-/// Size by deviation of all that was tried, shape by shape.
+/// Plot of size by standard deviation for all hypotheses, grouped by shape.
 fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], limit: f64) -> Evidence {
     let mut points: Vec<(Shape, Curve)> = Vec::new();
     for ((suspect, shape), one) in suspects.iter().zip(found) {

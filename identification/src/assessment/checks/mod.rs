@@ -1,5 +1,6 @@
-//! All checks. Each has a file of its own and is a function of a read-only [`Context`]; the table
-//! [`CHECKS`] lists them.
+//! All checks, one per file. Each is a function of a read-only [`Context`].
+//!
+//! The table [`CHECKS`] lists them.
 
 mod clock;
 mod closure;
@@ -46,74 +47,74 @@ use crate::{
     settings::Settings,
 };
 
-/// What checks look at.
+/// Input of the checks.
 pub(crate) struct Context<'a> {
     pub(crate) model: &'a dyn Model,
     pub(crate) dataset: &'a Dataset<'a>,
     pub(crate) settings: &'a Settings,
-    /// The columns of the model and the base parameters among them.
+    /// Columns of the model, and the base parameters among them.
     pub(crate) columns: &'a ColumnSet,
     pub(crate) base: &'a BaseParameters,
-    /// For each projection its system in the base parameters, or why it has none.
+    /// For each projection its system in the base parameters, or the error.
     pub(crate) systems: &'a [Result<System, Error>],
-    /// What has been watched of the runs identified from, then of those that were held out.
+    /// Statistics of the training runs, then of the validation runs.
     pub(crate) watched: &'a [Watched],
     /// All estimates, each with the number of its projection.
     pub(crate) estimates: &'a [(usize, Estimate)],
-    /// The models of which no physically consistent parameters were found.
+    /// Models without a physically consistent solution.
     pub(crate) inconsistent: &'a [ModelKind],
-    /// What the residual of the first base estimate says of faults that the model lacks.
+    /// Scores of fault hypotheses on the residual of the first base estimate.
     pub(crate) scores: Option<&'a Scores>,
-    /// The same from half of the band, for what has to be told from errors of the positions.
+    /// The same in half the band, to distinguish faults from position errors.
     pub(crate) narrow: &'a dyn Fn() -> Result<Option<Scores>, Error>,
-    /// Every estimate on every run that was held out.
+    /// Every estimate on every validation run.
     pub(crate) cross_validation: &'a [CrossValidation],
-    /// For each model, the estimates by instruments beside those by least squares.
+    /// For each model, instrumental variables compared with least squares.
     pub(crate) errors_in_regressor: &'a [ErrorsInRegressor],
-    /// For each projection, what noise of the positions does to its columns.
+    /// For each projection, the effect of position noise on its columns.
     pub(crate) column_noise: &'a [Option<ColumnNoise>],
-    /// The coordinates of the pose with the ranges in which the runs identified from move them (m, rad).
+    /// Pose coordinates with their ranges in the training runs (m, rad).
     pub(crate) ranges: &'a [(String, f64)],
 }
 
-/// What has been watched of a run while it was gone through.
+/// Statistics of a run, collected while its samples are read.
 #[derive(Debug, Clone)]
 pub(crate) struct Watched {
-    /// Its raw numbers.
+    /// Statistics of the raw numbers.
     pub(crate) monitor: Monitor,
-    /// Largest miss of the loops' closure (m, rad).
+    /// Largest closure residual (m, rad).
     pub(crate) closure_residual: f64,
 }
 
 impl<'a> Context<'a> {
-    /// The runs identified from and those that were held out, with what has been watched of them.
+    /// Training runs, then validation runs, with their statistics.
     pub(crate) fn runs(&self) -> impl Iterator<Item = (&'a Log, &'a Watched)> {
         let all = self.dataset.runs.iter().chain(self.dataset.validation);
         all.zip(self.watched)
     }
 
-    /// The system of a model, where it has one.
+    /// The system of a model, if it has one.
     pub(crate) fn system(&self, model: ModelKind) -> Option<&'a System> {
         let mut systems = self.systems.iter().filter_map(|one| one.as_ref().ok());
         systems.find(|system| system.projection.model() == model)
     }
 
-    /// The estimates by least squares.
+    /// The least-squares estimates.
     pub(crate) fn least_squares(&self) -> impl Iterator<Item = &'a Estimate> {
         let all = self.estimates.iter().map(|(_, one)| one);
         all.filter(|one| one.estimator == Estimator::LeastSquares)
     }
 
-    /// Those of a stage.
+    /// The least-squares estimates of a stage.
     pub(crate) fn estimates_of(&self, stage: Stage) -> impl Iterator<Item = &'a Estimate> {
         self.least_squares().filter(move |one| one.stage == stage)
     }
 }
 
-/// A check.
+/// Signature of a check.
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
-/// All checks, in the order in which they are told.
+/// All checks, in the order of the report.
 const CHECKS: [Function; 22] = [
     raw_numbers::check,
     units::check,
@@ -139,10 +140,10 @@ const CHECKS: [Function; 22] = [
     held_out::check,
 ];
 
-/// What all checks say.
+/// Runs all checks.
 ///
 /// # Errors
-/// A log that can't be read any more.
+/// A log cannot be read any more.
 pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let mut all = Vec::new();
     for check in CHECKS {

@@ -1,4 +1,4 @@
-//! Whether parameters that can't be negative are estimated so.
+//! Tests whether parameters that cannot be negative are estimated negative.
 
 use overact::StandardParameter;
 
@@ -10,17 +10,17 @@ use crate::{
     significant,
 };
 
-/// Deviations by which such an estimate is clearly below zero.
+/// Standard deviations below zero from which an estimate is clearly negative.
 const CLEARLY_NEGATIVE: f64 = 5.0;
 
-/// Looks at the base parameters of all models.
+/// Checks the base parameters of all models.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let of_model = |estimate: &Estimate| {
         let positive = estimate
             .parameters
             .iter()
             .filter(|one| is_positive(context, one.column));
-        // The half width of a 95 % interval is 1.96 deviations, and more where few instants tell it.
+        // The half width of a 95 % interval is 1.96 σ, or more with few degrees of freedom.
         let below = |one: &ParameterEstimate| -1.96 * one.value / (one.interval_95[1] - one.value);
         let worst = positive
             .clone()
@@ -45,7 +45,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(context.estimates_of(Stage::Base).map(of_model).collect())
 }
 
-/// What is told of negative parameters.
+/// Describes negative parameters.
 fn told(negative: &[&ParameterEstimate]) -> String {
     let values: Vec<String> = negative
         .iter()
@@ -69,7 +69,7 @@ fn told(negative: &[&ParameterEstimate]) -> String {
     )
 }
 
-/// Whether a base parameter is a sum of things that can't be negative.
+/// Whether a base parameter is a positive combination of nonnegative parameters.
 pub(super) fn is_positive(context: &Context<'_>, place: usize) -> bool {
     let columns = context.columns.as_slice();
     let positive = |column: usize| {

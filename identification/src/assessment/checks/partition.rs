@@ -1,4 +1,4 @@
-//! Whether the kept actuators of case 2 stay away from a singularity of their choice.
+//! Tests whether the kept actuators of the actuator projection avoid singularities.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// Looks at case 2.
+/// Checks the actuator projection.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let case_2 = context
         .estimates_of(Stage::Base)
@@ -43,7 +43,7 @@ fn of_case(context: &Context<'_>, base: &Estimate) -> Option<Check> {
     )
 }
 
-/// What is told of a choice that comes too close to its singularity.
+/// Describes a partition that comes too close to a singularity.
 fn spoiled(
     context: &Context<'_>,
     partition: &PartitionCondition,
@@ -80,8 +80,9 @@ fn spoiled(
     text
 }
 
-/// The relative errors (percent) of both cases where that of case 2 is lower: of the essential
-/// parameters, else of all.
+/// Relative residuals (percent) of both projections, if that of the actuator projection is lower.
+///
+/// Of the essential parameters, else of the base parameters.
 fn lower_error(context: &Context<'_>) -> Option<(f64, f64)> {
     let error = |model: ModelKind, stage: Stage| {
         let mut all = context.estimates_of(stage);

@@ -1,4 +1,4 @@
-//! Whether each run carries what its label says.
+//! Tests whether each run carries the payload of its label.
 
 use overact::StandardParameter;
 
@@ -18,10 +18,10 @@ use crate::{
     significant,
 };
 
-/// A run that explains so much of the squared residual by another payload is labelled wrongly.
+/// Fraction of a run's squared residual explained by another payload that makes its label wrong.
 const WRONG: f64 = 0.1;
 
-/// Tests the payload's parameters in each run on its own.
+/// Tests the payload parameters in each run separately.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
@@ -41,7 +41,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(checks)
 }
 
-/// What is said where a payload that is said to be there may be none, or is lighter than nothing.
+/// The check if the labelled payload may be absent or has a negative mass.
 fn nothing_carried(context: &Context<'_>) -> Option<Check> {
     let loads = context.columns.indices(true);
     let base = context.estimates_of(Stage::Base).next()?;

@@ -1,5 +1,4 @@
-//! Raw numbers that can't be right, as a monitor has watched them: clipped torques, stuck encoders, lost
-//! samples, a robot that stands still, degrees.
+//! Implausible raw numbers: clipped torques, stuck encoders, lost samples, standstill, degrees.
 
 use overact::{Model, StandardParameter};
 
@@ -12,7 +11,7 @@ use crate::{
     monitor::{Monitor, Suspicion, Trouble},
 };
 
-/// Looks at all runs.
+/// Checks all runs.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let of_run = |(log, watched): (&crate::data::Log, &super::Watched)| {
         suspicions(context.model, log.name(), watched.monitor.clone())
@@ -26,7 +25,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         own.any(|one| one.run.as_deref() == Some(run.name()))
     };
     let all = context.dataset.runs.iter().all(stands);
-    // The sign of a velocity that is noise is noise, too.
+    // The sign of a velocity that is only noise is random.
     let spoiled: Vec<String> = match context.settings.velocity_dead_band {
         0.0 => dry_friction(context),
         _ => Vec::new(),
@@ -52,8 +51,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(checks)
 }
 
-/// Names of the base parameters that are dry friction or an offset, which stand beside each other at a
-/// standstill.
+/// Names of base parameters of dry friction and offsets, which a standstill does not separate.
 fn dry_friction(context: &Context<'_>) -> Vec<String> {
     let columns = context.columns.as_slice();
     let base = context.base.columns.iter().zip(&context.base.names);
@@ -66,7 +64,7 @@ fn dry_friction(context: &Context<'_>) -> Vec<String> {
         .collect()
 }
 
-/// What is suspicious in the raw numbers of a run that a monitor has watched, without what a fit tells.
+/// Findings in the raw numbers of a run, without those that need a fit.
 pub(crate) fn suspicious(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
     let degrees =
         rotation::degrees(model, run, &monitor).filter(|_| !rotation::rotates(model, &monitor));
@@ -75,7 +73,7 @@ pub(crate) fn suspicious(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<
     checks
 }
 
-/// What is suspicious in the raw numbers of a run, beside angles of many turns.
+/// Findings in the raw numbers of a run, except for angles of many turns.
 fn suspicions(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
     let suspicions = monitor.suspicions(model.info().actuators, couples(model));
     suspicions.into_iter().map(|one| told(run, one)).collect()

@@ -1,4 +1,4 @@
-//! Whether errors of the positions bias least squares, as the test of Durbin, Wu and Hausman tells.
+//! Tests whether position errors bias least squares, with the Durbin-Wu-Hausman test.
 
 use super::Context;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     significant,
 };
 
-/// Looks at all models.
+/// Checks all models.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(context.errors_in_regressor.iter().map(of_model).collect())
 }
@@ -50,7 +50,7 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
         .collect();
     let check = check(words);
     if spoiled.is_empty() {
-        // Estimates that differ are worth a word, though no parameter is off by more than its deviation.
+        // A difference is reported even if no parameter shifts by more than its standard deviation.
         if agreement.differs {
             check.found()
         } else {
@@ -61,7 +61,7 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
     }
 }
 
-/// Why nothing is tested, in words.
+/// Why there is no test, in words.
 fn untested(told: &ErrorsInRegressor) -> String {
     let start = "whether errors of the positions bias the estimates is not tested: ";
     let why = match (&told.missing, told.instruments) {
@@ -72,7 +72,7 @@ fn untested(told: &ErrorsInRegressor) -> String {
     format!("{start}{why}")
 }
 
-/// Where the instruments come from, in words.
+/// Source of the instruments, in words.
 fn source(told: &ErrorsInRegressor) -> String {
     match told.instruments {
         Instruments::Simulated => return String::from("the motion of the simulated robot"),
@@ -92,7 +92,7 @@ fn source(told: &ErrorsInRegressor) -> String {
     format!("the other periods: {}", runs.join("; "))
 }
 
-/// Whether the estimates agree, in words.
+/// Outcome of the comparison, in words.
 fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
     let [k, rest] = agreement.degrees_of_freedom;
     let whose = if agreement.together {
@@ -136,7 +136,7 @@ fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
     )
 }
 
-/// What is to be said of errors that return with the motion.
+/// Remark on position errors that repeat with the motion.
 fn returning(runs: &[RepeatedRun]) -> String {
     let worst = runs
         .iter()

@@ -1,4 +1,4 @@
-//! How much of the inputs an estimate leaves unexplained, beside the noise of the torques.
+//! Compares the relative residual of each estimate with the torque noise.
 
 use super::Context;
 use crate::{
@@ -8,27 +8,33 @@ use crate::{
     significant,
 };
 
-/// Percent of the inputs that may be left unexplained beyond noise. Published identifications leave 2 to
-/// 12 % (Briot, Krut, Gautier 2015; Janot, Gautier, Brunot 2019), noise among it.
+/// Largest relative residual beyond noise, in percent.
+///
+/// Published identifications have 2 to 12 %, including noise (Briot, Krut, Gautier 2015; Janot,
+/// Gautier, Brunot 2019).
 const LARGEST_PERCENT: f64 = 20.0;
 
-/// The part of the power of white noise that decimation by one sample in d leaves, times d: its cutoff
-/// lies at this part of the new Nyquist frequency.
+/// Fraction of white noise power that passes decimation by d, times d.
+///
+/// The cutoff of the filter is this fraction of the new Nyquist frequency.
 const PASSED: f64 = 0.8;
 
-/// How many times its noise the residual may be where nothing explains it. Virtual robots without a fault leave 0.99 to
-/// 1.3 times the noise, with encoders ten times as coarse up to twice.
+/// Largest ratio of residual to noise that needs no explanation.
+///
+/// Virtual robots without a fault reach 1.3, and 2 with ten times coarser encoders.
 const SILENT: f64 = 4.0;
 
-/// The part of the residual's square that a fault explains, at least, which it is said to come from.
+/// Smallest fraction of the squared residual that makes a fault its cause.
 const MOST: f64 = 0.5;
 
-/// Percent of the inputs that may stay unexplained where a fault is named that explains less than that. Measured robots
-/// have friction that no column tells: beside what is found, those of `docs/measured.md` leave 3 to 5 %.
+/// Relative residual (percent) that may remain if the named faults explain only part of it.
+///
+/// Measured robots have friction that the model lacks: those of `docs/measured.md` keep 3 to 5 %.
 const ORDINARY_PERCENT: f64 = 5.0;
 
-/// Says that a residual is far beyond the noise where no check has found why: something is wrong, and what it does to
-/// the parameters nobody knows.
+/// Fails if the residual far exceeds the noise and no check explains it.
+///
+/// The effect of the unknown cause on the parameters is unknown.
 pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
     let found = || all.iter().filter(|check| !check.passed);
     if found().any(is_cause) {
@@ -66,8 +72,10 @@ pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
     (ratio.is_finite() && ratio > SILENT).then(|| check.allowing(Grade::DoNotUse))
 }
 
-/// Whether a check that found something forbids the use by itself, says what most of the residual comes from, or speaks
-/// of numbers that are wrong by an unknown part. That residuals hang together explains none of them.
+/// Whether a failed check accounts for the residual.
+///
+/// It forbids use, or explains most of the residual, or concerns data of unknown error. Correlated
+/// residuals explain nothing.
 fn is_cause(check: &Check) -> bool {
     match (check.grade, check.explained) {
         (Grade::DoNotUse, _) => true,
@@ -77,17 +85,17 @@ fn is_cause(check: &Check) -> bool {
     }
 }
 
-/// What of an error is beyond noise.
+/// The error beyond noise, √(error² - noise²).
 fn beyond(error: f64, noise: f64) -> f64 {
     (error.powi(2) - noise.powi(2)).max(0.0).sqrt()
 }
 
-/// Looks at all estimates.
+/// Checks all estimates.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let noise = noise_percent(context);
     let of_estimate = |estimate: &Estimate| {
         let error = estimate.relative_error_percent;
-        // Case 2 weighs the actuators otherwise; its noise is known no better than to a factor.
+        // The actuator projection weights actuators differently; its noise is only approximate.
         let beyond = beyond(error, noise);
         let good = beyond <= LARGEST_PERCENT;
         let words = format!(
@@ -115,7 +123,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(context.least_squares().map(of_estimate).collect())
 }
 
-/// How many times the noise of the torques the residual of the base parameters is.
+/// Residual of the base parameters divided by the torque noise.
 pub(super) fn times_the_noise(context: &Context<'_>) -> f64 {
     let base = context.estimates_of(Stage::Base).next();
     base.map_or(f64::NAN, |base| {
@@ -123,7 +131,7 @@ pub(super) fn times_the_noise(context: &Context<'_>) -> f64 {
     })
 }
 
-/// The noise of the torques in percent of the inputs of the first model.
+/// Torque noise in percent of the inputs of the first model.
 fn noise_percent(context: &Context<'_>) -> f64 {
     let (Some(scores), Some(base)) = (context.scores, context.estimates_of(Stage::Base).next())
     else {

@@ -1,5 +1,6 @@
-//! Whether samples stand among the runs twice: cuts of one log that overlap, a log that was given twice. What counts
-//! twice seems to be known better than it is, and a held-out run that was identified from tests nothing.
+//! Finds samples that occur in two runs: overlapping cuts, or a log that was given twice.
+//!
+//! Repeated samples make intervals too narrow, and validation on training data tests nothing.
 
 use super::{Context, Watched};
 use crate::{
@@ -9,10 +10,12 @@ use crate::{
     significant,
 };
 
-/// Part of the shorter of two runs up to which what they share does no harm: intervals are too narrow by a fortieth.
+/// Harmless overlap, as a fraction of the shorter run.
+///
+/// It makes intervals narrower by a fortieth.
 const HARMLESS: f64 = 0.05;
 
-/// Looks at all pairs of runs of which one at least was identified from.
+/// Checks all pairs of runs with at least one training run.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let runs: Vec<(&Log, &Watched)> = context.runs().collect();
     let identified = context.dataset.runs.len();

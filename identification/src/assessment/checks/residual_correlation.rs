@@ -1,5 +1,6 @@
-//! Whether what is left unexplained of one actuator hangs together with that of another. With more actuators
-//! than degrees of freedom the residual is one of the platform, which does not say whose it is.
+//! Tests whether the residuals of two actuators are correlated.
+//!
+//! An overactuated robot is not tested: its residual is that of the platform projection.
 
 use super::{
     Context,
@@ -16,7 +17,7 @@ use crate::{
     significant,
 };
 
-/// Correlations that are smaller tell nothing worth looking for.
+/// Smaller correlations are ignored.
 const SMALLEST: f64 = 0.1;
 
 /// Tests all pairs of actuators.
@@ -65,7 +66,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// The correlations of each actuator with those behind it.
+/// Plot of each actuator's correlations with the later ones.
 fn evidence<'a>(pairs: &[Correlation], name: &dyn Fn(usize) -> &'a str) -> Evidence {
     let mut curves: Vec<(usize, Curve)> = Vec::new();
     for pair in pairs {

@@ -1,14 +1,13 @@
-//! Whether positions and torques have passed the same filter, and whether dry friction changes its direction where the
-//! velocities change their signs.
+//! Tests for a filter common to positions and torques, and for dry friction around reversals.
 //!
-//! A filter that positions and torques have passed alike does nothing to a model that is linear in them over the time of
-//! the filter; its delay falls out, since all have it. With s = ½ Σ w t² about the middle of the weights w(t), what was
-//! logged of a signal x is x + s ẍ, and what is not linear in the motion tells s: τ̈ is not what the model makes of the
-//! motion's second derivatives. That is one column, of masses that change with the pose as well as of dry friction,
-//! whose logged sign is filtered where the model has the sign of a filtered velocity.
+//! A common filter does not change a model that is linear over the time of the filter; its delay
+//! cancels. With s = ½ Σ w t² about the centre of the weights w(t), a signal x is logged as x + s
+//! ẍ. Nonlinear terms determine s, since τ̈ differs from the model of the motion's second
+//! derivatives. The column of s contains masses that change with the pose. It also contains dry
+//! friction: its logged sign is filtered, while the model has the sign of a filtered velocity.
 //!
-//! Friction that bends before it slides does the same at each reversal. The second derivative of all dry friction, one
-//! column for all drives, tells that.
+//! Presliding friction has the same effect at each reversal. The second derivative of all dry
+//! friction, one column for all drives, detects it.
 
 use super::{
     Context,
@@ -26,12 +25,12 @@ use crate::{
     significant,
 };
 
-/// Looks for signals that were all filtered, and for dry friction that is smoother than the signs of the velocities.
+/// Tests for a filter of all signals, and for dry friction smoother than the velocity signs.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    // A step w that is smoothed loses the part s Σ ẇ²/Σ w² of itself, and Σ ẇ² grows with the band.
+    // Smoothing a step w removes s Σ ẇ²/Σ w² of it, and Σ ẇ² grows with the bandwidth.
     let wider = |one: Tested| Tested {
         more: scores.narrower as f64,
         ..one
@@ -67,12 +66,12 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(innocent.into_iter().collect())
 }
 
-/// The time over which a mean smooths as much, ms.
+/// Length of the moving average with the same smoothing, ms.
 fn time(size: f64) -> String {
     significant(1e3 * (OF_MEAN * size.abs()).sqrt(), 2)
 }
 
-/// The filter of all signals, if there is one. None makes them rougher.
+/// The filter of all signals, if there is one. Negative sizes have no physical meaning.
 fn filtered<'a>(
     context: &Context<'_>,
     all: Option<&'a Tested>,
@@ -87,14 +86,14 @@ fn filtered<'a>(
     Ok(is_there.then_some(one))
 }
 
-/// What sizes are held against.
+/// Number and level of the tests.
 struct Told {
     tests: usize,
     level: f64,
 }
 
 impl Told {
-    /// A check with words.
+    /// A check with its words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested, words: String) -> Check {
         let accused = &one.accused;
         Check::new(CheckKind::Reversals, About::Model, words)
@@ -115,10 +114,10 @@ impl Told {
             ))
     }
 
-    /// The check of a filter that all signals have passed.
+    /// The failed check of a filter that all signals passed.
     fn filtered(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
         let mut harm = harm(of.0, of.1, one);
-        // Reversals are rounded off, too.
+        // The filter also rounds reversals.
         harm.spoil(dry_friction(of.0));
         let words = format!(
             "positions and torques look filtered alike, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without, or with a cutoff far above the motion",
@@ -128,7 +127,7 @@ impl Told {
         self.check(of, one, words).because(&harm)
     }
 
-    /// The check of dry friction that does not change with the signs of the velocities.
+    /// The failed check of dry friction that differs around reversals.
     fn bent(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
         let harm = harm(of.0, of.1, one);
         let words = match one.accused.size() > 0.0 {

@@ -1,8 +1,8 @@
-//! Angles of many turns: a joint that rotates continuously, or degrees that are read as radians.
+//! Distinguishes continuous rotation from degrees read as radians.
 //!
-//! Where loops close, their closure tells. Else the torques are explained twice, with the angles as they are and as
-//! degrees: gravity and centrifugal torques go with one of them. Torques that both explain equally well leave the
-//! course of the motion, since a joint that rotates continuously does not come back.
+//! The closure decides in closed loops. Otherwise the torques are fitted with both units: gravity
+//! and centrifugal torques suit one of them. If both fit equally well, the course of the motion
+//! decides, since a continuously rotating joint does not return.
 
 use std::f64::consts::TAU;
 
@@ -16,19 +16,19 @@ use crate::{
     monitor::Monitor,
 };
 
-/// Angles from which on the unit is asked for (rad).
+/// Largest angle (rad) that is not tested.
 const LARGEST_ANGLE: f64 = 2.0 * TAU;
 
-/// A unit that leaves no more than this part of what the other leaves unexplained is right.
+/// A unit is right if its residual is at most this fraction of the other's.
 const EXPLAINED: f64 = 0.5;
 
-/// A joint that ends this part of its range away from where it began rotates on.
+/// A joint rotates continuously if its net travel is at least this fraction of its range.
 const ROTATES: f64 = 0.5;
 
-/// What says that angles are degrees, in all runs.
+/// The checks for degrees in all runs.
 ///
 /// # Errors
-/// A log that can't be read any more.
+/// A log cannot be read any more.
 pub(super) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let model = context.model;
     let runs = context.runs().filter(|(log, _)| !log.is_unwrapped());
@@ -54,7 +54,7 @@ pub(super) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(told.map(|(check, _)| check).collect())
 }
 
-/// That angles of a run are degrees, if they are large enough.
+/// The check for degrees in a run, if its angles are large enough.
 pub(super) fn degrees(model: &dyn Model, run: &str, monitor: &Monitor) -> Option<Check> {
     if couples(model) {
         return None;
@@ -79,7 +79,7 @@ pub(super) fn degrees(model: &dyn Model, run: &str, monitor: &Monitor) -> Option
     (largest > LARGEST_ANGLE).then(check)
 }
 
-/// Whether every joint with large angles rotates on in one direction.
+/// Whether every joint with large angles rotates in one direction.
 pub(super) fn rotates(model: &dyn Model, monitor: &Monitor) -> bool {
     let revolute = model.info().actuator_is_revolute.iter();
     let ranges = monitor.ranges().into_iter().zip(monitor.travels());

@@ -1,8 +1,13 @@
-//! Whether torques and motion have been smoothed alike.
+//! Tests whether torques and motion passed the same smoothing.
 //!
-//! A symmetric filter with the weights w(t) makes τ + s τ̈ of a torque τ that is slow for it, with s = ½ Σ w t²: so does a
-//! filter that was run forth and back, a mean over some time (T²/24), or interpolation between samples that are T apart
-//! (T²/12 in the mean). A filter that also delays is seen as a delay.
+//! A symmetric filter with weights w(t) changes a slow torque τ to τ + s τ̈, with s = ½ Σ w t².
+//! Examples are:
+//!
+//! - zero-phase filters;
+//! - a moving average over T: s = T²/24;
+//! - linear interpolation between samples T apart: s = T²/12 on average.
+//!
+//! A filter that also delays is found as a delay.
 
 use super::{
     Context,
@@ -19,23 +24,23 @@ use crate::{
     significant,
 };
 
-/// The mean over this part of a sampling interval is no smoothing: a drive holds its torque between samples.
+/// Harmless length of a moving average, in sampling intervals; drives hold their torque.
 const HARMLESS: f64 = 2.0;
 
-/// s of a mean over T is T² by this.
+/// s of a moving average over T is T² divided by this.
 pub(in crate::assessment) const OF_MEAN: f64 = 24.0;
 
-/// The unit of s.
+/// Unit of s.
 pub(in crate::assessment) const UNIT: &str = "s²";
 
-/// s of a smoothing that is none.
+/// Harmless s.
 pub(super) fn harmless(context: &Context<'_>) -> f64 {
     let intervals = context.dataset.runs.iter();
     let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
     intervals.fold(0.0, f64::max).powi(2) / OF_MEAN
 }
 
-/// Looks for torques that are smoother than the motion, or a motion that is smoother than the torques.
+/// Tests for torques smoother than the motion, or a motion smoother than the torques.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
@@ -43,7 +48,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(one) = only(scores, Suspect::Smoothing) else {
         return Ok(Vec::new());
     };
-    // What it does to the parameters, dry friction among them, if it is as large as the other tells.
+    // Effect on all parameters, including dry friction, at the size found without dry friction.
     let whole = only(scores, Suspect::Rounding).map(|whole| Tested {
         size: Some(one.accused.size()),
         ..whole
@@ -52,7 +57,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let level = level(1);
     let harmless = harmless(context);
     let accused = &one.accused;
-    // The time over which a mean would smooth as much, ms.
+    // Length of the moving average with the same smoothing, ms.
     let time = |size: f64| significant(1e3 * (OF_MEAN * size.abs()).sqrt(), 2);
     let beyond = (accused.size().abs() - harmless).max(0.0);
     let visible = harmless + accused.visible(level);
@@ -91,7 +96,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }
     let mut harm = harm(context, scores, whole);
     harm.explained = accused.explained;
-    // Reversals, which were left out of what it was found by, are rounded off, too.
+    // The test omits reversals, but the filter rounds them, too.
     harm.spoil(dry_friction(context));
     let (what, beside) = if accused.size() > 0.0 {
         ("the torques are", "the motion")

@@ -1,4 +1,4 @@
-//! What follows from a suspect: whether chance explains it, and which parameters it spoils.
+//! Consequences of a fault hypothesis: significance and unusable parameters.
 
 use super::Context;
 use crate::{
@@ -10,30 +10,30 @@ use crate::{
     result::{Estimate, ParameterEstimate, Stage},
 };
 
-/// A fault that moves no parameter by so many of its deviations does no harm.
+/// A fault is harmful if it shifts a parameter by more than this many standard deviations.
 pub(in crate::assessment) const HARMFUL: f64 = 3.0;
 
-/// Where a fault does harm, parameters are spoiled that it moves by more than so many.
+/// A harmful fault spoils all parameters shifted by more than this many standard deviations.
 const SPOILING: f64 = 1.0;
 
-/// Of what speaks against the first suspect, so much speaks against another one that is likely, too.
+/// Another hypothesis is likely if it explains this fraction of the best one's part.
 const LIKELY: f64 = 0.5;
 
-/// By how much the half width of a 95 % interval exceeds a deviation.
+/// Half width of a 95 % interval, in standard deviations.
 const HALF_WIDTH: f64 = 1.96;
 
-/// A suspect that was tested.
+/// A tested fault hypothesis.
 pub(super) struct Tested {
     pub(super) group: Group,
     pub(super) accused: Accused,
-    /// What its size is, where another one tells it better.
+    /// Size to use instead of the fitted one, if another test determines it better.
     pub(super) size: Option<f64>,
-    /// By how many times more than in its own test it moves parameters in the estimate, whose band is wider.
+    /// Factor of the parameter shifts in the estimate, whose band is wider than the test's.
     pub(super) more: f64,
 }
 
 impl Tested {
-    /// How well the data tell its size, `size` being what they would have shown.
+    /// Detection limit of the fault, with `size` as the detectable size.
     pub(super) fn detectable(
         &self,
         (context, scores): (&Context<'_>, &Scores),
@@ -59,8 +59,9 @@ impl Tested {
         }
     }
 
-    /// By how many of their deviations it moves the base and the recommended parameters of the first model, with
-    /// their columns, the largest first.
+    /// Shifts of base and recommended parameters of the first model, with their columns.
+    ///
+    /// In standard deviations, largest first.
     fn moves(&self, context: &Context<'_>, scores: &Scores) -> Vec<(f64, usize)> {
         let Some(base) = context.estimates_of(Stage::Base).next() else {
             return Vec::new();
@@ -87,19 +88,19 @@ impl Tested {
     }
 }
 
-/// What a suspect does to the parameters.
+/// Effect of a fault on the parameters.
 pub(super) struct Harm {
-    /// The part of the residual's square that the likeliest suspect explains.
+    /// Fraction of the squared residual that the likeliest fault explains.
     pub(super) explained: f64,
-    /// The largest move of a parameter by its deviation, and the parameter.
+    /// Largest shift of a parameter in standard deviations, and the parameter.
     pub(super) worst: f64,
     pub(super) parameter: String,
-    /// Parameters that are not to be used.
+    /// Unusable parameters.
     pub(super) spoiled: Vec<String>,
     pub(super) grade: Grade,
 }
 
-/// Tests groups beside the base parameters; those that the data can't tell are left out.
+/// Tests groups of columns against the base parameters; skips untestable ones.
 pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Vec<Tested> {
     groups
         .filter_map(|group| {
@@ -115,19 +116,19 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
         .collect()
 }
 
-/// Tests one suspect beside the base parameters; none where there is no such one, or the data can't tell it.
+/// Tests one hypothesis against the base parameters; `None` if absent or untestable.
 pub(super) fn only(scores: &Scores, wanted: Suspect) -> Option<Tested> {
     let place = scores.suspects.iter().position(|one| *one == wanted)?;
     tested(scores, std::iter::once(Group::suspect(place))).pop()
 }
 
-/// The one that explains most of the residual, of those that chance explains less often than `level`.
+/// The hypothesis that explains most of the residual, among those significant at `level`.
 pub(super) fn guilty(all: &[Tested], level: f64) -> Option<&Tested> {
     let beyond = all.iter().filter(|one| one.accused.probability < level);
     beyond.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained))
 }
 
-/// Names of the base parameters that are dry friction.
+/// Names of the base parameters of dry friction.
 pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Vec::new();
@@ -141,8 +142,7 @@ pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
     dry.map(|one| one.name.clone()).collect()
 }
 
-/// What suspects that may well be there do to the parameters: the worst of it, and all that any of them
-/// spoils.
+/// Effect of all likely faults: the worst shift, and all parameters that any of them spoils.
 pub(super) fn worst_harm(
     context: &Context<'_>,
     scores: &Scores,
@@ -176,7 +176,7 @@ pub(super) fn worst_harm(
     }
 }
 
-/// What a suspect does to the base and the recommended parameters of the first model.
+/// Effect of a fault on the base and recommended parameters of the first model.
 pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> Harm {
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Harm::none();
@@ -206,7 +206,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
 }
 
 impl Check {
-    /// With the grade that a suspect's harm allows.
+    /// Sets the grade that the harm allows.
     pub(super) fn because(self, harm: &Harm) -> Self {
         let mut check = self.allowing(harm.grade).spoiling(harm.spoiled.clone());
         check.explained = Some(harm.explained);
@@ -215,7 +215,7 @@ impl Check {
 }
 
 impl Harm {
-    /// That of nothing.
+    /// No effect.
     fn none() -> Self {
         Self {
             explained: 0.0,
@@ -226,7 +226,7 @@ impl Harm {
         }
     }
 
-    /// Adds parameters that are not to be used.
+    /// Adds unusable parameters.
     pub(super) fn spoil(&mut self, names: Vec<String>) {
         if !names.is_empty() {
             self.grade = self.grade.max(Grade::UseListed);
@@ -238,7 +238,7 @@ impl Harm {
         }
     }
 
-    /// Together with what another fault spoils.
+    /// Adds the effect of another fault.
     pub(super) fn with(&mut self, context: &Context<'_>, other: &Self) {
         self.spoil(other.spoiled.clone());
         let base = context.estimates_of(Stage::Base).next();
@@ -250,7 +250,7 @@ impl Harm {
         }
     }
 
-    /// What so many spoiled ones of so many parameters leave.
+    /// The grade for a number of spoiled parameters among all.
     fn grade(spoiled: usize, parameters: usize) -> Grade {
         match spoiled {
             0 => Grade::Use,
@@ -259,12 +259,12 @@ impl Harm {
         }
     }
 
-    /// Whether it is worth a remark: not where no parameter moves by one deviation.
+    /// Whether a parameter shifts by more than one standard deviation.
     pub(super) fn counts(&self) -> bool {
         self.worst > SPOILING
     }
 
-    /// What it means, as the end of a sentence.
+    /// The effect as the end of a sentence.
     pub(super) fn words(&self) -> String {
         if self.grade == Grade::Use {
             return format!(
@@ -279,7 +279,7 @@ impl Harm {
     }
 }
 
-/// Moves of an estimate's parameters by their deviations, each with its column.
+/// Absolute parameter shifts of an estimate in standard deviations, each with its column.
 fn by_deviation(estimate: &Estimate, moves: &[(usize, f64)]) -> Vec<(f64, usize)> {
     let deviation = |column: usize| {
         let own = estimate.parameters.iter().find(|one| one.column == column);
@@ -297,8 +297,9 @@ fn name(estimate: &Estimate, column: usize) -> String {
     own.map_or_else(String::new, |one: &ParameterEstimate| one.name.clone())
 }
 
-/// How the residual depends on the size of a suspect: a parabola with its lowest point at the size that
-/// fits best.
+/// Plot of the squared residual over the size of a fault.
+///
+/// It is a parabola with its minimum at the fitted size.
 pub(super) fn parabola(accused: &Accused, title: &str, axis: (&str, &str, f64)) -> Evidence {
     const POINTS: usize = 41;
     let (label, unit, scale) = axis;

@@ -1,4 +1,4 @@
-//! Whether one fault of a drive, a label or a column explains torques that the model does not.
+//! Looks for one fault of a drive, label or column that explains a large residual.
 
 use super::Context;
 use crate::{
@@ -8,10 +8,10 @@ use crate::{
     result::Stage,
 };
 
-/// Relative error of the base parameters (percent) above which faults of the data are looked for.
+/// Relative residual of the base parameters (percent) above which faults are looked for.
 const SUSPICIOUS_PERCENT: f64 = 5.0;
 
-/// Beginning of each run in which they are looked for, s.
+/// Time from the start of each run that is used, s.
 const BEGINNING_SECONDS: f64 = 5.0;
 
 /// Looks for one fault.

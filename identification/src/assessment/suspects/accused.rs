@@ -1,27 +1,27 @@
-//! What a test says of a suspect.
+//! Test result of a fault hypothesis.
 
 use crate::estimation::intervals::distributions::{fisher_tail, student_quantile};
 
-/// How often a fault that is just large enough to be seen is missed.
+/// Probability with which a just detectable fault is missed.
 const MISSED: f64 = 0.1;
 
-/// Probabilities below are as good as none.
+/// Smallest probability; smaller ones are treated as this.
 const LEAST_PROBABILITY: f64 = 1e-30;
 
-/// What speaks against a group of columns.
+/// Wald test of a group of columns against the residual.
 #[derive(Debug, Clone)]
 pub(crate) struct Accused {
-    /// δ of each column that the data can tell, by its place in the group.
+    /// δ of each separable column, with its place in the group.
     pub(crate) sizes: Vec<(usize, f64)>,
-    /// Deviation of δ of the first one.
+    /// Standard deviation of the first δ.
     pub(crate) deviation: f64,
-    /// δ of the first one that would be missed one time in ten, at a level.
+    /// Degrees of freedom of that standard deviation.
     pub(super) freedom: f64,
-    /// How probable such scores are by chance.
+    /// p-value of the scores.
     pub(crate) probability: f64,
-    /// The part of the squared residual that it explains.
+    /// Fraction of the squared residual that the group explains.
     pub(crate) explained: f64,
-    /// B δ for each base parameter of the estimate: place, and by how much it is off.
+    /// B δ for each base parameter of the estimate: place and shift.
     pub(crate) moves: Vec<(usize, f64)>,
 }
 
@@ -31,7 +31,7 @@ impl Accused {
         self.sizes.first().map_or(0.0, |(_, size)| *size)
     }
 
-    /// The largest δ of its columns, with its sign.
+    /// The δ of largest magnitude, with its sign.
     pub(crate) fn largest(&self) -> f64 {
         let sizes = self.sizes.iter().map(|(_, size)| *size);
         sizes.fold(
@@ -40,8 +40,9 @@ impl Accused {
         )
     }
 
-    /// What speaks against it, in deviations: |δ| by its deviation for one column, for several what would
-    /// be as improbable for one.
+    /// Strength of the result in standard deviations.
+    ///
+    /// |δ|/σ for one column; for several columns the Student quantile of equal probability.
     pub(crate) fn strength(&self) -> f64 {
         match self.sizes.len() {
             1 => self.size().abs() / self.deviation,
@@ -49,18 +50,18 @@ impl Accused {
         }
     }
 
-    /// How probable a size of the first column is by chance, were the true one as large as `harmless`.
+    /// p-value of the first δ if the true size were as large as `harmless`.
     pub(crate) fn probability_beyond(&self, harmless: f64) -> f64 {
         let beyond = (self.size().abs() - harmless).max(0.0) / self.deviation;
         fisher_tail(beyond * beyond, 1.0, self.freedom)
     }
 
-    /// How many deviations chance exceeds as often as `level`.
+    /// Student quantile: standard deviations that chance exceeds with probability `level`.
     pub(crate) fn quantile(&self, level: f64) -> f64 {
         student_quantile(level, self.freedom)
     }
 
-    /// The size that these data would show nine times in ten at a level.
+    /// Detection limit: the size that is found with 90 % probability at a level.
     pub(crate) fn visible(&self, level: f64) -> f64 {
         let quantile = student_quantile(level, self.freedom);
         (quantile + student_quantile(2.0 * MISSED, self.freedom)) * self.deviation

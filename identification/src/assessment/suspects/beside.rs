@@ -1,28 +1,29 @@
-//! The columns of the model beside which suspects are tested, with what all tests share.
+//! The model's columns in a test, with the products that all tests share.
 
 use nalgebra::DMatrix;
 
 use super::{columns::Layout, scaled::Scaled, sections::RunScores};
 use crate::estimation::returning::Mean;
 
-/// Columns of base parameters and of friction that is late.
+/// Columns of base parameters, and rates of the dry friction columns.
 #[derive(Debug, Clone)]
 pub(super) struct Beside {
     pub(super) selected: Vec<usize>,
-    /// How many of them are those of base parameters.
+    /// Number of base parameters among them.
     count: usize,
-    /// Their Gram matrix, and that of the base parameters alone.
+    /// Gram matrix of all columns, and of the base parameters alone.
     pub(super) gram: Scaled,
     whole: Scaled,
-    /// For each run the products of the columns with each other over all cosines.
+    /// For each run, the products of these columns over all cosines.
     pub(super) products: Vec<Vec<DMatrix<f64>>>,
-    /// What the fit leaves of the harmonics of each motion that returns.
+    /// For each periodic motion, the harmonics of the residual after the fit.
     pub(super) left: Vec<Vec<f64>>,
 }
 
 impl Beside {
-    /// The columns `selected` of base parameters, and those of friction that is `late` behind them; none
-    /// where they depend on each other.
+    /// The base parameter columns `selected`, followed by the friction rates `late`.
+    ///
+    /// `None` if these columns are linearly dependent.
     pub(super) fn new(
         layout: &Layout,
         (runs, means): (&[RunScores], &[(Vec<usize>, Mean)]),
@@ -54,7 +55,7 @@ impl Beside {
         })
     }
 
-    /// What the base parameters alone explain of columns, by the products of these with all columns.
+    /// Regression of columns on the base parameters alone, from their products.
     pub(super) fn estimated(&self, cross: &DMatrix<f64>) -> DMatrix<f64> {
         self.whole.solve(&cross.rows(0, self.count).clone_owned())
     }

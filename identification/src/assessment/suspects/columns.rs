@@ -1,4 +1,4 @@
-//! The suspects and their columns.
+//! Fault hypotheses and their columns.
 
 use std::ops::Range;
 
@@ -12,47 +12,49 @@ use crate::{
     regression::{columns::Reversal, projection::ModelKind},
 };
 
-/// A fault of one unknown size.
+/// A fault with one unknown size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Suspect {
-    /// Torques are late by so many seconds.
+    /// All torques are delayed by this time (s).
     Delay,
-    /// Torques are smoother than the motion by this time squared (s²): a symmetric filter of the weights w(t) has
-    /// half of Σ w t². As it is told, without what it does to dry friction.
+    /// The torques are smoother than the motion, with s = ½ Σ w t² of a symmetric filter w(t) (s²).
+    ///
+    /// The column omits the effect on dry friction. It serves to find the fault.
     Smoothing,
-    /// The same with what it does to dry friction, which tells the harm.
+    /// The same with the effect on dry friction, to compute the harm.
     Rounding,
-    /// Dry friction is smoother by this time squared (s²) than the signs of the velocities.
+    /// Dry friction is smoother than the signs of the velocities, by s (s²).
     Dulled,
-    /// All signals are smoother than they were by this time squared (s²): what that does to dry friction, and to
-    /// everything else that is not linear in the motion.
+    /// All signals are smoothed by s (s²).
+    ///
+    /// Only terms that are nonlinear in the motion change, such as dry friction.
     Alike,
-    /// The torque of one actuator is late by so many seconds.
+    /// The torque of one actuator is delayed by this time (s).
     Late(usize),
-    /// The measured torque of an actuator is too large by this part of itself.
+    /// Relative error of the measured torque of one actuator.
     Gain(usize),
-    /// The sampling frequency is too high by this part of itself.
+    /// Relative error of the sampling frequency.
     Clock,
-    /// The position of an actuator is too large by this angle or length.
+    /// Encoder offset of one actuator (rad, m).
     Offset(usize),
-    /// The position of an actuator is too large by this times its sine, or its cosine.
+    /// Position error proportional to the sine or cosine of the position: eccentricity.
     Eccentric(usize, Misreading),
-    /// The position of an actuator is too large by this part of itself.
+    /// Relative error of the position of one actuator.
     Scale(usize),
-    /// The positions of all actuators are.
+    /// Common relative error of all positions.
     Scales,
-    /// The position of an actuator is behind by this half of a play.
+    /// Position lag by half of a play (rad, m).
     Play(usize),
-    /// A length is too large by this.
+    /// Error of a described length (m).
     Length(usize),
-    /// A torque of an actuator that the model lacks.
+    /// Torque of an actuator that the model lacks.
     Torque(usize, Shape),
-    /// A force on a coordinate of the platform that the model lacks.
+    /// Force on a platform coordinate that the model lacks.
     Force(usize, Shape),
 }
 
 impl Suspect {
-    /// How many columns it has.
+    /// Number of columns.
     const fn width(self) -> usize {
         match self {
             Self::Torque(_, Shape::Waves) => WAVES,
@@ -61,21 +63,22 @@ impl Suspect {
     }
 }
 
-/// Where the columns of base parameters, suspects and the payload's parameters stand beside each other:
-/// first those of one column each, then waves.
+/// Column indices of base parameters, fault hypotheses and payload parameters.
+///
+/// Hypotheses with one column come first, waves last.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
-    /// Base parameters.
+    /// Number of base parameter columns, including friction rates.
     pub(super) base: usize,
-    /// Columns that are decimated: base parameters, suspects of one column, payload.
+    /// Number of decimated columns: base parameters, one-column hypotheses, payload.
     pub(super) decimated: usize,
-    /// The columns of each suspect, then of the payload.
+    /// Column ranges of each hypothesis, then of the payload.
     pub(super) blocks: Vec<Range<usize>>,
-    /// Where the products of a block's columns with each other stand among those of all blocks.
+    /// For each block, the range of its products among the products of all blocks.
     pub(super) places: Vec<Range<usize>>,
-    /// How many such products there are.
+    /// Number of these products.
     pub(super) squares: usize,
-    /// All columns.
+    /// Number of all columns.
     pub(super) columns: usize,
 }
 
@@ -109,8 +112,9 @@ impl Layout {
     }
 }
 
-/// The suspects of a robot whose estimate explains the inputs of a model, and of which so many lengths are
-/// asked for; waves come last.
+/// The fault hypotheses of a robot for the model `kind`, with this number of `lengths`.
+///
+/// Waves come last.
 pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Vec<Suspect> {
     let info = model.info();
     let sizes = info.sizes;
@@ -122,12 +126,12 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
         Suspect::Alike,
         Suspect::Clock,
     ];
-    // Of one drive alone that is the delay of all.
+    // With a single drive, this equals the delay of all torques.
     if sizes.actuators > 1 {
         all.extend((0..sizes.actuators).map(Suspect::Late));
     }
     all.extend((0..sizes.actuators).map(Suspect::Gain));
-    // With more actuators than degrees of freedom the closure tells.
+    // With n > r, the closure determines these errors better.
     if sizes.actuators == sizes.dof {
         all.extend((0..sizes.actuators).map(Suspect::Offset));
         all.extend((0..sizes.actuators).map(Suspect::Scale));
@@ -143,7 +147,7 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
     }
     all.extend((0..lengths).map(Suspect::Length));
     for actuator in 0..sizes.actuators {
-        // An angle that is unwound has no place among springs, but its sine has; a length has neither.
+        // A sine suits an unwrapped angle, where a spring does not; neither suits a length.
         let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
         let shapes = SHAPES
             .into_iter()
@@ -162,34 +166,35 @@ pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Ve
     all
 }
 
-/// What the columns of a sample are made of.
+/// Data of one sample for the columns of the hypotheses.
 pub(super) struct Sample<'a> {
-    /// J_p^inv, n x r.
+    /// J_p^inv, n × r.
     pub(super) jacobian: &'a [f64],
-    /// Torques freed of the residual, and their derivatives.
+    /// Torques without the residual, and their derivatives.
     pub(super) torques: &'a [f64],
     pub(super) torque_rates: &'a [f64],
-    /// Second derivatives of torques that are freed of dry friction, too.
+    /// Second derivatives of the torques without residual and dry friction.
     pub(super) torque_bends: &'a [f64],
-    /// Those of the torques as they are.
+    /// Second derivatives of the torques without the residual.
     pub(super) torque_turns: &'a [f64],
-    /// The motion of the actuators.
+    /// Motion of the actuators.
     pub(super) actuators: &'a [Moment],
-    /// Where they move.
+    /// Position ranges and largest speeds of the actuators.
     pub(super) reaches: &'a [Reach],
-    /// The pose.
+    /// Pose.
     pub(super) pose: &'a [f64],
-    /// By how much Γ¹ would change with the clock, with each error of the position of each actuator, n x errors x
-    /// r, and with each length; empty where that is not asked for.
+    /// Derivative of the residual with respect to the clock, r entries; empty if not requested.
     pub(super) clock: &'a [f64],
-    /// By how much the residual would change with a smoothing of all signals.
+    /// Derivative of the residual with respect to a smoothing of all signals, r entries.
+    ///
+    /// Then follow the derivatives with respect to position errors, n × errors × r, and to lengths.
     pub(super) alike: &'a [f64],
     pub(super) misread: &'a [f64],
     pub(super) lengths: &'a [f64],
 }
 
 impl Sample<'_> {
-    /// What the entries of a suspect's column have in common in all lines of Γ¹.
+    /// Factor that the entries of a hypothesis have in common in all lines of Γ¹.
     pub(super) fn factor(&self, suspect: Suspect) -> f64 {
         let shaped = |i: usize, shape: Shape| shape.value(self.actuators[i], self.reaches[i]);
         match suspect {
@@ -206,7 +211,7 @@ impl Sample<'_> {
         }
     }
 
-    /// The entries of suspects' columns of one column each in a line of Γ¹, of their factors.
+    /// Entries of one-column hypotheses in a line of Γ¹, from their factors.
     pub(super) fn entries(
         &self,
         suspects: &[Suspect],
@@ -220,7 +225,7 @@ impl Sample<'_> {
             _ => false,
         };
         let mut first = 0;
-        // Torques of one actuator stand together.
+        // Torque hypotheses of one actuator are adjacent.
         for group in suspects.chunk_by(of_one) {
             let places = first..first + group.len();
             first = places.end;
@@ -237,7 +242,7 @@ impl Sample<'_> {
         }
     }
 
-    /// The entry of a suspect's column in a line of Γ¹, of its factor.
+    /// Entry of a hypothesis in a line of Γ¹, from its factor.
     fn entry(&self, suspect: Suspect, factor: f64, line: usize) -> f64 {
         let r = self.jacobian.len() / self.torques.len();
         let share = |actuator: usize| self.jacobian[actuator * r + line];
@@ -283,8 +288,10 @@ impl Sample<'_> {
     }
 }
 
-/// The motion of all actuators at all samples of a motion, samples x n: positions, velocities, accelerations
-/// and torques, the signs of velocities being taken as for dry friction.
+/// Motion of all actuators at all samples, samples × n.
+///
+/// The inputs are positions, velocities, accelerations and torques. Velocity signs follow the dry
+/// friction columns.
 pub(super) fn moments(
     (motion, reversal): (&Motion, Reversal),
     [positions, velocities, accelerations, torques]: [&[f64]; 4],
@@ -305,8 +312,9 @@ pub(super) fn moments(
     (0..positions.len()).map(moment).collect()
 }
 
-/// Derivatives of `width` signals that stand side by side, by central differences; one-sided at both
-/// ends.
+/// Derivatives of `width` interleaved signals by central differences.
+///
+/// One-sided at both ends.
 pub(super) fn rates(values: &[f64], width: usize, frequency: f64) -> Vec<f64> {
     let samples = values.len() / width.max(1);
     let run = (width, samples.saturating_sub(1));

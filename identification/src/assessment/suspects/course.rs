@@ -1,32 +1,31 @@
-//! How what is left unexplained, and the motion itself, are spread over the time.
+//! Distribution of the squared residual over time, and pace of the motion.
 
 use super::scores::Scores;
 
-/// Part of the instants that are told apart from the others.
+/// Fraction of the samples that are tested as outliers.
 const FEW: f64 = 0.01;
 
-/// The few instants that leave most unexplained.
+/// The samples with the largest residuals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peak {
-    /// The part of the squared residual that the worst hundredth of the instants holds.
+    /// Fraction of the squared residual in the worst 1 % of the samples.
     pub(crate) part: f64,
-    /// The run that holds the worst of them, and its time there, s.
+    /// Run and time (s) of the worst sample.
     pub(crate) run: usize,
     pub(crate) time: f64,
 }
 
-/// How an actuator moves in all runs together.
+/// Pace of an actuator's motion in all runs together.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pace {
-    /// The frequency of its motion, Hz: 2 π f is the root mean square of its acceleration by that of its
-    /// velocity.
+    /// Frequency (Hz): 2 π f is the RMS acceleration divided by the RMS velocity.
     pub(crate) frequency: f64,
-    /// How many such periods the runs last.
+    /// Number of such periods in all runs.
     pub(crate) periods: f64,
 }
 
 impl Scores {
-    /// The worst hundredth of all instants; none of fewer than so many `instants`.
+    /// The worst 1 % of all samples; `None` below `instants` samples.
     pub(crate) fn peak(&self, instants: usize) -> Option<Peak> {
         let mut all: Vec<(f64, usize, usize)> = Vec::new();
         for (number, run) in self.runs.iter().enumerate() {
@@ -48,7 +47,7 @@ impl Scores {
         })
     }
 
-    /// How each actuator moves; none for those that stand still.
+    /// Pace of each actuator; `None` for those that do not move.
     pub(crate) fn paces(&self) -> Vec<Option<Pace>> {
         let duration: f64 = self
             .runs

@@ -2,17 +2,17 @@
 
 use super::scores::Scores;
 
-/// Columns that are tested together: those of a suspect, or of the payload in one run.
+/// A group of columns: those of one hypothesis, or of the payload in one run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Group {
-    /// The block of their columns.
+    /// Block of the columns.
     pub(super) block: usize,
-    /// The run to which they are confined.
+    /// Run outside of which the columns are zero; `None` for all runs.
     pub(super) run: Option<usize>,
 }
 
 impl Group {
-    /// One suspect, by its number.
+    /// The hypothesis with this number.
     pub(crate) fn suspect(number: usize) -> Self {
         Self {
             block: number,
@@ -20,7 +20,7 @@ impl Group {
         }
     }
 
-    /// The payload's parameters in one run.
+    /// The payload parameters in one run.
     pub(crate) fn payload(scores: &Scores, run: usize) -> Self {
         Self {
             block: scores.suspects.len(),

@@ -1,4 +1,4 @@
-//! What the rows of a motion are made of, at all of its samples, and rows of some of them.
+//! Data of all samples of a motion, from which the rows of any samples are computed.
 
 use std::ops::Range;
 
@@ -18,17 +18,17 @@ use crate::{
     regression::columns::Reversal,
 };
 
-/// What the rows of a motion are made of; samples lie one behind the other.
+/// Data of a motion; samples are consecutive.
 pub(super) struct Material<'a> {
     pass: &'a Pass<'a>,
-    /// J_p^inv, n x r.
+    /// J_p^inv, n × r.
     jacobians: &'a [f64],
     pose: &'a [f64],
-    /// Block by block and line by line of Γ¹, rows of the base parameters' columns.
+    /// Rows of the base parameter columns, by block and line of Γ¹.
     base: Vec<Vec<Vec<f64>>>,
-    /// The measured inputs, r.
+    /// Measured inputs, r per sample.
     inputs: Vec<f64>,
-    /// Line by line, the rates of the columns of dry friction.
+    /// For each line, the rates of the dry friction columns.
     friction: Vec<Vec<f64>>,
     /// Positions of the actuators.
     pub(super) positions: Vec<f64>,
@@ -42,20 +42,20 @@ pub(super) struct Material<'a> {
     alike: Vec<f64>,
     misread: Vec<f64>,
     lengths: Vec<f64>,
-    /// The payload's columns, r rows each.
+    /// Payload columns, r rows per sample.
     payload: Vec<f64>,
 }
 
-/// What the estimate makes of a motion's inputs.
+/// Inputs that the estimate predicts for a motion.
 struct Explained {
-    /// Γ¹ as it explains it, samples x r.
+    /// Predicted Γ¹, samples × r.
     all: Vec<f64>,
-    /// The part of dry friction.
+    /// Its part from dry friction.
     dry: Vec<f64>,
 }
 
 impl<'a> Material<'a> {
-    /// That of a motion.
+    /// Collects the data of a motion.
     pub(super) fn new(
         pass: &'a Pass<'a>,
         motion: &'a Motion,
@@ -116,7 +116,7 @@ impl<'a> Material<'a> {
         })
     }
 
-    /// What the columns of a sample are made of.
+    /// Data of one sample.
     fn sample(&self, sample: usize) -> Sample<'_> {
         let sizes = self.pass.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
@@ -137,8 +137,9 @@ impl<'a> Material<'a> {
         }
     }
 
-    /// Puts the rows of some samples, line by line of Γ¹, in the place of others: columns of the base parameters,
-    /// of dry friction that comes late, Y, the suspects' and the payload's.
+    /// Overwrites `lines` with the rows of some samples, one vector per line of Γ¹.
+    ///
+    /// Column order: base parameters, friction rates, Y, hypotheses, payload.
     pub(super) fn rows(&self, samples: Range<usize>, lines: &mut [Vec<f64>]) {
         let (pass, r) = (self.pass, lines.len());
         let (width, p, count) = (pass.width(), pass.base.len(), pass.friction.len());
@@ -146,7 +147,7 @@ impl<'a> Material<'a> {
         for rows in &mut *lines {
             rows.resize(samples.len() * width, 0.0);
         }
-        // Waves, which come last, are made of decimated positions.
+        // Waves come last and are computed from decimated positions.
         let narrow = width - p - count - 1 - load;
         let suspects = &pass.frame.suspects[..narrow];
         let mut factors = vec![0.0; narrow];
@@ -173,7 +174,7 @@ impl<'a> Material<'a> {
     }
 }
 
-/// Rows of the base parameters' columns, block by block and line by line.
+/// Rows of the base parameter columns, by block and line.
 fn base(pass: &Pass<'_>, motion: &Motion) -> Result<Vec<Vec<Vec<f64>>>, Error> {
     let sizes = pass.model.info().sizes;
     let block = |first: usize| {
@@ -192,7 +193,7 @@ fn base(pass: &Pass<'_>, motion: &Motion) -> Result<Vec<Vec<Vec<f64>>>, Error> {
     blocks.map(block).collect()
 }
 
-/// What the estimate makes of the columns of all samples.
+/// Inputs that the estimate predicts for all samples.
 fn explained(pass: &Pass<'_>, base: &[Vec<Vec<f64>>]) -> Explained {
     let p = pass.base.len();
     let values = &pass.frame.values[..p];
@@ -211,7 +212,7 @@ fn explained(pass: &Pass<'_>, base: &[Vec<Vec<f64>>]) -> Explained {
     Explained { all, dry }
 }
 
-/// The measured inputs Γ¹, samples x r.
+/// Measured inputs Γ¹, samples × r.
 fn measured(motion: &Motion, jacobians: &[f64], (n, r): (usize, usize)) -> Vec<f64> {
     let mut inputs = vec![0.0; motion.samples * r];
     let torques = motion.torques.chunks_exact(n);
@@ -225,7 +226,7 @@ fn measured(motion: &Motion, jacobians: &[f64], (n, r): (usize, usize)) -> Vec<f
     inputs
 }
 
-/// The torques freed of the residual, and freed of dry friction beside it.
+/// Torques without the residual, and torques without residual and dry friction.
 fn freed(
     motion: &Motion,
     jacobians: &[f64],
@@ -247,7 +248,7 @@ fn freed(
     })
 }
 
-/// The rates ẇ of the columns of dry friction, line by line.
+/// Rates ẇ of the dry friction columns, by line.
 fn friction(pass: &Pass<'_>, base: &[Vec<Vec<f64>>], frequency: f64) -> Vec<Vec<f64>> {
     let (p, count) = (pass.base.len(), pass.friction.len());
     let line = |line: usize| {

@@ -1,29 +1,29 @@
-//! How the error of an encoder depends on where it stands.
+//! Position dependence of encoder errors.
 
 use super::shapes::Moment;
 
-/// How the error of a position depends on it.
+/// Dependence of a position error on the position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Misreading {
-    /// Not at all: an offset.
+    /// Constant: an offset.
     Offset,
-    /// As the position itself: a scale, or the ratio of a gear.
+    /// Proportional to the position: a scale, or the ratio of a gear.
     Scale,
-    /// As its sine or its cosine: an encoder that is out of centre.
+    /// Proportional to its sine or cosine: an eccentric encoder.
     Sine,
     Cosine,
 }
 
 impl Misreading {
-    /// All of them, in the order of their columns.
+    /// All variants, in the order of their columns.
     pub(super) const ALL: [Self; 4] = [Self::Offset, Self::Scale, Self::Sine, Self::Cosine];
 
-    /// Whether it is looked for at an actuator, which may be revolute: a length does not return with a turn.
+    /// Whether it applies to an actuator; sine and cosine only to revolute ones.
     pub(super) const fn concerns(self, revolute: bool) -> bool {
         revolute || matches!(self, Self::Offset | Self::Scale)
     }
 
-    /// The error e(q) of unit size, and its first and second derivative along a motion: e' q̇ and e'' q̇² + e' q̈.
+    /// Error e(q) of unit size, and its time derivatives e' q̇ and e'' q̇² + e' q̈.
     pub(super) fn at(self, motion: Moment) -> [f64; 3] {
         let Moment {
             position,

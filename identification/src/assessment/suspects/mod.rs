@@ -1,49 +1,47 @@
-//! What the model may lack, held against what it leaves unexplained.
+//! Fault hypotheses, tested on the residual of an estimate.
 //!
-//! A suspect is a fault with one unknown size δ: the torques come by δ seconds late, the gain of a drive
-//! is wrong by a part δ, a joint has a spring of stiffness δ. To first order it adds a column z δ to
-//! Y = W χ. Whether δ is zero is Wald's test: z is freed of what the columns W explain,
-//! z⊥ = z - W B with B = (Wᵀ W)^-1 Wᵀ z, and held against the residual ρ,
+//! A hypothesis has one unknown size δ: torques are delayed by δ seconds, the gain of a drive has
+//! the relative error δ, a joint has a spring of stiffness δ. To first order it adds a column z δ
+//! to Y = W χ. Wald's test decides whether δ is zero. With the part of z outside the columns W,
+//! z⊥ = z - W B with B = (Wᵀ W)^-1 Wᵀ z, and the residual ρ,
 //!
 //! ```text
 //! δ = z⊥ᵀ ρ/(z⊥ᵀ z⊥),   χ is off by B δ.
 //! ```
 //!
-//! The deviation of δ is told from ρ - z⊥ δ, as if the suspect were a parameter of the model: ρ itself
-//! holds the fault, which would hide itself. The second equation says what the suspect does to the
-//! parameters: a fault that is there for sure and moves none of them is a remark, one that moves them by
-//! several of their deviations spoils them.
+//! The standard deviation of δ is estimated from ρ - z⊥ δ, as if δ were a parameter of the model.
+//! The residual ρ itself contains the fault and would hide it. B δ is the shift of the parameters.
+//! A certain fault that shifts no parameter is a remark; a shift of several standard deviations
+//! makes the parameter unusable.
 //!
-//! Two errors of the model are no faults, but would look like some:
+//! Three errors of the model are not faults but resemble them:
 //!
-//! - Errors of positions come back as accelerations, with the square of the frequency, and the controller
-//!   answers them with torques: what is measured of both hangs together, as a delay would make it. So the
-//!   equations keep half of the estimate's band only, in which there is a thirtieth of it.
-//! - A joint whose friction changes its sign sticks for a while, which no function of a filtered velocity
-//!   tells. So every column w of dry friction has a column -ẇ beside it, as if it came late by a time of
-//!   its own, and no suspect is held against what that explains.
+//! - Position errors enter as accelerations, with the square of the frequency, and the controller
+//!   answers them with torques. Torques and accelerations are then correlated, as after a delay.
+//!   The tests use half of the estimate's band, which contains a thirtieth of this error.
+//! - A joint sticks around reversals, which no function of a filtered velocity describes. Each dry
+//!   friction column w therefore has a column -ẇ in the model, as for a delay of its own.
+//! - Some errors are equal in each period of the motion: friction at reversals, steps of an
+//!   encoder. Slow variations of the scores do not show them. In periodic motion, the standard
+//!   deviation is at least that of the mean over all periods (`estimation::returning`).
 //!
-//! A third error returns with every period of the motion and is the same in each: friction at reversals, steps of an
-//! encoder. How scores vary slowly does not tell it, and the longer a run is, the more clearly it stands out of the noise.
-//! So where a motion returns the deviation is at least that of the mean over all periods (`estimation::returning`).
+//! Columns made of torques use τ - J (Jᵀ J)^-1 ρ, the torques without the residual. Measured
+//! torques contain the noise of the residual, which would make every drive appear faulty.
 //!
-//! - `shapes`: how something missing may depend on the motion;
-//! - `columns`: the suspects and their columns;
-//! - `misreading`: how the error of an encoder depends on where it stands;
-//! - `nearby`: what the model would explain of a motion that is slightly different;
-//! - `sections`: products of columns and residual, section by section of the time;
-//! - `pairs`: residuals of actuators that hang together;
-//! - `course`: how residual and motion are spread over the time;
-//! - `pass`: what a pass over a run needs; `material`: what rows are made of; `run`: the pass; `scores`: what all
-//!   runs tell;
-//! - `beside`: the columns of the model beside which suspects are tested;
-//! - `scaled`: equations between columns of different units;
-//! - `spread`: how far a score strays by chance;
+//! - `shapes`: dependence of a missing torque on the motion;
+//! - `columns`: hypotheses and their columns;
+//! - `misreading`: dependence of an encoder error on the position;
+//! - `nearby`: prediction for a slightly different motion;
+//! - `sections`: products of columns and residual, by section of the time;
+//! - `pairs`: correlated residuals of actuators;
+//! - `course`: residual and motion over time;
+//! - `pass`: inputs of a pass over a run; `material`: data of the rows; `run`: the pass;
+//! - `scores`: result of all passes;
+//! - `beside`: the model's columns in a test;
+//! - `scaled`: normal equations of columns with different units;
+//! - `spread`: covariance of the scores;
 //! - `group`: columns that are tested together;
-//! - `test`: sizes, deviations, probabilities; `accused`: what it says.
-//!
-//! Columns that are made of torques use torques that are freed of the residual,
-//! τ - J (Jᵀ J)^-1 ρ: measured ones hold the noise of the residual itself, which would accuse every drive.
+//! - `test`: sizes, standard deviations, p-values; `accused`: their result.
 
 mod accused;
 mod beside;

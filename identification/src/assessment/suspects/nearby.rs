@@ -1,5 +1,6 @@
-//! What the estimate would explain of a motion that is slightly different: the columns of suspects that
-//! change the motion, by differences.
+//! Columns of hypotheses that change the motion, by finite differences.
+//!
+//! They compare the estimate's prediction for the motion with that for a slightly different one.
 
 use overact::{Function, Model};
 
@@ -15,31 +16,33 @@ use crate::{
     regression::columns::ColumnSet,
 };
 
-/// Step of a position (m, rad) and relative step of the clock.
+/// Step of a position (m, rad), and relative step of the clock.
 const STEP: f64 = 1e-5;
 
 /// Step of the time, s.
 const INSTANT: f64 = 1e-6;
 
-/// Step of a smoothing, s²: that of a mean over 5 ms, large enough to move a reversal by more than its noise.
+/// Step of a smoothing, s²: that of a moving average over 5 ms.
+///
+/// It is large enough to move a reversal by more than its noise.
 const SQUARE: f64 = 1e-6;
 
-/// An estimate that explains a motion.
+/// An estimate that predicts torques for a motion.
 pub(super) struct Nearby<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) columns: &'a ColumnSet,
     pub(super) base: &'a [usize],
-    /// For each base parameter its estimate.
+    /// Estimate of each base parameter.
     pub(super) values: &'a [f64],
 }
 
 impl<'a> Nearby<'a> {
-    /// Of another robot with the same parameters.
+    /// The same parameters for another robot.
     fn of(&self, model: &'a dyn Model) -> Self {
         Self { model, ..*self }
     }
 
-    /// Γ¹ as the estimate explains it, samples x r, of samples one `interval` (s) apart.
+    /// Predicted Γ¹, samples × r, for samples one `interval` (s) apart.
     fn explained(
         &self,
         motion: &Motion,
@@ -75,7 +78,7 @@ impl<'a> Nearby<'a> {
         Ok(all)
     }
 
-    /// Velocities J v and accelerations J v̇ + J̇ v of the actuators, samples x n, with J = J_p^inv, n x r.
+    /// Actuator velocities J v and accelerations J v̇ + J̇ v, samples × n, with J = J_p^inv.
     pub(super) fn actuators(
         &self,
         motion: &Motion,
@@ -108,9 +111,10 @@ impl<'a> Nearby<'a> {
         Ok(all)
     }
 
-    /// By how much Y - W χ changes with the part by which the sampling frequency is too high, samples x r.
-    /// The sampling interval changes with it: where in an interval a velocity reverses depends on no clock. `here` is
-    /// W χ as it is.
+    /// Derivative of Y - W χ with respect to the relative error of the clock, samples × r.
+    ///
+    /// The sampling interval changes, too, so that velocities reverse at the same fraction of an
+    /// interval. `here` is W χ of the motion as it is.
     pub(super) fn clock(&self, motion: &Motion, here: &[f64]) -> Result<Vec<f64>, Error> {
         let faster = 1.0 + STEP;
         let twist: Vec<f64> = motion.twist.iter().map(|v| v * faster).collect();
@@ -129,8 +133,9 @@ impl<'a> Nearby<'a> {
             .collect())
     }
 
-    /// By how much Y - W χ changes with each length that is described too large, samples x lengths x r; `here` is
-    /// W χ as it is.
+    /// Derivative of Y - W χ with respect to errors of the lengths, samples × lengths × r.
+    ///
+    /// `here` is W χ of the motion as it is.
     pub(super) fn lengths(
         &self,
         motion: &Motion,
@@ -154,8 +159,9 @@ impl<'a> Nearby<'a> {
         Ok(all)
     }
 
-    /// By how much Y - W χ changes with errors of the actuators' positions, samples x n x errors x r; `torques` are
-    /// those of the actuators, `jacobians` n x r each.
+    /// Derivative of Y - W χ with respect to position errors, samples × n × errors × r.
+    ///
+    /// `torques` are those of the actuators; `jacobians` has n × r entries per sample.
     pub(super) fn misread(
         &self,
         motion: &Motion,
@@ -201,10 +207,12 @@ impl<'a> Nearby<'a> {
         Ok(all)
     }
 
-    /// By how much Y - W χ changes with s where all signals, torques and positions, become x + s ẍ, samples x r: so
-    /// does a filter that all of them pass, but for a delay (see `checks::smoothing`). What is linear in the motion
-    /// stays as it is. `torques` are those of the actuators, then their second derivatives. Zero, which tells nothing,
-    /// where positions that are not what they seem leave the workspace with that.
+    /// Derivative of Y - W χ with respect to s when each signal x becomes x + s ẍ, samples × r.
+    ///
+    /// A filter that positions and torques pass has this effect, apart from its delay; see
+    /// `checks::smoothing`. Terms that are linear in the motion do not change. `torques` are the
+    /// actuator torques and their second derivatives. The result is zero if the change leaves the
+    /// workspace.
     pub(super) fn alike(
         &self,
         motion: &Motion,
@@ -253,7 +261,7 @@ impl<'a> Nearby<'a> {
         Ok(both.map(|(a, b)| (b - a) / SQUARE).collect())
     }
 
-    /// Y - W χ at other poses, velocities and accelerations of the actuators, of the same torques.
+    /// Y - W χ at other poses, velocities and accelerations, with the same torques.
     fn left(
         &self,
         motion: &Motion,
@@ -286,10 +294,10 @@ impl<'a> Nearby<'a> {
     }
 }
 
-/// Terms of a product that are added up side by side.
+/// Number of partial sums of a dot product.
 const SIDE_BY_SIDE: usize = 8;
 
-/// The product of two vectors of one length.
+/// Dot product of two vectors of equal length.
 pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
     let (left, last) = left.as_chunks::<SIDE_BY_SIDE>();
     let (right, end) = right.as_chunks::<SIDE_BY_SIDE>();

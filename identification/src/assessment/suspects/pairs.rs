@@ -1,48 +1,55 @@
-//! Whether the residuals of actuators hang together.
+//! Correlation of the residuals of two actuators.
 //!
-//! If torque errors e of the actuators make the residual, ρ = Jᵀ e with J = J_p^inv (the identity for a
-//! joint model), then E ρ ρᵀ = Σ_k σ_kk J_k J_kᵀ + Σ_(k<l) σ_kl (J_k J_lᵀ + J_l J_kᵀ) with the rows J_k of J.
-//! The σ are fitted to ρ ρᵀ of all instants by least squares; those of pairs are zero where every
-//! actuator's errors are its own. With a_k = J_k · ρ and M_kl = J_k · J_l the products that this takes are
+//! If torque errors e cause the residual, ρ = Jᵀ e with J = J_p^inv (the identity for a joint
+//! model). With the rows J_k of J,
 //!
 //! ```text
-//! ⟨ρ ρᵀ, kl⟩ = 2 a_k a_l,   ⟨kl, mn⟩ = 2 (M_km M_ln + M_kn M_lm),   each halved for k = l or m = n.
+//! E ρ ρᵀ = Σ_k σ_kk J_k J_kᵀ + Σ_(k<l) σ_kl (J_k J_lᵀ + J_l J_kᵀ).
 //! ```
+//!
+//! The σ are fitted to ρ ρᵀ of all samples by least squares; σ_kl is zero for independent
+//! actuators. With a_k = J_k · ρ and M_kl = J_k · J_l the products are
+//!
+//! ```text
+//! ⟨ρ ρᵀ, kl⟩ = 2 a_k a_l,   ⟨kl, mn⟩ = 2 (M_km M_ln + M_kn M_lm),
+//! ```
+//!
+//! each halved for k = l or m = n.
 
 use nalgebra::{DMatrix, DMatrixView, DVector};
 
 use super::scaled::Scaled;
 use crate::estimation::intervals::distributions::fisher_tail;
 
-/// A correlation that is told worse than to this deviation is not told.
+/// Largest standard deviation of a correlation that is reported.
 const LARGEST_DEVIATION: f64 = 0.1;
 
-/// Products of pairs of actuators: a column for each section of a run, or for each cosine.
+/// Products of actuator pairs: one column for each section of a run, or each cosine.
 #[derive(Debug, Clone)]
 pub(super) struct Pairs {
-    /// The pairs, each actuator with itself among them.
+    /// Pairs (k, l) with k ≤ l.
     pairs: Vec<(usize, usize)>,
     /// Products of the pairs with each other, flattened, and with ρ ρᵀ.
     gram: DMatrix<f64>,
     scores: DMatrix<f64>,
 }
 
-/// How the residuals of two actuators hang together.
+/// Correlation of the residuals of two actuators.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Correlation {
-    /// The actuators.
+    /// The two actuators.
     pub(crate) actuators: (usize, usize),
-    /// σ_kl by the root of σ_kk σ_ll.
+    /// σ_kl/√(σ_kk σ_ll).
     pub(crate) value: f64,
-    /// Its size by its deviation, and the degrees of freedom of that.
+    /// Size by standard deviation, and the degrees of freedom of the latter.
     pub(crate) strength: f64,
     pub(crate) freedom: f64,
-    /// How probable it is by chance.
+    /// p-value.
     pub(crate) probability: f64,
 }
 
 impl Pairs {
-    /// Those of no instants.
+    /// Products without samples.
     pub(super) fn new(actuators: usize, sections: usize) -> Self {
         let of = |k: usize| (k..actuators).map(move |l| (k, l));
         let pairs: Vec<(usize, usize)> = (0..actuators).flat_map(of).collect();
@@ -53,7 +60,7 @@ impl Pairs {
         }
     }
 
-    /// Adds an instant to a section: J, n x r, and ρ.
+    /// Adds a sample to a section: J, n × r, and ρ.
     pub(super) fn add(&mut self, section: usize, jacobian: &DMatrix<f64>, residual: &DVector<f64>) {
         let (torques, products) = (jacobian * residual, jacobian * jacobian.transpose());
         let half = |(k, l): (usize, usize)| if k == l { 0.5 } else { 1.0 };
@@ -69,7 +76,7 @@ impl Pairs {
         }
     }
 
-    /// Its sums over cosines.
+    /// Sums of the sections over cosines.
     pub(super) fn over(&self, waves: &DMatrix<f64>) -> Self {
         Self {
             pairs: self.pairs.clone(),
@@ -78,7 +85,7 @@ impl Pairs {
         }
     }
 
-    /// The products of the pairs with each other over cosine m.
+    /// Products of the pairs with each other over cosine m.
     fn gram(&self, m: usize) -> DMatrixView<'_, f64> {
         let count = self.pairs.len();
         let all = &self.gram.as_slice()[m * count * count..(m + 1) * count * count];
@@ -86,10 +93,11 @@ impl Pairs {
     }
 }
 
-/// The correlations of all pairs in runs, each with its cosines, as far as the motion tells them: each pair
-/// is fitted on its own beside what every actuator has of its own.
-/// `returning` is what their residuals that return with the motion add to the variance of the mean of a product, and the
-/// square of that by its degrees of freedom.
+/// Correlations of all pairs that the motion determines; each run has its number of cosines.
+///
+/// Each pair is fitted separately, together with the variances σ_kk. For a pair, `returning` is the
+/// variance that periodic residuals add to the mean of a product. Its second value is the square of
+/// that by its degrees of freedom.
 pub(super) fn correlations<'a>(
     runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
     returning: &dyn Fn((usize, usize)) -> [f64; 2],
@@ -111,7 +119,7 @@ pub(super) fn correlations<'a>(
     .collect()
 }
 
-/// The correlation of a pair, the last of those `chosen` behind the actuators themselves.
+/// Correlation of a pair, which is the last of the `chosen` indices.
 fn correlation<'a>(
     actuators: (usize, usize),
     chosen: &[usize],

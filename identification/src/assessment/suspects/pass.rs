@@ -1,4 +1,4 @@
-//! What a pass over the beginning of a run needs.
+//! Inputs of a pass over the start of a run.
 
 use overact::Model;
 
@@ -9,23 +9,23 @@ use crate::{
     settings::Settings,
 };
 
-/// What a pass needs.
+/// Inputs of a pass.
 pub(super) struct Pass<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) variants: &'a [Variant<'a>],
     pub(super) columns: &'a ColumnSet,
     pub(super) base: &'a [usize],
-    /// Places of the columns of dry friction among the base parameters.
+    /// Indices of the dry friction columns among the base parameters.
     pub(super) friction: &'a [usize],
     pub(super) kind: ModelKind,
     pub(super) frame: Frame<'a>,
-    /// One sample in so many is kept.
+    /// Decimation factor.
     pub(super) decimation: usize,
     pub(super) settings: &'a Settings,
 }
 
 impl Pass<'_> {
-    /// Columns of a row: the base parameters', Y, the suspects' of one column each, the payload's.
+    /// Columns of a row: base parameters, Y, one-column hypotheses, payload.
     pub(super) fn width(&self) -> usize {
         self.frame.layout.decimated + 1
     }

@@ -1,4 +1,4 @@
-//! One pass over the beginning of a run: the rows of all columns, block by block.
+//! One pass over the start of a run: rows of all columns, block by block.
 
 use overact::Function;
 
@@ -19,11 +19,11 @@ use crate::{
     regression::{chunk::projected, fold::Phases, projection::ModelKind},
 };
 
-/// Rows that are put together before they are decimated: few enough for the cache, for they are long.
+/// Number of rows computed before decimation; few, since rows are long and should fit the cache.
 const TOGETHER: usize = 64;
 
 impl Pass<'_> {
-    /// Goes through a run, at the phases of a motion that returns.
+    /// Reads a run, with the phases of its periodic motion.
     pub(super) fn run(&self, log: &Log, phases: Option<Phases>) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
         let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
@@ -73,7 +73,7 @@ impl Pass<'_> {
         Ok(sink.told(tempo))
     }
 
-    /// Rows of Γ¹ as the estimate's model takes them, where it takes others.
+    /// Rows of Γ¹ in the projection of the estimate's model; `None` for the platform projection.
     fn projected(
         &self,
         lines: &[Vec<f64>],

@@ -1,9 +1,8 @@
-//! The Cholesky factor of a positive definite matrix, scaled so that units do not matter, and the columns of
-//! which such a matrix can be made.
+//! Scaled Cholesky factor of a positive definite matrix, independent of units.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// A column whose part outside the others is below this part of its square can't be told from them.
+/// A column is dependent if the square of its part outside the others is below this fraction.
 const LEAST_OUTSIDE: f64 = 1e-8;
 
 /// D A D = L Lᵀ with the diagonal matrix D that makes the diagonal 1.
@@ -14,7 +13,7 @@ pub(super) struct Scaled {
 }
 
 impl Scaled {
-    /// Of a matrix A; none where it is not positive definite.
+    /// Factorises A; `None` if A is not positive definite.
     pub(super) fn new(matrix: &DMatrix<f64>) -> Option<Self> {
         let scales = matrix.diagonal().map(|square: f64| 1.0 / square.sqrt());
         let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
@@ -45,7 +44,7 @@ impl Scaled {
     }
 }
 
-/// Columns that the data can tell from the model's, and from those before them.
+/// Indices of the columns that are independent of the model's and of earlier ones.
 pub(super) fn told(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
     let mut rest = outside.clone();
     let mut told = Vec::new();

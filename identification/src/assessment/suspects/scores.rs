@@ -1,4 +1,4 @@
-//! What the beginnings of the runs tell. What is kept does not grow with the data.
+//! Scores of fault hypotheses on the starts of all runs, in a size independent of the data.
 
 use std::sync::OnceLock;
 
@@ -29,51 +29,54 @@ use crate::{
     settings::Settings,
 };
 
-/// Samples of all runs together that are gone through, at most.
+/// Largest number of samples of all runs together.
 const MOST_SAMPLES: usize = 100_000;
 
-/// The band of the equations is so many times narrower than that of the estimate. Errors of positions come in
-/// as accelerations and rates of torques, by a power that grows with the fifth power of the band.
+/// Ratio of the estimate's band to that of the tests.
+///
+/// Position errors enter as accelerations and torque rates. Their power grows with the fifth power
+/// of the band.
 const NARROWER: usize = 2;
 
-/// Equations for each column of the model, at least: below, they are decimated less.
+/// Fewest equations per column of the model; decimation is reduced to keep them.
 const LEAST_EQUATIONS: usize = 4;
 
-/// What all runs tell.
+/// Scores of all runs.
 #[derive(Debug, Clone)]
 pub(crate) struct Scores {
-    /// The suspects, and the names of the payload's parameters, each of which is a suspect in each run.
+    /// Hypotheses, and names of the payload parameters, which are tested in each run.
     pub(crate) suspects: Vec<Suspect>,
     pub(crate) payload: Vec<String>,
-    /// Where their columns stand.
+    /// Column indices.
     pub(super) layout: Layout,
-    /// Places of the estimate's parameters among the base parameters.
+    /// Indices of the estimate's parameters among the base parameters.
     pub(super) selected: Vec<usize>,
-    /// Columns of dry friction that is late, which stand behind the base parameters', as far as the data tell
-    /// them.
+    /// Columns of friction rates after the base parameters, as far as they are independent.
     pub(super) late: Vec<usize>,
-    /// What each run tells.
+    /// Scores of each run.
     pub(super) runs: Vec<RunScores>,
-    /// Motions that return, each with the runs that have it.
+    /// Periodic motions, each with the runs that have it.
     pub(super) means: Vec<(Vec<usize>, Mean)>,
-    /// By how many times narrower the band of the equations is than that of the estimate.
+    /// Ratio of the estimate's band to that of the equations.
     pub(crate) narrower: usize,
-    /// What was found beside the estimate's own columns.
+    /// Cached tests with the estimate's own columns.
     pub(super) own: Found,
 }
 
-/// What tests beside the estimate's own columns have in common, and all of them, once one was asked for.
+/// Products and results of the tests with the estimate's own columns, computed on demand.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Found {
     pub(super) beside: OnceLock<Option<Beside>>,
     pub(super) accused: OnceLock<Vec<Option<Accused>>>,
 }
 
-/// Goes through the runs with an estimate of all base parameters; `reaches` are those of the actuators. The band is
-/// so many `times` narrower than that in which suspects are looked for, as far as equations are left.
+/// Reads the runs and computes the scores with an estimate of all base parameters.
+///
+/// `reaches` are those of the actuators. The band is `times` narrower than usual, as far as enough
+/// equations remain.
 ///
 /// # Errors
-/// As [`Motions::next`]; the runs have been gone through before.
+/// As [`Motions::next`]; the runs have been read before.
 pub(crate) fn scores(
     model: &dyn Model,
     (runs, variants): (&[Log], &[Variant<'_>]),
@@ -134,7 +137,7 @@ pub(crate) fn scores(
     })
 }
 
-/// The motions that return.
+/// The periodic motions, each with the runs that have it.
 fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
     let (mut all, mut owners) = (Vec::new(), Vec::<Vec<usize>>::new());
     for (number, run) in runs.iter().enumerate() {
@@ -156,8 +159,9 @@ fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
     owners.into_iter().zip(all).filter_map(mean).collect()
 }
 
-/// By how many times narrower the band of the equations is than that of the estimate, for a model of so
-/// many columns and lines, at `most`.
+/// Ratio of the estimate's band to that of the equations, at most `most`.
+///
+/// `columns` and `lines` are those of the model.
 fn narrower(
     runs: &[Log],
     settings: &Settings,
@@ -173,7 +177,7 @@ fn narrower(
     (equations / (LEAST_EQUATIONS * columns).max(1)).clamp(1, most)
 }
 
-/// Places of the columns of dry friction among the base parameters.
+/// Indices of the dry friction columns among the base parameters.
 fn coulomb(columns: &ColumnSet, base: &[usize]) -> Vec<usize> {
     let is_coulomb = |column: usize| {
         let column = columns.as_slice().get(column);
@@ -184,7 +188,7 @@ fn coulomb(columns: &ColumnSet, base: &[usize]) -> Vec<usize> {
     places.map(|(place, _)| place).collect()
 }
 
-/// The columns behind the `base` ones that the runs tell from those `selected`, and from each other.
+/// The columns after the `base` ones that are independent of `selected` and of each other.
 fn late(layout: &Layout, runs: &[RunScores], (selected, base): (&[usize], usize)) -> Vec<usize> {
     let late: Vec<usize> = (base..layout.base).collect();
     let sum = |rows: &[usize], columns: &[usize]| {
@@ -206,9 +210,9 @@ fn late(layout: &Layout, runs: &[RunScores], (selected, base): (&[usize], usize)
 }
 
 impl Scores {
-    /// How the residuals of all pairs of actuators hang together, as far as the motion tells.
+    /// Correlations of the residuals of all actuator pairs, as far as the motion determines them.
     pub(crate) fn correlations(&self) -> Vec<Correlation> {
-        // Where all actuators are kept and needed the lines are theirs.
+        // If all actuators are kept, the lines are those of the actuators.
         let lines = self.runs.first().map_or(0, |run| run.lines);
         let equations: usize = self.runs.iter().map(|run| run.equations).sum();
         let instants = equations as f64 / lines.max(1) as f64;
@@ -222,8 +226,10 @@ impl Scores {
         correlations(runs, &returning)
     }
 
-    /// The mean of λ² e² over all equations, of errors e that come from white noise of the torques, given its
-    /// variance for each run and actuator at the full rate, of which decimation leaves the part `passed`.
+    /// Mean of λ² e² over all equations for white torque noise.
+    ///
+    /// `variances` are those of each run and actuator at the full rate. Decimation keeps the
+    /// fraction `passed` of them.
     pub(crate) fn noise(&self, variances: &[Vec<f64>], passed: f64) -> f64 {
         let offset = |actuator: usize| {
             let wanted = Suspect::Torque(actuator, Shape::Constant);

@@ -1,5 +1,4 @@
-//! Products of columns and residual, section by section of a run's time, and their sums over cosines of
-//! the time.
+//! Products of columns and residual by section of a run's time, and their cosine sums.
 
 use std::ops::Range;
 
@@ -18,43 +17,45 @@ use crate::{
 /// Sections of a run for each cosine of the covariance.
 const SECTIONS: usize = 4;
 
-/// Products of columns and residual: a column for each section of the run, or for each cosine
-/// cos(π m (k + 1/2)/K) over its K sections, m = 0 … 2 B. Columns W are the base parameters', Z all.
+/// Products of columns and residual, one column per section or cosine.
+///
+/// Cosines are cos(π m (k + 1/2)/K) over the K sections, m = 0 … 2 B. W are the columns of the base
+/// parameters, Z all columns.
 #[derive(Debug, Clone)]
 struct Products {
-    /// Wᵀ Z, p x columns, weighted.
+    /// Wᵀ Z, p × columns, weighted.
     cross: DMatrix<f64>,
-    /// Products of the columns of a block with each other, one block behind the other.
+    /// Products of the columns of each block with each other, block by block.
     own: DMatrix<f64>,
     /// Zᵀ ρ.
     scores: DMatrix<f64>,
 }
 
-/// What one run tells, as sums over cosines of its time.
+/// Scores of one run, as sums over cosines of its time.
 #[derive(Debug, Clone)]
 pub(super) struct RunScores {
     products: Products,
-    /// Products of pairs of actuators.
+    /// Products of actuator pairs.
     pub(super) pairs: Pairs,
-    /// B, the cosines of the covariance.
+    /// B, number of cosines of the covariance.
     pub(super) cosines: usize,
-    /// Σ ρ², weighted, and how many equations it is of.
+    /// Σ ρ², weighted, and its number of equations.
     pub(super) square: f64,
     pub(super) equations: usize,
-    /// Lines of the model.
+    /// Number of lines of the model.
     pub(super) lines: usize,
-    /// ρ² of each instant, summed over the lines, weighted.
+    /// ρ² of each sample, weighted and summed over the lines.
     pub(super) squares: Vec<f64>,
-    /// How the run is timed and how the actuators move.
+    /// Timing of the run and pace of the actuators.
     pub(super) tempo: Tempo,
-    /// For a motion that returns, of each line the mean rows of all columns and the residual at each phase.
+    /// For periodic motion: mean rows and residual of each line at each phase.
     pub(super) folds: Folds,
 }
 
-/// The time of a run and the frequencies of its motion.
+/// Timing of a run and pace of its motion.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tempo {
-    /// From the beginning of the log to the first instant, and from one to the next, s.
+    /// Time of the first sample from the start of the log, and sampling interval, s.
     pub(super) start: f64,
     pub(super) interval: f64,
     /// Σ q̇² and Σ q̈² of each actuator over the samples.
@@ -63,7 +64,7 @@ pub(super) struct Tempo {
 }
 
 impl Tempo {
-    /// Notes velocities and accelerations of all actuators, sample by sample.
+    /// Adds velocities and accelerations of all actuators, sample by sample.
     pub(super) fn take(&mut self, actuators: &[Moment]) {
         let n = self.velocities.len().max(1);
         for row in actuators.chunks_exact(n) {
@@ -77,7 +78,7 @@ impl Tempo {
 }
 
 impl Products {
-    /// Those of no rows.
+    /// Products without rows.
     fn new(layout: &Layout, sections: usize) -> Self {
         Self {
             cross: DMatrix::zeros(layout.base * layout.columns, sections),
@@ -86,7 +87,7 @@ impl Products {
         }
     }
 
-    /// Adds rows of all columns with their residual to a section.
+    /// Adds rows of all columns and their residual to a section.
     fn add(
         &mut self,
         layout: &Layout,
@@ -108,7 +109,7 @@ impl Products {
         scores.gemv_tr(1.0, all, residual, 1.0);
     }
 
-    /// Its sums over cosines.
+    /// Sums of the sections over cosines.
     fn over(&self, waves: &DMatrix<f64>) -> Self {
         Self {
             cross: &self.cross * waves,
@@ -126,7 +127,7 @@ impl RunScores {
         DMatrixView::from_slice(all, layout.base, layout.columns)
     }
 
-    /// Products of some columns of base parameters with some of all columns, over cosine m.
+    /// Products of some base parameter columns with some of all columns, over cosine m.
     pub(super) fn beside(
         &self,
         layout: &Layout,
@@ -145,31 +146,31 @@ impl RunScores {
         DMatrixView::from_slice(all, width, width)
     }
 
-    /// Zᵀ ρ, columns x cosines.
+    /// Zᵀ ρ, columns × cosines.
     pub(super) fn scores(&self) -> &DMatrix<f64> {
         &self.products.scores
     }
 }
 
-/// What makes equations of decimated rows.
+/// Parameters that convert decimated rows to equations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame<'a> {
     pub(super) suspects: &'a [Suspect],
     pub(super) layout: &'a Layout,
-    /// Where the actuators move in all runs.
+    /// Position ranges of the actuators in all runs.
     pub(super) reaches: &'a [Reach],
-    /// The weight of each line, and for each base parameter its estimate.
+    /// Weight of each line, and estimate of each base parameter.
     pub(super) weights: &'a [f64],
     pub(super) values: &'a [f64],
 }
 
-/// Where the equations of a run go.
+/// Accumulates the equations of a run.
 pub(super) struct Sink<'a> {
     frame: Frame<'a>,
-    /// Instants that have come, and those to come in all.
+    /// Number of samples so far, and in total.
     taken: usize,
     expected: usize,
-    /// The columns of constant torques, by which waves are multiplied.
+    /// Columns of constant torques, by which waves are multiplied.
     constants: Vec<usize>,
     products: Products,
     pairs: Pairs,
@@ -181,7 +182,7 @@ pub(super) struct Sink<'a> {
 }
 
 impl<'a> Sink<'a> {
-    /// For so many instants, at the phases of a motion that returns.
+    /// For this number of samples, with the phases of a periodic motion.
     pub(super) fn new(frame: Frame<'a>, instants: usize, phases: Option<Phases>) -> Self {
         let constant = |one: &Suspect| matches!(one, Suspect::Torque(_, Shape::Constant));
         let suspects = frame.suspects.iter().zip(&frame.layout.blocks);
@@ -203,7 +204,7 @@ impl<'a> Sink<'a> {
         }
     }
 
-    /// What the run tells that was gone through in this time.
+    /// The scores of the run with this timing.
     pub(super) fn told(self, tempo: Tempo) -> RunScores {
         let sections = self.products.scores.ncols();
         let cosines = cosines(self.expected).min(sections / 2).max(1);
@@ -224,7 +225,7 @@ impl<'a> Sink<'a> {
         }
     }
 
-    /// Takes decimated rows of all lines, and the decimated positions of the actuators.
+    /// Adds decimated rows of all lines, and decimated actuator positions.
     pub(super) fn take(&mut self, lines: &[Vec<f64>], positions: &[f64]) {
         let count = positions.len() / self.constants.len().max(1);
         if count == 0 {
@@ -260,7 +261,7 @@ impl<'a> Sink<'a> {
         self.taken += count;
     }
 
-    /// Adds rows of all lines at the phases of the motion.
+    /// Adds rows of all lines at their phases of the motion.
     fn fold(&mut self, lines: &[(DMatrix<f64>, DVector<f64>)]) {
         let Some(phases) = self.phases else {
             return;
@@ -277,14 +278,14 @@ impl<'a> Sink<'a> {
         }
     }
 
-    /// The section of a sample of those that come.
+    /// Section of a sample, counted from the first sample of the next rows.
     fn section(&self, sample: usize) -> usize {
         let sections = self.products.scores.ncols();
         let section = (self.taken + sample) * sections / self.expected.max(1);
         section.min(sections - 1)
     }
 
-    /// The rows of a line with all columns, weighted, and its residual.
+    /// Weighted rows of a line with all columns, and their residual.
     fn line(
         &self,
         line: usize,
@@ -304,8 +305,7 @@ impl<'a> Sink<'a> {
         (all, residual)
     }
 
-    /// Fills in the waves: those of a decimated position, times what a torque of its actuator is worth in
-    /// this line.
+    /// Fills in the waves of decimated positions, multiplied by the column of a constant torque.
     fn add_waves(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
         let n = self.constants.len();
         for (suspect, block) in self.frame.suspects.iter().zip(&self.frame.layout.blocks) {
@@ -324,7 +324,7 @@ impl<'a> Sink<'a> {
     }
 }
 
-/// Some instants of all lines, one line below the other: rows and residual.
+/// Rows and residual of some samples of all lines, stacked line by line.
 fn together(
     lines: &[(DMatrix<f64>, DVector<f64>)],
     instants: Range<usize>,

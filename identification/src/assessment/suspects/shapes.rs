@@ -1,6 +1,6 @@
 //! Shapes of torques and forces that a model may lack.
 
-/// How something that the model lacks depends on the motion of its actuator or coordinate.
+/// Dependence of a missing torque on the motion of its actuator or coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// 1: an offset of the torque, or friction that differs by direction.
@@ -11,11 +11,11 @@ pub(crate) enum Shape {
     Sign,
     /// The magnitude of the velocity: viscous friction that differs by direction.
     Speed,
-    /// The square of the velocity, with its sign: a drag.
+    /// The signed square of the velocity: drag.
     Drag,
-    /// What remains of the sign of the velocity near standstill: friction that rises there (Stribeck).
+    /// The sign of the velocity, fading away from standstill: Stribeck friction.
     Stribeck,
-    /// The magnitude of the torque with the sign of the velocity: friction that grows with the load.
+    /// Magnitude of the torque with the sign of the velocity: load-dependent friction.
     Load,
     /// The magnitude of the torque: a gain that differs by the torque's sign.
     Magnitude,
@@ -23,26 +23,26 @@ pub(crate) enum Shape {
     Acceleration,
     /// The position: a spring.
     Position,
-    /// The position with the sign of the velocity: friction that depends on the place.
+    /// The position with the sign of the velocity: position-dependent friction.
     PositionSign,
     /// The cosine of the position.
     Cosine,
     /// The sine of the position.
     Sine,
-    /// The time since the beginning of the run: a drift.
+    /// The time since the start of the run: a drift.
     Time,
-    /// The time where the velocity is positive, less the time where it is negative: friction that changes.
+    /// The time with the sign of the velocity: friction that drifts.
     TimeSign,
-    /// The torque times the time since the beginning of the run: a gain that drifts.
+    /// The torque times the time since the start of the run: a gain that drifts.
     GainTime,
-    /// Waves over the range of the position, [`WAVES`] columns together: cogging, or an error of a gear.
+    /// Waves over the range of the position, [`WAVES`] columns: cogging, or an error of a gear.
     Waves,
 }
 
-/// Cosines of a position over its range, of 1/2, 1, 3/2 … periods.
+/// Number of cosines over the range of a position, of 1/2, 1, 3/2 … periods.
 pub(super) const WAVES: usize = 16;
 
-/// Shapes of an actuator that are one column each.
+/// Shapes of an actuator with one column each.
 pub(super) const SHAPES: [Shape; 16] = [
     Shape::Constant,
     Shape::Velocity,
@@ -62,34 +62,34 @@ pub(super) const SHAPES: [Shape; 16] = [
     Shape::GainTime,
 ];
 
-/// The motion of an actuator or a coordinate at one time.
+/// Motion of an actuator or a coordinate at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Moment {
     pub(super) position: f64,
     pub(super) velocity: f64,
-    /// The sign of the velocity, as the columns of dry friction take it around reversals.
+    /// Sign of the velocity, as the dry friction columns define it around reversals.
     pub(super) sign: f64,
     pub(super) acceleration: f64,
-    /// The torque or force, freed of the residual.
+    /// Torque or force, without the residual.
     pub(super) torque: f64,
     pub(super) time: f64,
 }
 
-/// Where an actuator moves, and how fast.
+/// Position range and largest speed of an actuator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Reach {
-    /// The least and the largest position (m, rad).
+    /// Smallest and largest position (m, rad).
     pub(crate) low: f64,
     pub(crate) high: f64,
-    /// The largest speed (m/s, rad/s).
+    /// Largest speed (m/s, rad/s).
     pub(crate) speed: f64,
 }
 
-/// Part of the largest speed within which friction that rises towards standstill has fallen to 1/e.
+/// Fraction of the largest speed at which Stribeck friction has fallen to 1/e.
 const STRIBECK: f64 = 0.1;
 
 impl Reach {
-    /// That of two together.
+    /// The union of two ranges.
     pub(crate) fn united(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
@@ -98,7 +98,7 @@ impl Reach {
         }
     }
 
-    /// The waves of a position.
+    /// The waves at a position.
     pub(super) fn waves(self, position: f64) -> [f64; WAVES] {
         let range = self.high - self.low;
         let place = if range > 0.0 {
@@ -111,7 +111,7 @@ impl Reach {
 }
 
 impl Shape {
-    /// What it is called in a sentence.
+    /// Name in a sentence.
     pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Constant => "a constant, as an offset or friction that differs by direction",
@@ -142,7 +142,7 @@ impl Shape {
         }
     }
 
-    /// The unit of its size where it is a torque (of a revolute actuator) or a force.
+    /// Unit of the size, for a torque (revolute actuator) or a force.
     pub(crate) const fn unit(self, revolute: bool) -> &'static str {
         match (self, revolute) {
             (Self::Constant | Self::Sign | Self::Stribeck | Self::Waves, false) => "N",
@@ -170,13 +170,12 @@ impl Shape {
         }
     }
 
-    /// The velocity over which friction near standstill fades, where the fastest one is this (m/s, rad/s).
+    /// Velocity at which Stribeck friction fades, for the largest `speed` (m/s, rad/s).
     pub(crate) fn fading(speed: f64) -> f64 {
         STRIBECK * speed
     }
 
-    /// Its value at a motion within a reach. Waves are no single value: they are added where signals have
-    /// been decimated.
+    /// Value at a motion. Waves have no single value: they are added after decimation.
     pub(super) fn value(self, motion: Moment, reach: Reach) -> f64 {
         let Moment {
             position,

@@ -1,26 +1,28 @@
-//! How far the scores of suspects stray by chance, told as for a parameter of the model (see the module
-//! `estimation::intervals::scores`): the suspects' columns, freed of the model's, count as columns of it.
+//! Covariance of the scores of fault hypotheses.
+//!
+//! It is estimated as for parameters of the model (see `estimation::intervals::scores`). The
+//! hypotheses' columns, orthogonalised to the model's, count as columns of the model.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{beside::Beside, columns::Layout, group::Group, sections::RunScores};
 use crate::estimation::returning::{Mean, Stray};
 
-/// Columns of a group, freed of those of the model by B and then orthonormal: z⊥ = (z - W B) Mᵀ.
+/// Orthonormal columns of a group outside the model's columns: z⊥ = (z - W B) Mᵀ.
 pub(super) struct Freed<'a> {
     pub(super) layout: &'a Layout,
     /// Columns of the model.
     pub(super) beside: &'a Beside,
-    /// The group, and the columns within its block.
+    /// The group, and its independent columns by place in the block.
     pub(super) group: Group,
     pub(super) told: &'a [usize],
-    /// B, columns of the model x columns of the group.
+    /// B, columns of the model × columns of the group.
     pub(super) solved: &'a DMatrix<f64>,
     /// M.
     pub(super) white: &'a DMatrix<f64>,
 }
 
-/// What one run adds, as sums over cosines.
+/// Contribution of one run, as sums over cosines.
 pub(super) struct Share {
     /// Wᵀ z⊥, z⊥ᵀ z⊥ and z⊥ᵀ ρ for each cosine.
     fitted: Vec<DMatrix<f64>>,
@@ -29,14 +31,14 @@ pub(super) struct Share {
     cosines: usize,
 }
 
-/// The covariance of the scores, and its degrees of freedom.
+/// Covariance of the scores, and its degrees of freedom.
 pub(super) struct Spread {
     pub(super) covariance: DMatrix<f64>,
     pub(super) freedom: f64,
 }
 
 impl Freed<'_> {
-    /// What a run adds; the columns are zero in a run to which they are not `inside`.
+    /// Contribution of a run; the columns are zero unless `inside`.
     pub(super) fn share(&self, (number, run): (usize, &RunScores), inside: bool) -> Share {
         let count = 2 * run.cosines + 1;
         let mut share = Share {
@@ -72,13 +74,13 @@ impl Freed<'_> {
         share
     }
 
-    /// The columns of the group among all.
+    /// Columns of the group among all columns.
     fn columns(&self) -> impl Iterator<Item = usize> {
         let first = self.layout.blocks[self.group.block].start;
         self.told.iter().map(move |column| first + column)
     }
 
-    /// The covariance of all runs' scores together, were the suspects there by `sizes`.
+    /// Covariance of all runs' scores if the faults had these `sizes`.
     pub(super) fn spread(
         &self,
         shares: &[Share],
@@ -121,8 +123,9 @@ impl Freed<'_> {
         Some(spread.enlarged(&self.strays(means, sizes)))
     }
 
-    /// How the scores stray by what returns with the motions, were the suspects there by `sizes`; none where a group
-    /// is confined to one of several runs of a motion.
+    /// Variances of the scores from periodic residuals, if the faults had these `sizes`.
+    ///
+    /// Empty if the group is confined to one of several runs of a motion.
     fn strays(&self, means: &[(Vec<usize>, Mean)], sizes: &DVector<f64>) -> Vec<Stray> {
         let width = sizes.len();
         let mut all = vec![Stray::default(); width];
@@ -149,8 +152,9 @@ impl Freed<'_> {
         all
     }
 
-    /// C of column i: the covariance of its sums over cosines, had the residual been white noise of unit
-    /// variance before the fit.
+    /// C of column i: covariance of its cosine sums for a white residual of unit variance.
+    ///
+    /// The residual is taken before the fit.
     fn under_white_noise(&self, share: &Share, i: usize) -> DMatrix<f64> {
         let count = share.cosines;
         let root = std::f64::consts::SQRT_2;
@@ -169,8 +173,9 @@ impl Freed<'_> {
 }
 
 impl Spread {
-    /// The same where the scores stray farther by what returns with the motion: that is the same in every period, and
-    /// so is not told from how the scores vary slowly.
+    /// Increases the covariance to that of periodic residuals, if that is larger.
+    ///
+    /// Periodic residuals are equal in every period, so slow variations of the scores miss them.
     fn enlarged(mut self, strays: &[Stray]) -> Self {
         let all = strays.iter().copied().reduce(Stray::and);
         let Some(all) = all.filter(|all| all.square > 0.0) else {
@@ -188,7 +193,7 @@ impl Spread {
     }
 }
 
-/// The scores of all runs together.
+/// Scores of all runs together.
 pub(super) fn score(shares: &[Share], width: usize) -> DVector<f64> {
     let start = DVector::zeros(width);
     shares

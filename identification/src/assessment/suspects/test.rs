@@ -1,4 +1,4 @@
-//! Whether a suspect is there, how large it is, and what it does to the parameters.
+//! Test of a hypothesis: significance, size, and shifts of the parameters.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -14,8 +14,9 @@ use super::{
 use crate::estimation::intervals::distributions::Hotelling;
 
 impl Scores {
-    /// Tests a group beside the columns `selected` of the base parameters; none where the data can't tell
-    /// it from them.
+    /// Tests a group with the base parameter columns `selected` in the model.
+    ///
+    /// `None` if the data do not separate the group from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<Accused> {
         if selected != self.selected {
             return self.tested(group, &self.beside(selected)?);
@@ -23,7 +24,7 @@ impl Scores {
         let beside = self.own.beside.get_or_init(|| self.beside(selected));
         let beside = beside.as_ref()?;
         match group.run {
-            // Whoever asks for one suspect asks for the others, too.
+            // One request computes all hypotheses, since callers need them all.
             None if group.block < self.suspects.len() => {
                 let all = || {
                     let groups = (0..self.suspects.len()).into_par_iter();
@@ -37,7 +38,7 @@ impl Scores {
         }
     }
 
-    /// The columns `selected` of the base parameters with what all tests beside them share.
+    /// The base parameter columns `selected`, with the products that all tests share.
     fn beside(&self, selected: &[usize]) -> Option<Beside> {
         Beside::new(
             &self.layout,
@@ -46,7 +47,7 @@ impl Scores {
         )
     }
 
-    /// Tests a group beside columns of the base parameters.
+    /// Tests a group with these columns in the model.
     fn tested(&self, group: &Group, beside: &Beside) -> Option<Accused> {
         let layout = &self.layout;
         let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
@@ -60,7 +61,7 @@ impl Scores {
                 square += run.own(layout, group.block, 0);
             }
         }
-        // The estimate has no friction that is late: its parameters are off as if there were none.
+        // The estimate has no friction rates, so its parameters shift as without them.
         let off = beside.estimated(&cross);
         let solved = beside.gram.solve(&cross);
         let outside = &square - cross.tr_mul(&solved);
@@ -83,7 +84,7 @@ impl Scores {
         self.accused(&freed, &shares, &off.select_columns(&told))
     }
 
-    /// What the shares of all runs say; `off` is B of the estimate's own columns.
+    /// Result from the contributions of all runs; `off` is B for the estimate's own columns.
     fn accused(&self, freed: &Freed<'_>, shares: &[Share], off: &DMatrix<f64>) -> Option<Accused> {
         let width = freed.told.len();
         let score = score(shares, width);
@@ -98,7 +99,7 @@ impl Scores {
         let as_column = DMatrix::from_column_slice(width, 1, score.as_slice());
         let distance = Scaled::new(&covariance)?.solve(&as_column);
         let test = Hotelling::new(score.dot(&distance.column(0)), count, freedom);
-        // z⊥ is orthonormal: the scores are its sizes.
+        // z⊥ is orthonormal, so the scores are its sizes.
         let sizes = freed.white.tr_mul(&score);
         let first = freed.white.column(0);
         let variance = (first.transpose() * &covariance * first)[(0, 0)];
@@ -120,7 +121,7 @@ impl Scores {
         })
     }
 
-    /// Places of the parameters of the estimate with which the runs were gone through.
+    /// Indices of the estimate's parameters.
     pub(crate) fn selected(&self) -> &[usize] {
         &self.selected
     }

@@ -1,9 +1,9 @@
-//! What the torques leave unexplained when a fault is taken back.
+//! Relative residual of the torques after a fault is corrected.
 //!
-//! Any linear change of the torques changes Γ¹ = Σ_i J_iᵀ τ_i into a combination of the products
-//! J_iᵀ τ_j, and what the model can't explain of a combination follows from the R factor of
-//! [W, J_1ᵀ τ_1, J_1ᵀ τ_2, ...]. So one pass over the beginning of the runs judges all faults of
-//! torques. Faults of positions that the loops do not tell need a pass of their own each.
+//! Any linear change of the torques changes Γ¹ = Σ_i J_iᵀ τ_i to a combination of the products J_iᵀ
+//! τ_j. The residual of any combination follows from the R factor of [W, J_1ᵀ τ_1, J_1ᵀ τ_2, …].
+//! One pass over the starts of the runs therefore tests all torque faults. Position faults that the
+//! closure does not show need one pass each.
 
 use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model, StandardParameter};
@@ -21,22 +21,22 @@ use crate::{
     settings::Settings,
 };
 
-/// What may have happened.
+/// Possible faults.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Fault {
-    /// The torque of a drive has to be multiplied by a factor.
+    /// The torque of a drive must be multiplied by a factor.
     Gain(usize, f64),
-    /// The torques of two drives are exchanged.
+    /// The torques of two drives are swapped.
     Swapped(usize, usize),
-    /// The payload of a run is labelled wrongly.
+    /// The payload label of a run is wrong.
     Label(usize),
 }
 
-/// The columns of the model, the payload's being there in any case.
+/// Columns of the model, always with those of the payload.
 pub(super) struct Columns {
     columns: ColumnSet,
     base: BaseParameters,
-    /// Places of the payload's columns among the base parameters.
+    /// Indices of the payload columns among the base parameters.
     payload: Vec<usize>,
 }
 
@@ -68,7 +68,7 @@ impl Columns {
         })
     }
 
-    /// Goes through runs.
+    /// Reads runs and factorises their equations.
     pub(super) fn doubt(
         &self,
         (model, runs): (&dyn Model, &[Log]),
@@ -90,10 +90,10 @@ impl Columns {
     }
 }
 
-/// The R factors of all runs.
+/// R factors of all runs.
 pub(super) struct Doubt<'a> {
     columns: &'a Columns,
-    /// For each run and line, that of W and of what the drives add.
+    /// For each run and line, the factor of W and of the drives' columns.
     factors: Vec<Vec<Factor>>,
     /// Whether each run is labelled as carrying the payload.
     labels: Vec<bool>,
@@ -102,7 +102,7 @@ pub(super) struct Doubt<'a> {
 }
 
 impl Doubt<'_> {
-    /// By what the columns of the drives are multiplied to add up to the inputs when a fault is taken back.
+    /// Coefficients of the drives' columns that give the inputs after correcting a fault.
     fn share(&self, fault: Option<Fault>) -> DVector<f64> {
         let n = self.actuators;
         if self.drives == Drives::Together {
@@ -121,15 +121,14 @@ impl Doubt<'_> {
         share
     }
 
-    /// The part of the inputs that is left unexplained when a fault is taken back, each line being
-    /// divided by its norm.
+    /// Relative residual after correcting a fault, each line being divided by its norm.
     pub(super) fn error(&self, fault: Option<Fault>) -> f64 {
         let (all, lines) = self.stacked(fault);
         let selected: Vec<usize> = (0..self.columns.base.columns.len()).collect();
         all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
     }
 
-    /// The payload's mass when a fault is taken back; none where it has none or these data do not tell it.
+    /// Payload mass after correcting a fault; `None` if there is none or it is undetermined.
     pub(super) fn mass(&self, fault: Fault) -> Option<f64> {
         let Columns { columns, base, .. } = self.columns;
         let is_mass = |place: &&usize| {
@@ -143,7 +142,7 @@ impl Doubt<'_> {
         solved.get(place).copied().filter(|mass| mass.is_finite())
     }
 
-    /// The factor of all lines, each divided by its norm, when a fault is taken back, and how many lines there are.
+    /// Factor of all lines, each divided by its norm, after correcting a fault; number of lines.
     fn stacked(&self, fault: Option<Fault>) -> (Factor, u32) {
         let p = self.columns.base.columns.len();
         let share = self.share(fault);
@@ -155,7 +154,7 @@ impl Doubt<'_> {
             for (run, factors) in self.factors.iter().enumerate() {
                 let r = factors[line].matrix();
                 let sum = r.columns(p, share.len()) * &share;
-                // Below the triangle of W only the size of the sum matters.
+                // Below the triangle of W, only the norm of the sum matters.
                 let mut rows = DMatrix::zeros(p + 1, p + 1);
                 rows.view_mut((0, 0), (p, p))
                     .copy_from(&r.view((0, 0), (p, p)));
@@ -185,20 +184,20 @@ impl Doubt<'_> {
     }
 }
 
-/// How torques stand beside the columns of the model.
+/// How the torques enter the factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Drives {
-    /// Every J_iᵀ τ_j in a column of its own.
+    /// Each J_iᵀ τ_j in a column of its own.
     OneByOne,
     /// Σ_i J_iᵀ τ_i in one column.
     Together,
 }
 
-/// How equations are made.
+/// Options of the equations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
     drives: Drives,
-    /// How many times what gravity does is taken away: once where it does not act, twice where it is turned round.
+    /// Multiple of the gravity terms to subtract: 1 to remove gravity, 2 to reverse it.
     without_gravity: f64,
 }
 
@@ -212,7 +211,7 @@ impl Way {
         without_gravity: 0.0,
     };
 
-    /// The same, with what gravity does taken away so many times.
+    /// The same, with a multiple of the gravity terms subtracted.
     pub(super) const fn without_gravity(self, times: f64) -> Self {
         Self {
             without_gravity: times,
@@ -221,7 +220,7 @@ impl Way {
     }
 }
 
-/// The factor of each line of a run: W, then what the drives add.
+/// Factor of each line of a run: W, then the drives' columns.
 fn run_factors(
     model: &dyn Model,
     log: &Log,
@@ -271,7 +270,7 @@ fn run_factors(
             };
             let mut lines = evaluate(&states)?;
             if without_gravity > 0.0 {
-                // At rest there is of the columns of masses what gravity does.
+                // At rest, the columns of masses contain gravity only.
                 let rest = vec![0.0; r * count];
                 let at_rest = evaluate(&[pose, &rest, &rest])?;
                 for (own, rest) in lines.iter_mut().zip(&at_rest) {

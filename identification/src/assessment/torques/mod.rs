@@ -1,8 +1,9 @@
-//! Torques that contradict the model, and which single fault would explain them: a drive of the wrong
-//! sign or gain, two that are swapped, a run that is labelled with the wrong payload; or two joints that are
-//! swapped as a whole, gravity that points the other way or does not act.
+//! Single faults that explain torques contradicting the model.
 //!
-//! - `doubt`: what a fault leaves unexplained, from one pass over the runs.
+//! Faults of a drive or label are a wrong sign or gain, swapped drives, and a wrong payload label.
+//! Faults of the whole robot are swapped joints, and reversed or absent gravity.
+//!
+//! - `doubt`: the residual after correcting a fault, from one pass over the runs.
 
 mod doubt;
 
@@ -17,24 +18,26 @@ use super::{
 use crate::{data::Log, error::Error, settings::Settings};
 use doubt::{Columns, Doubt, Fault, Way};
 
-/// A fault that explains the torques leaves this part of the error, at most, ...
+/// A fault explains the torques if at most this fraction of the error remains.
 const EXPLAINED: f64 = 0.5;
 
-/// ... and takes away this part of the inputs, at least; of those of one line, where it is one of a drive.
+/// It must also remove this fraction of the inputs.
+///
+/// For a fault of a drive, the inputs are those of one line.
 const WORTHWHILE: f64 = 0.03;
 
-/// One that leaves no more than so many times as much explains them as well.
+/// A fault is equally good if its error is at most this multiple of the best one's.
 const AS_GOOD: f64 = 1.2;
 
-/// Gains by which a drive may be wrong; the first is the wrong sign.
+/// Gains by which a drive may be wrong; -1 is the wrong sign.
 const GAINS: [f64; 11] = [
     -1.0, 1e-3, 0.01, 0.1, 0.2, 0.5, 2.0, 5.0, 10.0, 100.0, 1000.0,
 ];
 
-/// What would explain the torques of runs, if one fault does.
+/// The single fault that explains the torques of runs, if there is one.
 ///
 /// # Errors
-/// As [`Motions::next`]; the runs have been gone through before.
+/// As [`Motions::next`]; the runs have been read before.
 pub(crate) fn explanation(
     model: &dyn Model,
     runs: &[Log],
@@ -47,8 +50,9 @@ pub(crate) fn explanation(
     Ok(of_one.or_else(|| of_all((model, &columns), runs, settings, before)))
 }
 
-/// The part of the inputs that is left unexplained with the positions as they are, and after a fault of them is
-/// repaired; none where that leads out of the workspace or a log can't be read.
+/// Relative residuals with the positions as they are, and after correcting a position fault.
+///
+/// `None` if the correction leaves the workspace or a log cannot be read.
 pub(super) fn errors_with(
     fault: positions::Fault,
     model: &dyn Model,
@@ -67,7 +71,7 @@ pub(super) fn errors_with(
     Some((error(runs)?, error(&repaired)?))
 }
 
-/// What speaks for a fault.
+/// States the evidence for a fault.
 fn so(before: f64, after: f64) -> String {
     format!(
         "then {:.1} % of the inputs are left unexplained, instead of {:.1} %",
@@ -76,7 +80,7 @@ fn so(before: f64, after: f64) -> String {
     )
 }
 
-/// The fault of one drive or label that explains the torques, of which so much is unexplained `before`.
+/// The fault of a drive or label that explains the torques; `before` is the relative residual.
 fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Option<Check> {
     let info = model.info();
     let n = info.sizes.actuators;
@@ -90,7 +94,7 @@ fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Op
         .into_par_iter()
         .map(|fault| (fault, doubt.error(Some(fault))));
     let errors: Vec<(Fault, f64)> = errors.collect();
-    // The error is a mean over lines: a drive of a serial robot shows in its own line alone.
+    // The error is a mean over lines; in a serial robot a drive affects its own line most.
     let lines = info.sizes.dof as f64;
     let explains = |(fault, after): &(Fault, f64)| {
         let taken = match fault {
@@ -104,7 +108,8 @@ fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Op
     let best = errors.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
     let (mut fault, after) = best.filter(explains)?;
     if let Fault::Label(_) = fault {
-        // Of two runs that differ by a payload either may be the one with it: a mass that is positive tells which.
+        // If runs differ by a payload, either of them may carry it. The one with a positive payload
+        // mass is chosen.
         let as_good = errors
             .iter()
             .filter(|(other, error)| matches!(other, Fault::Label(_)) && *error <= AS_GOOD * after);
@@ -116,7 +121,7 @@ fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Op
     Some(measured(told, (before, after), EXPLAINED))
 }
 
-/// The fault of all positions or of gravity that explains the torques: what happened to positions happened in all runs.
+/// The fault of all positions or of gravity that explains the torques, in all runs alike.
 fn of_all(
     (model, columns): (&dyn Model, &Columns),
     runs: &[Log],
@@ -126,7 +131,7 @@ fn of_all(
     let whole = Whole::all(model).into_par_iter().filter_map(|fault| {
         let repaired = |log: &Log| fault.repaired(model, log);
         let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
-        // A change that leads out of the workspace explains nothing.
+        // A correction that leaves the workspace explains nothing.
         let way = match fault {
             Whole::Gravity => Way::TOGETHER.without_gravity(2.0),
             Whole::Weightless => Way::TOGETHER.without_gravity(1.0),
@@ -146,7 +151,7 @@ fn of_all(
     Some(measured(told, (before, after), part))
 }
 
-/// A check with the part of the inputs that is left unexplained without the fault, of which it may leave a part.
+/// A check with the residual after the correction, and the fraction allowed as threshold.
 fn measured(check: Check, (before, after): (f64, f64), part: f64) -> Check {
     let origin = format!(
         "{:.0} % of what is left unexplained with the fault",
@@ -157,7 +162,7 @@ fn measured(check: Check, (before, after): (f64, f64), part: f64) -> Check {
         .against(100.0 * part * before, origin)
 }
 
-/// What is told of a fault; `so` says what speaks for it.
+/// The failed check of a fault; `so` is the evidence.
 fn told(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
     let info = model.info();
     let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();

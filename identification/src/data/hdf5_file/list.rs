@@ -1,4 +1,4 @@
-//! The datasets of a file, those in groups as well.
+//! Lists the datasets of a file, including those in groups.
 
 use std::{fs::File, io::Read, path::Path};
 
@@ -7,22 +7,22 @@ use hdf5_reader::{
     error::{Error, Result},
 };
 
-/// Groups within groups, groups, and datasets, at most.
+/// Largest depth of groups, and largest numbers of groups and datasets.
 const DEEPEST: usize = 16;
 const MOST_GROUPS: usize = 1000;
 const MOST_DATASETS: usize = 20_000;
 
-/// Whether MATLAB wrote a file: it says so before the HDF5 begins.
+/// Whether MATLAB wrote a file; it starts with that text.
 pub(super) fn is_matlab(path: &Path) -> bool {
     let mut beginning = [0; 6];
     let read = File::open(path).and_then(|mut input| input.read_exact(&mut beginning));
     read.is_ok() && beginning == *b"MATLAB"
 }
 
-/// All datasets, each with its path, in which points stand between names.
+/// All datasets with their paths, joined by points.
 ///
 /// # Errors
-/// What is wrong with the file.
+/// A description of the defect.
 pub(super) fn datasets(file: &Hdf5File) -> Result<Vec<(String, Dataset)>> {
     let mut found = Vec::new();
     let mut seen = Vec::new();
@@ -47,7 +47,7 @@ pub(super) fn datasets(file: &Hdf5File) -> Result<Vec<(String, Dataset)>> {
             }
             found.push((format!("{path}{}", dataset.name()), dataset));
         }
-        // What MATLAB keeps for itself: contents of cells, classes.
+        // MATLAB's internal groups: contents of cells, classes.
         let inner = inner.into_iter().filter(|own| !own.name().starts_with('#'));
         groups.extend(inner.map(|own| {
             let path = format!("{path}{}.", own.name());

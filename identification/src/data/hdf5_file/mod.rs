@@ -1,7 +1,8 @@
-//! HDF5, and with it MATLAB's `.mat` files of version 7.3: vectors and columns of matrices by the path of their
-//! dataset, read block by block, so that a large file stays on the disk.
+//! HDF5 files, including MATLAB's `.mat` files of version 7.3.
 //!
-//! MATLAB counts the sides of a matrix in the other order than HDF5 does; columns are named as MATLAB shows them.
+//! Vectors and columns of matrices are named by the path of their dataset. They are read block by
+//! block, so large files stay on disk. MATLAB orders the dimensions of a matrix differently from
+//! HDF5; columns are named as MATLAB shows them.
 
 mod list;
 mod number;
@@ -23,12 +24,12 @@ use super::{
 };
 use crate::error::{Error, Problem};
 
-/// Bytes of a block of a dataset, of what is read at a time, and of blocks that are kept.
+/// Largest sizes of a dataset's chunk, of one read, and of the chunk cache.
 const LARGEST_CHUNK: usize = 64 << 20;
 const LARGEST_READ: usize = 64 << 20;
 const KEPT: usize = 64 << 20;
 
-/// Bytes of what describes a dataset or a group.
+/// Largest size of the header of a dataset or group.
 const LARGEST_DESCRIPTION: usize = 1 << 20;
 
 /// A file and its datasets.
@@ -37,9 +38,9 @@ pub(super) struct Hdf5 {
     /// The file as the caller named it.
     file: String,
     series: Vec<Series>,
-    /// Number of all vectors and columns of matrices.
+    /// Number of all vectors and matrix columns.
     columns: usize,
-    /// Single numbers.
+    /// Scalars.
     variables: Vec<(String, [f64; 1])>,
     bytes: u64,
 }
@@ -48,7 +49,7 @@ impl Hdf5 {
     /// Opens a file and lists its datasets.
     ///
     /// # Errors
-    /// A file that can't be read, or that is cut off or broken.
+    /// A file that cannot be read, is cut off or broken.
     pub(super) fn open(file: String, path: &Path) -> Result<Self, Error> {
         let bytes = std::fs::metadata(path)
             .map_err(|error| unreadable(&file, &error))?
@@ -93,7 +94,7 @@ impl Hdf5 {
         })
     }
 
-    /// The dataset of a column, and the column's number in it.
+    /// Dataset of a column, and index of the column in it.
     fn series(&self, place: usize) -> Option<(usize, usize)> {
         let series = self
             .series

@@ -1,19 +1,20 @@
-//! Numbers of any kind as they stand in a file: whole ones of any size, floating ones of 32 and 64 bits, true and
-//! false, which is a choice of two whole numbers.
+//! Numbers of a file: integers of any size, floats of 32 and 64 bits, and booleans.
+//!
+//! Booleans are enumerations of two integers.
 
 use hdf5_reader::{
     ByteOrder, Datatype, H5Type, dtype_element_size,
     error::{Error, Result},
 };
 
-/// A number that was read.
+/// A number.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Number(pub(super) f64);
 
-/// Whether elements are numbers.
+/// Checks that elements are numbers.
 ///
 /// # Errors
-/// What they are in their place, in words behind a name.
+/// Description of other elements, to follow a name.
 pub(super) fn is_number(kind: &Datatype) -> std::result::Result<(), &'static str> {
     match kind {
         Datatype::FixedPoint { size: 1..=8, .. } => Ok(()),
@@ -65,7 +66,7 @@ impl H5Type for Number {
     }
 }
 
-/// A whole number of up to eight bytes.
+/// An integer of up to eight bytes.
 fn whole(bytes: &[u8], signed: bool, order: ByteOrder) -> Option<f64> {
     let mut eight = [0; 8];
     let count = bytes.len();
@@ -75,7 +76,7 @@ fn whole(bytes: &[u8], signed: bool, order: ByteOrder) -> Option<f64> {
         own.reverse();
     }
     let value = u64::from_le_bytes(eight);
-    // The sign stands in the highest bit of the bytes that there are.
+    // Sign extension from the highest bit of the stored bytes.
     let unused = 64 - 8 * u32::try_from(count).ok()?;
     Some(if signed && count > 0 {
         (value.cast_signed() << unused >> unused) as f64
@@ -84,7 +85,7 @@ fn whole(bytes: &[u8], signed: bool, order: ByteOrder) -> Option<f64> {
     })
 }
 
-/// A floating number of four or eight bytes.
+/// A float of four or eight bytes.
 fn floating(bytes: &[u8], order: ByteOrder) -> Option<f64> {
     let is_highest_first = order == ByteOrder::BigEndian;
     match bytes.len() {

@@ -1,4 +1,4 @@
-//! The rows of some columns, a block of a dataset at a time.
+//! Rows of some columns, read block by block.
 
 use hdf5_reader::{Dataset, SliceInfo, SliceInfoElem, error::Result};
 use overact::Code;
@@ -12,11 +12,11 @@ use crate::{
     error::{Error, Problem},
 };
 
-/// Samples that are read at a time, at least, and numbers, at most.
+/// Fewest samples and most numbers of a block.
 const BATCH: u64 = 4096;
 const LARGEST_BLOCK: u64 = 1 << 20;
 
-/// A column that is read: its dataset, its number in it, and its name for messages.
+/// A requested column: its dataset, its index in it, and its name for messages.
 #[derive(Debug)]
 pub(super) struct Wanted<'a> {
     pub(super) series: usize,
@@ -24,16 +24,16 @@ pub(super) struct Wanted<'a> {
     pub(super) name: &'a str,
 }
 
-/// The single number that a dataset is.
+/// The value of a scalar dataset.
 ///
 /// # Errors
-/// A number that can't be read.
+/// A number that cannot be read.
 pub(super) fn single(dataset: &Dataset) -> Result<Option<f64>> {
     let values = dataset.read_slice::<Number>(&SliceInfo::all(dataset.shape().len()))?;
     Ok(values.first().map(|own| own.0))
 }
 
-/// The rest of a file.
+/// The remaining rows of a file.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     /// The file as the caller named it, and its size.
@@ -42,28 +42,28 @@ pub(super) struct Rows<'a> {
     series: &'a [Series],
     wanted: Vec<Wanted<'a>>,
     blocks: Vec<Block>,
-    /// For each column its block.
+    /// Block of each column.
     of: Vec<usize>,
-    /// Number of samples that have been given out.
+    /// Number of samples returned so far.
     samples: u64,
     is_broken: bool,
 }
 
-/// Some samples of those columns of a dataset that lie between the first and the last that is wanted.
+/// Some samples of a dataset, from the first to the last requested column.
 #[derive(Debug)]
 struct Block {
     series: usize,
     from: usize,
     to: usize,
-    /// The first sample, and behind the last one.
+    /// First sample, and end.
     start: u64,
     end: u64,
-    /// Numbers as the file has them.
+    /// Values in the order of the file.
     values: Vec<Number>,
 }
 
 impl<'a> Rows<'a> {
-    /// Goes to the first row.
+    /// Starts at the first row.
     pub(super) fn new(
         (file, size): (&'a str, u64),
         series: &'a [Series],
@@ -101,7 +101,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Reads the block of a dataset that begins with the next sample.
+    /// Reads the block of a dataset that starts with the next sample.
     fn fill(&mut self, number: usize) -> std::result::Result<(), Problem> {
         let block = &mut self.blocks[number];
         let series = &self.series[block.series];
@@ -123,7 +123,7 @@ impl Block {
     fn read(&mut self, series: &Series) -> Result<()> {
         let width = (self.to - self.from) as u64;
         let most = (LARGEST_BLOCK / width).max(1);
-        // Blocks of the file are unpacked whole; those that are large are read whole, so that this is done once.
+        // Large chunks of the file are read whole, so that each is unpacked only once.
         let own = series
             .dataset
             .chunks()
@@ -160,7 +160,7 @@ impl Block {
         }
     }
 
-    /// A number that has been read.
+    /// A number of the block.
     fn get(&self, series: &Series, sample: u64, part: usize) -> f64 {
         let (row, column) = ((sample - self.start) as usize, part - self.from);
         let place = if series.side == 0 {
@@ -214,7 +214,7 @@ impl StoredRows for Rows<'_> {
         self.is_broken
     }
 
-    // In the mean over the samples.
+    // Mean over the samples.
     fn bytes(&self) -> u64 {
         let count = self
             .wanted

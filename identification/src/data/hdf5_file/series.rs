@@ -1,4 +1,4 @@
-//! Datasets as vectors of samples: which side of a matrix is the time, and how its columns are called.
+//! Datasets as vectors of samples: time dimension of a matrix, and names of its columns.
 
 use hdf5_reader::Dataset;
 use overact::Code;
@@ -8,20 +8,20 @@ use crate::{data::problems::legible, error::Problem};
 
 /// A dataset: a vector, or a matrix whose columns or rows are vectors.
 pub(super) struct Series {
-    /// Its path with points between the names, as fields of a structure are called.
+    /// Path, joined by points like fields of a structure.
     pub(super) name: String,
     pub(super) dataset: Dataset,
-    /// What it holds in place of numbers, in words behind its name.
+    /// Description of elements that are not numbers, to follow the name.
     pub(super) unfit: Option<&'static str>,
-    /// The side along which samples follow one another, and their number.
+    /// Dimension along which samples run, and their number.
     pub(super) side: usize,
     pub(super) samples: u64,
-    /// Whether MATLAB or NumPy shows samples one below the other.
+    /// Whether MATLAB or NumPy shows samples as rows.
     is_down: bool,
-    /// Number of vectors, and that of the first among all columns.
+    /// Number of vectors, and index of the first one among all columns.
     pub(super) count: usize,
     pub(super) first: usize,
-    /// The name of the first of its vectors, if it is a matrix.
+    /// Name of the first vector of a matrix.
     pub(super) first_column: Option<String>,
 }
 
@@ -47,7 +47,7 @@ impl Series {
                 } else {
                     (outer, inner)
                 };
-                // Samples follow one another along the longer side.
+                // Samples run along the longer side.
                 let is_down = rows >= columns;
                 let side = usize::from(is_down == is_matlab);
                 (side, rows.max(columns), rows.min(columns), is_down)
@@ -75,7 +75,7 @@ impl Series {
         }
     }
 
-    /// The number of the vector that is meant by what stands behind the dataset's name.
+    /// Index of the vector selected by the text after the dataset's name.
     pub(super) fn part(&self, part: &str) -> Option<usize> {
         let number = |number: &str| {
             let number = number.parse::<usize>().ok()?.checked_sub(1)?;
@@ -96,7 +96,7 @@ impl Series {
     }
 }
 
-/// What is said of a file that can't be opened.
+/// The problem of a file that cannot be opened.
 pub(super) fn broken(file: &str, why: &str) -> Problem {
     let message = format!("the HDF5 file can't be read: {}", legible(why));
     Problem::new(Code::LOG_FORMAT, message)

@@ -1,4 +1,4 @@
-//! Chunks: records that are packed together, unpacked while they are read, whatever their size.
+//! Chunks: compressed records, unpacked while they are read, of any size.
 
 use std::{
     fmt,
@@ -11,20 +11,20 @@ use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 
 use super::{fields::Fields, section::Section};
 
-/// Bytes before a chunk's packing is named: two times, its size and its checksum.
+/// Bytes of a chunk before the name of its compression: two times, size and checksum.
 pub(super) const BEGINNING: usize = 28;
 
-/// What a chunk says of itself.
+/// Header of a chunk.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Said {
-    /// Bytes of its records when they are unpacked.
+    /// Unpacked size of its records.
     size: u64,
-    /// Their checksum; none where it was not computed.
+    /// Checksum of its records; `None` if it was not computed.
     sum: Option<u32>,
 }
 
 impl Said {
-    /// Reads it from the chunk's first bytes.
+    /// Reads the header from the chunk's first bytes.
     pub(super) fn of(beginning: &[u8; BEGINNING]) -> Option<Self> {
         let mut fields = Fields(&beginning[16..]);
         let size = fields.long()?;
@@ -36,18 +36,18 @@ impl Said {
     }
 }
 
-/// The records of a chunk that have not been read.
+/// The remaining records of a chunk.
 pub(super) struct Chunk {
     input: Unpacking,
-    /// Where it stands in the file, for messages.
+    /// Position in the file, for messages.
     pub(super) place: u64,
     said: Said,
-    /// Bytes that have been read.
+    /// Number of bytes read.
     position: u64,
     sum: Hasher,
 }
 
-/// How the bytes of a chunk are unpacked.
+/// Decompression of a chunk.
 enum Unpacking {
     None(BufReader<Section>),
     Lz4(Box<Lz4<BufReader<Section>>>),
@@ -61,10 +61,10 @@ impl fmt::Debug for Chunk {
 }
 
 impl Chunk {
-    /// Begins a chunk whose records are `input`, packed as `packing` says.
+    /// Starts a chunk whose records are `input`, with the compression `packing`.
     ///
     /// # Errors
-    /// A packing that is not read, or bytes that are not packed so.
+    /// An unsupported compression, or bytes that are not compressed so.
     pub(super) fn new(
         input: BufReader<Section>,
         packing: &str,
@@ -90,15 +90,15 @@ impl Chunk {
         })
     }
 
-    /// Bytes that have not been read.
+    /// Number of unread bytes.
     pub(super) const fn left(&self) -> u64 {
         self.said.size - self.position
     }
 
-    /// Reads as many bytes as `bytes` has.
+    /// Fills `bytes`.
     ///
     /// # Errors
-    /// Fewer bytes than the chunk says, or such that can't be unpacked.
+    /// Fewer bytes than stated, or bytes that cannot be unpacked.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> Result<(), String> {
         let count = bytes.len() as u64;
         if count > self.left() {
@@ -120,7 +120,7 @@ impl Chunk {
         Ok(())
     }
 
-    /// Passes over some bytes, which count in the checksum like all others.
+    /// Skips some bytes, which still count in the checksum.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -134,10 +134,10 @@ impl Chunk {
         Ok(())
     }
 
-    /// Checks the sum of all bytes, when they have been read.
+    /// Checks the checksum after all bytes have been read.
     ///
     /// # Errors
-    /// Another sum than the chunk says.
+    /// A wrong checksum.
     pub(super) fn check(&self) -> Result<(), String> {
         match self.said.sum {
             Some(sum) if sum != self.sum.clone().finalize() => Err(String::from(

@@ -1,6 +1,6 @@
-//! What records are made of: numbers, the lowest byte first, and texts and bytes with their lengths before them.
+//! Fields of records: little-endian numbers, and texts and bytes prefixed by their lengths.
 
-/// The rest of a record.
+/// The remaining fields of a record.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fields<'a>(pub(super) &'a [u8]);
 

@@ -1,10 +1,11 @@
-//! Messages `sensor_msgs/msg/JointState` as ROS 2 writes them, in the Common Data Representation: a header with
-//! its stamp, names of joints, and three lists of numbers, each of which may be empty.
+//! Messages `sensor_msgs/msg/JointState` of ROS 2 in the Common Data Representation.
+//!
+//! A message has a header with a stamp, joint names, and three lists of numbers, possibly empty.
 
 /// A message.
 #[derive(Debug)]
 pub(super) struct JointState<'a> {
-    /// When it was measured: s, and ns after that.
+    /// Time of measurement: s, and ns after that.
     pub(super) stamp: (i32, u32),
     pub(super) names: Vec<&'a str>,
     /// Positions, velocities, efforts.
@@ -18,7 +19,7 @@ pub(super) struct Numbers<'a> {
     order: Order,
 }
 
-/// Which byte of a number comes first.
+/// Byte order of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Order {
     Highest,
@@ -43,7 +44,7 @@ impl<'a> JointState<'a> {
     /// Reads a message.
     ///
     /// # Errors
-    /// What is wrong with it, in words behind `it`.
+    /// A description of the defect, to follow `it`.
     pub(super) fn read(message: &'a [u8]) -> Result<Self, String> {
         let (start, rest) = message
             .split_at_checked(4)
@@ -70,7 +71,7 @@ impl<'a> JointState<'a> {
         );
         fields.text()?;
         let count = fields.word().ok_or_else(cut_off)? as usize;
-        // Each name takes four bytes at least.
+        // Each name needs at least four bytes.
         let most = fields.bytes.len() / 4;
         let mut names = Vec::with_capacity(count.min(most));
         for _ in 0..count {
@@ -86,7 +87,7 @@ impl<'a> JointState<'a> {
     }
 }
 
-/// The rest of a message.
+/// The remaining fields of a message.
 struct Fields<'a> {
     bytes: &'a [u8],
     place: usize,
@@ -94,7 +95,7 @@ struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The next bytes, which stand at a multiple of `align` bytes.
+    /// The next bytes, aligned to a multiple of `align` bytes.
     fn take(&mut self, align: usize, count: usize) -> Option<&'a [u8]> {
         let start = self.place.next_multiple_of(align);
         let end = start.checked_add(count)?;
@@ -111,7 +112,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// A text, which ends with a byte of zeros that its length counts.
+    /// A text, whose length includes the terminating zero byte.
     fn text(&mut self) -> Result<&'a str, String> {
         let bytes = self.word().and_then(|count| self.take(1, count as usize));
         let bytes = bytes.ok_or("is cut off, or no JointState")?;
@@ -137,7 +138,7 @@ impl<'a> Fields<'a> {
 mod tests {
     use super::JointState;
 
-    /// A message of two joints without velocities, whose numbers have their highest byte first.
+    /// A big-endian message of two joints without velocities.
     fn message() -> Vec<u8> {
         let mut bytes = vec![0, 0, 0, 0];
         // 7 s and 500 ns, a frame without a name, two joints.
@@ -145,7 +146,7 @@ mod tests {
             bytes.extend(value.to_be_bytes());
         }
         bytes.extend([0, 0, 0, 2, b'a', 0, 0, 0, 0, 0, 0, 2, b'b', 0, 0, 0]);
-        // Two numbers, which stand at a multiple of eight bytes.
+        // Two numbers, aligned to eight bytes.
         bytes.extend([0, 0, 0, 2, 0, 0, 0, 0]);
         bytes.extend(0.5_f64.to_be_bytes());
         bytes.extend((-3.0_f64).to_be_bytes());

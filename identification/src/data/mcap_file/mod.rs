@@ -1,8 +1,8 @@
-//! MCAP, as ROS 2 records it: topics of `sensor_msgs/msg/JointState` in CDR, read message by message, so that a large
-//! file stays on the disk.
+//! MCAP files of ROS 2: topics of `sensor_msgs/msg/JointState` in CDR.
 //!
-//! Every topic is a table of its own, as if it were a file: `position.JOINT`, `velocity.JOINT`, `effort.JOINT`, the
-//! time `time` at which a state was measured (the stamp of its header) and `log_time`, when it was recorded.
+//! They are read message by message, so large files stay on disk. Each topic is a table like a
+//! file. Its columns are `position.JOINT`, `velocity.JOINT`, `effort.JOINT`, the time of
+//! measurement `time` (the stamp of the header), and the time of recording `log_time`.
 
 mod chunk;
 mod fields;
@@ -27,13 +27,13 @@ use super::{
 };
 use crate::error::{Error, Problem};
 
-/// Topics that are listed in a message, at most.
+/// Largest number of topics listed in a message.
 const MOST_TOPICS: usize = 12;
 
 /// Opens the topics of a file.
 ///
 /// # Errors
-/// A file that can't be read or is broken, or that has no topic with states of joints.
+/// A file that cannot be read or is broken, or has no topic with joint states.
 pub(super) fn open(file: &str, path: &Path) -> Result<Vec<Topic>, Error> {
     let input = File::open(path).map_err(|error| unreadable(file, &error))?;
     let length = input
@@ -82,7 +82,7 @@ impl Stored for Topic {
         true
     }
 
-    // Joints stand in any order: nobody would know which number is whose.
+    // Joints have no fixed order, so columns cannot be numbered.
     fn columns(&self) -> usize {
         0
     }
@@ -132,7 +132,7 @@ impl Stored for Topic {
     }
 }
 
-/// What is said of a file without a topic that is read.
+/// The problem of a file without a supported topic.
 fn without_joints(file: &str, topics: &Topics) -> Problem {
     let told = topics.told();
     let more = told.len().saturating_sub(MOST_TOPICS);

@@ -1,9 +1,8 @@
-//! The records of a file one after the other, those within chunks as well: what topics there are, and the
-//! messages of one of them.
+//! Records of a file in sequence, including those in chunks: topics and messages.
 //!
-//! Records are a kind, a length and so many bytes. They are read here and not by the library `mcap`: it keeps
-//! every record whole, and thus a camera's picture and a chunk that its writer made large, and its ways of
-//! unpacking take two libraries in C.
+//! A record has a kind, a length and its bytes. The library `mcap` is not used for two reasons. It
+//! keeps every record in memory, such as camera images and large chunks. Its decompression needs
+//! two C libraries.
 
 use std::{
     fs::File,
@@ -18,7 +17,7 @@ use super::{
 };
 use crate::data::problems::legible;
 
-/// What every file starts and ends with.
+/// Magic bytes at the start and the end of every file.
 pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// Kinds of records.
@@ -29,27 +28,27 @@ pub(super) const MESSAGE: u8 = 5;
 const CHUNK: u8 = 6;
 const DATA_END: u8 = 15;
 
-/// Bytes before the content of a record: its kind and its length.
+/// Bytes of a record's header: its kind and its length.
 const HEADER: u64 = 9;
 
-/// Bytes before a message's content: channel, number and two times.
+/// Bytes of a message's header: channel, number and two times.
 const MESSAGE_HEADER: u64 = 22;
 
-/// Bytes of a record that is kept, at most: a state of some ten thousand joints, a long definition of a message.
+/// Largest record kept: some ten thousand joints, or a long message definition.
 const LARGEST: u64 = 1 << 22;
 
-/// Bytes of the name of a packing, at most.
+/// Largest length of a compression name.
 const LONGEST_PACKING: u32 = 64;
 
 /// A record that has been read.
 pub(super) enum Record {
     Schema,
     Channel,
-    /// A message on a channel and when it was recorded, ns; its content only where the channel is wanted.
+    /// Channel and recording time (ns) of a message; its content only for requested channels.
     Message(u16, u64),
 }
 
-/// The rest of a file's records.
+/// The remaining records of a file.
 #[derive(Debug)]
 pub(super) struct Records {
     file: Arc<File>,
@@ -60,7 +59,7 @@ pub(super) struct Records {
 }
 
 impl Records {
-    /// The records from `start` up to `end`.
+    /// Records from `start` to `end`.
     pub(super) fn new(file: &Arc<File>, start: u64, end: u64) -> Self {
         Self {
             file: Arc::clone(file),
@@ -71,16 +70,17 @@ impl Records {
         }
     }
 
-    /// Bytes of the file that have been read.
+    /// Number of bytes of the file read so far.
     pub(super) const fn position(&self) -> u64 {
         self.position
     }
 
-    /// Goes to the next schema, channel or message, and puts its content into `content`, that of a message if
-    /// `wants` has its channel; none at the end.
+    /// Reads the next schema, channel or message; `None` at the end.
+    ///
+    /// Its content is written to `content`, that of a message only if `wants` accepts its channel.
     ///
     /// # Errors
-    /// What is wrong with the file, in words that say where.
+    /// A description of the defect and its position.
     pub(super) fn next(
         &mut self,
         content: &mut Vec<u8>,
@@ -162,7 +162,7 @@ impl Records {
         Ok(Outside::Other)
     }
 
-    /// Begins a chunk of so many bytes, and passes over it outside.
+    /// Starts a chunk of `length` bytes, and skips it in the file.
     fn begin(&mut self, place: u64, length: u64) -> Result<Chunk, String> {
         let cut_off = || String::from("it is cut off");
         let end = self.position + length;
@@ -204,13 +204,13 @@ impl Records {
         Ok(())
     }
 
-    /// Keeps the next bytes.
+    /// Reads the next bytes into `content`.
     fn keep(&mut self, length: u64, content: &mut Vec<u8>) -> Result<(), String> {
         content.resize(kept(length)?, 0);
         self.read(content)
     }
 
-    /// Passes over the next bytes, which are within the file.
+    /// Skips the next bytes, which are within the file.
     fn pass(&mut self, length: u64) -> Result<(), String> {
         let step = i64::try_from(length).map_err(|error| error.to_string())?;
         let passed = self.input.seek_relative(step);
@@ -220,14 +220,14 @@ impl Records {
     }
 }
 
-/// What stands outside of chunks.
+/// A record outside of chunks.
 enum Outside {
     Record(Record),
     Other,
     End,
 }
 
-/// Reads the next record of a chunk; none where it is of a kind that is not asked for.
+/// Reads the next record of a chunk; `None` if its kind is not requested.
 fn inside(
     chunk: &mut Chunk,
     content: &mut Vec<u8>,
@@ -267,7 +267,7 @@ fn kind_and_length(header: [u8; HEADER as usize]) -> (u8, u64) {
     (kind, u64::from_le_bytes(length))
 }
 
-/// The channel of a message and the time at which it was recorded.
+/// Channel and recording time of a message.
 fn channel_and_time(header: &[u8]) -> (u16, u64) {
     let mut fields = Fields(header);
     let channel = fields.short().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The messages of a topic as rows of numbers, one message at a time.
+//! Messages of a topic as rows of numbers, one message at a time.
 
 use overact::Code;
 use std::{fs::File, sync::Arc};
@@ -16,29 +16,29 @@ use crate::{
     error::{Error, Problem},
 };
 
-/// A column that is read, with its name for messages.
+/// A requested column, with its name for messages.
 #[derive(Debug)]
 pub(super) struct Wanted<'a> {
     pub(super) source: Source,
     pub(super) name: &'a str,
 }
 
-/// The rest of a topic.
+/// The remaining rows of a topic.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     topic: &'a Topic,
     records: Records,
     wanted: Vec<Wanted<'a>>,
     content: Vec<u8>,
-    /// The times of the last message, as far as they are asked for.
+    /// Times of the last message, if they are requested.
     last: [Option<f64>; 2],
-    /// Number of messages that have been given out.
+    /// Number of messages returned so far.
     samples: usize,
     is_broken: bool,
 }
 
 impl<'a> Rows<'a> {
-    /// Goes to the first message of a topic whose file has so many bytes.
+    /// Starts at the first message of a topic; `length` is the size of its file.
     pub(super) fn new(
         topic: &'a Topic,
         (file, length): (File, u64),
@@ -55,7 +55,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Goes to the next message and tells when it was recorded, ns; none at the end.
+    /// Reads the next message and returns its recording time, ns; `None` at the end.
     fn advance(&mut self) -> Result<Option<u64>, Problem> {
         let channels = &self.topic.channels;
         let wants = |channel| channels.contains(&channel);
@@ -69,7 +69,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Puts the numbers of a message into `values`.
+    /// Writes the numbers of a message to `values`.
     fn take(&mut self, recorded: u64, values: &mut [f64]) -> Result<(), Error> {
         let topic = self.topic;
         let problem = |what: String| {
@@ -156,7 +156,7 @@ impl StoredRows for Rows<'_> {
         self.is_broken
     }
 
-    // Each topic goes through the whole file.
+    // Each topic reads the whole file.
     fn bytes(&self) -> u64 {
         self.records.position() / self.topic.parts
     }
@@ -164,11 +164,11 @@ impl StoredRows for Rows<'_> {
 
 /// A time in seconds from an origin.
 fn seconds(whole: i64, nanos: u32, origin: i64) -> f64 {
-    // Rounded once.
+    // A single rounding.
     (i128::from(whole - origin) * 1_000_000_000 + i128::from(nanos)) as f64 / 1e9
 }
 
-/// What is said of a message with other joints than the first one.
+/// The problem of a message with other joints than the first one.
 fn other_joints(problem: impl Fn(String) -> Problem, first: &[String], own: &[&str]) -> Problem {
     let mut sorted: Vec<&str> = first.iter().map(String::as_str).collect();
     let mut others = own.to_vec();

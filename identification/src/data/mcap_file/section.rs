@@ -1,4 +1,4 @@
-//! A part of a file that is read by itself: records stand in chunks, and chunks in the file.
+//! A section of a file as a reader of its own, for records in chunks and chunks in the file.
 
 use std::{
     fs::File,
@@ -6,10 +6,10 @@ use std::{
     sync::Arc,
 };
 
-/// Bytes that are read at a time.
+/// Buffer size in bytes.
 const BUFFER: usize = 1 << 16;
 
-/// Some bytes of a file, from a place up to an end.
+/// Bytes of a file, from a position to an end.
 #[derive(Debug)]
 pub(super) struct Section {
     file: Arc<File>,
@@ -18,7 +18,7 @@ pub(super) struct Section {
 }
 
 impl Section {
-    /// The bytes from `start` up to `end`, read through a buffer.
+    /// A buffered reader of the bytes from `start` to `end`.
     pub(super) fn buffered(file: &Arc<File>, start: u64, end: u64) -> BufReader<Self> {
         let section = Self {
             file: Arc::clone(file),
@@ -33,7 +33,7 @@ impl Read for Section {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
         let left = self.end.saturating_sub(self.position);
         let most = usize::try_from(left).map_or(buffer.len(), |left| left.min(buffer.len()));
-        // Several sections share the file, and with it the place at which it is read.
+        // Sections share the file and thus its read position.
         let mut file = &*self.file;
         file.seek(SeekFrom::Start(self.position))?;
         let count = file.read(&mut buffer[..most])?;

@@ -1,4 +1,4 @@
-//! A topic as a table: its columns by the joints of its first message.
+//! A topic as a table, with the joints of its first message as columns.
 
 use overact::Code;
 use std::path::{Path, PathBuf};
@@ -9,10 +9,10 @@ use crate::{
     error::Problem,
 };
 
-/// What a list of a message is called in the name of a column.
+/// Names of the lists of a message in column names.
 pub(super) const LISTS: [&str; 3] = ["position", "velocity", "effort"];
 
-/// Times of recorder and drivers that are further apart, s, are those of different clocks.
+/// Recorder and driver times that differ by more than this (s) have different clocks.
 const SAME_CLOCK: i64 = 86_400;
 
 /// A topic of a file.
@@ -25,10 +25,10 @@ pub(in crate::data) struct Topic {
     pub(super) channels: Vec<u16>,
     pub(super) joints: Vec<String>,
     pub(super) columns: Vec<Column>,
-    /// What stamps, and what times of the recorder, are counted from, s since 1970.
+    /// Origins of stamps and of recording times, s since 1970.
     pub(super) origin: i64,
     pub(super) recorded_from: i64,
-    /// Number of topics of the file that can be read.
+    /// Number of supported topics in the file.
     pub(super) parts: u64,
 }
 
@@ -36,22 +36,22 @@ pub(in crate::data) struct Topic {
 #[derive(Debug)]
 pub(super) struct Column {
     pub(super) name: String,
-    /// The name behind that of the topic.
+    /// The name prefixed by the topic.
     pub(super) full: String,
     pub(super) source: Source,
 }
 
-/// Where a number of a message stands.
+/// Position of a number in a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
     Stamp,
     Recorded,
-    /// A list, and a joint's place in it.
+    /// A list, and the index of a joint in it.
     Joint(usize, usize),
 }
 
 impl Topic {
-    /// A topic with the joints of its first message; none where no message came.
+    /// A topic with the joints of its first message; `None` without a message.
     pub(super) fn new(file: &str, path: &Path, found: Found) -> Result<Option<Self>, Problem> {
         let Some((recorded, content)) = found.first else {
             return Ok(None);
@@ -65,7 +65,7 @@ impl Topic {
             Problem::new(Code::LOG_FORMAT, message).file(file)
         })?;
         let joints: Vec<String> = match &state.names[..] {
-            // Joints without names are called by their numbers.
+            // Joints without names are numbered.
             [] => (1..=state.lists[0].len()).map(|k| k.to_string()).collect(),
             names => names.iter().copied().map(String::from).collect(),
         };
@@ -105,7 +105,7 @@ impl Topic {
     }
 }
 
-/// What is said of a file that can't be read.
+/// The problem of a file that cannot be read.
 pub(super) fn broken(file: &str, why: &str) -> Problem {
     let message = format!(
         "the file starts as MCAP does, but can't be read: {}",

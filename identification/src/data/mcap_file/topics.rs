@@ -1,4 +1,4 @@
-//! What topics a file has, and the first message of each that can be read.
+//! Topics of a file, and the first message of each supported one.
 
 use std::{
     collections::BTreeMap,
@@ -12,35 +12,35 @@ use super::{
     records::{FOOTER, MAGIC, Record, Records},
 };
 
-/// The type of the messages that are read, and how they are written.
+/// Supported message type and encoding.
 const TYPE: &str = "sensor_msgs/msg/JointState";
 const ENCODING: &str = "cdr";
 
-/// Bytes of the last record and of what stands behind it.
+/// Bytes of the last record and of the magic bytes after it.
 const END: u64 = 29 + 8;
 
-/// A topic as the channels of a file tell of it.
+/// A topic, collected from the channels of a file.
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) topic: String,
     pub(super) channels: Vec<u16>,
-    /// When the first message was recorded, ns, and its content; none where no message came.
+    /// Recording time (ns) and content of the first message; `None` without a message.
     pub(super) first: Option<(u64, Vec<u8>)>,
 }
 
-/// The topics of a file.
+/// Topics of a file.
 #[derive(Debug, Default)]
 pub(super) struct Topics {
     schemas: BTreeMap<u16, String>,
-    /// Of each channel its topic, the number of its schema and how its messages are written.
+    /// For each channel its topic, its schema and its message encoding.
     channels: BTreeMap<u16, (String, u16, String)>,
 }
 
 impl Topics {
-    /// Finds the topics whose messages are read.
+    /// Finds the supported topics.
     ///
     /// # Errors
-    /// What is wrong with the file, in words that say where.
+    /// A description of the defect and its position.
     pub(super) fn find(file: &Arc<File>, length: u64) -> Result<(Self, Vec<Found>), String> {
         let mut topics = Self::default();
         let summary = summary(file, length)?;
@@ -51,7 +51,7 @@ impl Topics {
                 topics.note(&record, &content);
             }
         }
-        // Without a summary nobody knows what comes later in the file.
+        // Without a summary, later parts of the file may have more channels.
         let is_complete = !topics.channels.is_empty();
         let mut firsts: BTreeMap<u16, (u64, Vec<u8>)> = BTreeMap::new();
         let mut records = Records::new(file, MAGIC.len() as u64, length - END);
@@ -79,7 +79,7 @@ impl Topics {
                     channels: vec![channel],
                     first,
                 }),
-                // Several publishers on one topic.
+                // A topic may have several publishers.
                 Some(own) => {
                     own.channels.push(channel);
                     let time = |first: &Option<(u64, Vec<u8>)>| {
@@ -94,7 +94,7 @@ impl Topics {
         Ok((topics, found))
     }
 
-    /// Takes in a schema or a channel.
+    /// Registers a schema or a channel.
     fn note(&mut self, record: &Record, content: &[u8]) {
         let mut fields = Fields(content);
         match record {
@@ -123,13 +123,13 @@ impl Topics {
             })
     }
 
-    /// The channels whose messages are read, with their topics.
+    /// Channels of supported messages, with their topics.
     fn joints(&self) -> impl Iterator<Item = (u16, &str)> {
         let channels = self.channels.iter().filter(|(id, _)| self.is_joints(**id));
         channels.map(|(id, (topic, ..))| (*id, topic.as_str()))
     }
 
-    /// What topics there are, each with the type of its messages and how they are written.
+    /// All topics, with their message type and encoding.
     pub(super) fn told(&self) -> Vec<String> {
         let channels = self.channels.values();
         let told = channels.map(|(topic, schema, encoding)| {
@@ -143,10 +143,10 @@ impl Topics {
     }
 }
 
-/// Where the summary of a file starts, if it has one.
+/// Start of the summary of a file, if it has one.
 ///
 /// # Errors
-/// A file that does not end as it should.
+/// A file with an invalid end.
 fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
     let cut_off = || String::from("it is cut off: its end is missing");
     let start = length.checked_sub(END).ok_or_else(cut_off)?;

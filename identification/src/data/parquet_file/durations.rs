@@ -1,25 +1,25 @@
-//! Durations: Parquet has no type for them. Writers that stand on Arrow (PyArrow, pandas, Polars) store whole
-//! numbers, and the unit in Arrow's own schema, which they add to the file as text.
+//! Durations, for which Parquet has no type.
 //!
-//! The text is in base64 and holds one message of Arrow, a FlatBuffer: tables whose fields stand where a small
-//! table of places before them says. Only the way to the durations is followed here.
+//! Writers based on Arrow (PyArrow, pandas, Polars) store integers, and the unit in Arrow's own
+//! schema, which they add to the file as text. The text is base64 of one Arrow message, a
+//! FlatBuffer. Its tables locate their fields by an offset table. Only the path to durations is
+//! parsed.
 
-/// The key under which the schema stands in a file.
+/// Key of the schema in a file.
 pub(super) const KEY: &str = "ARROW:schema";
 
 /// Arrow's number for the type of durations.
 const DURATION: u8 = 18;
 
-/// The columns of an Arrow schema that are durations, with how many of their units make a second; none where
-/// the schema can't be read.
+/// Duration columns of an Arrow schema with units per second; empty if it cannot be parsed.
 pub(super) fn durations(schema: &str) -> Vec<(String, i64)> {
     let found = decode(schema).and_then(|bytes| find(&bytes));
     found.unwrap_or_default()
 }
 
-/// Goes through the columns of a schema.
+/// Parses the columns of a schema.
 fn find(bytes: &[u8]) -> Option<Vec<(String, i64)>> {
-    // A mark of four bytes, which old writers leave out, and the message's length come first.
+    // A marker of four bytes, absent in old files, then the message's length.
     let start = if number(bytes, 0, 4)? == 0xffff_ffff {
         8
     } else {
@@ -37,7 +37,7 @@ fn find(bytes: &[u8]) -> Option<Vec<(String, i64)>> {
         if kind != Some(&DURATION) {
             continue;
         }
-        // Milliseconds are not written, since the format takes them for granted.
+        // Milliseconds are the default and not stored.
         let unit = match column.table(3)?.place(0) {
             Some(place) => message.number(place, 2)?,
             None => 1,
@@ -48,7 +48,7 @@ fn find(bytes: &[u8]) -> Option<Vec<(String, i64)>> {
     Some(found)
 }
 
-/// A number of some bytes, the lowest first.
+/// A little-endian number.
 fn number(bytes: &[u8], place: usize, size: usize) -> Option<usize> {
     let bytes = bytes.get(place..place.checked_add(size)?)?;
     let digits = bytes.iter().rev();
@@ -62,7 +62,7 @@ struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// The table to which the bytes at `place` point.
+    /// The table that the offset at `place` refers to.
     fn at(bytes: &'a [u8], place: usize) -> Option<Self> {
         let start = place.checked_add(number(bytes, place, 4)?)?;
         Some(Self { bytes, start })
@@ -72,7 +72,7 @@ impl<'a> Table<'a> {
         number(self.bytes, place, size)
     }
 
-    /// Where a field stands, unless it was left out.
+    /// Position of a field, unless it is absent.
     fn place(&self, field: usize) -> Option<usize> {
         let back = u32::try_from(self.number(self.start, 4)?).ok()?;
         let back = isize::try_from(back.cast_signed()).ok()?;
@@ -85,12 +85,12 @@ impl<'a> Table<'a> {
         (offset > 0).then_some(self.start + offset)
     }
 
-    /// The table that a field is.
+    /// The table in a field.
     fn table(&self, field: usize) -> Option<Self> {
         Self::at(self.bytes, self.place(field)?)
     }
 
-    /// The text that a field is.
+    /// The text in a field.
     fn text(&self, field: usize) -> Option<String> {
         let place = self.place(field)?;
         let place = place.checked_add(self.number(place, 4)?)?;
@@ -100,7 +100,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The bytes of a text in base64.
+/// Decodes base64.
 fn decode(text: &str) -> Option<Vec<u8>> {
     let (mut bytes, mut bits, mut count) = (Vec::new(), 0_u32, 0);
     for letter in text.bytes().filter(|letter| *letter != b'=') {

@@ -1,34 +1,36 @@
-//! What the values of a column mean: numbers as they are, times in some unit, or nothing that is a number.
+//! Meaning of a column's values: numbers, times in some unit, or unsupported.
 
 use parquet::{
     basic::{ConvertedType, LogicalType, TimeUnit, Type},
     schema::types::ColumnDescriptor,
 };
 
-/// How the values of a column become numbers in SI units.
+/// Conversion of a column's values to numbers in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// As they are.
+    /// Numbers without conversion.
     Number,
-    /// Whole numbers of which none is negative: their highest bit is no sign.
+    /// Unsigned integers.
     Unsigned,
-    /// Whole numbers of which so many make one: durations, decimals.
+    /// Integers with this number of units per one: durations, decimals.
     Parts(i64),
-    /// Times of which so many make a second, counted from 1970. Seconds are told from a later origin, since
-    /// doubles that count from 1970 are too coarse for a sampling of some kHz.
+    /// Times with this number of units per second, counted from 1970.
+    ///
+    /// They are converted to seconds from a later origin, since a double from 1970 is too coarse
+    /// for sampling at some kHz.
     Instant(i64),
 }
 
 impl Kind {
-    /// What the values of a column are.
+    /// Conversion of a column.
     ///
     /// # Errors
-    /// What they are where they are no numbers, in words behind the column's name.
+    /// Description of values that are no numbers, to follow the column's name.
     pub(super) fn of(column: &ColumnDescriptor) -> Result<Self, String> {
         match column.physical_type() {
             Type::DOUBLE | Type::FLOAT | Type::BOOLEAN => Ok(Self::Number),
             Type::INT32 | Type::INT64 => Self::whole(column),
-            // Nanoseconds after the conversion; the type has no other use.
+            // Nanoseconds after conversion; the type has no other use.
             Type::INT96 => Ok(Self::Instant(1_000_000_000)),
             Type::BYTE_ARRAY => Err(String::from("holds texts or bytes, not numbers")),
             Type::FIXED_LEN_BYTE_ARRAY => Err(match column.logical_type_ref() {
@@ -43,7 +45,7 @@ impl Kind {
         }
     }
 
-    /// What whole numbers stand for.
+    /// Meaning of integers.
     fn whole(column: &ColumnDescriptor) -> Result<Self, String> {
         let decimal = |scale: i32| {
             let scale = u32::try_from(scale).ok();
@@ -60,7 +62,7 @@ impl Kind {
             Some(LogicalType::Integer(kind)) if !kind.is_signed => return Ok(Self::Unsigned),
             _ => {}
         }
-        // What files of the first version say in place of it.
+        // Equivalent in files of the first version.
         match column.converted_type() {
             ConvertedType::TIMESTAMP_MILLIS => Ok(Self::Instant(1000)),
             ConvertedType::TIMESTAMP_MICROS => Ok(Self::Instant(1_000_000)),
@@ -76,7 +78,7 @@ impl Kind {
         }
     }
 
-    /// A value of 64 bits; instants are told in seconds from `origin`, s since 1970.
+    /// Converts a 64-bit value; instants become seconds from `origin`, s since 1970.
     pub(super) fn long(self, value: i64, origin: i64) -> f64 {
         match self {
             Self::Number => value as f64,
@@ -89,7 +91,7 @@ impl Kind {
         }
     }
 
-    /// A value of 32 bits.
+    /// Converts a 32-bit value.
     pub(super) fn short(self, value: i32, origin: i64) -> f64 {
         match self {
             Self::Unsigned => f64::from(value.cast_unsigned()),

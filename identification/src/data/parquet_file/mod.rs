@@ -1,8 +1,8 @@
-//! Parquet, as PyArrow, pandas, Polars, DuckDB and Spark write it: columns by name, read a few thousand rows at a
-//! time, so that a large file stays on the disk.
+//! Parquet files of PyArrow, pandas, Polars, DuckDB and Spark.
 //!
-//! Columns of numbers, of true and false, of times and of durations are read; texts, dates and nested columns
-//! are refused when they are asked for, and may stand beside the others.
+//! Columns are named and read some thousand rows at a time, so large files stay on disk. Numbers,
+//! booleans, times and durations are supported. Text, dates and nested columns are rejected only if
+//! they are requested.
 
 mod durations;
 mod kind;
@@ -33,7 +33,7 @@ use super::{
 };
 use crate::error::{Error, Problem};
 
-/// A Parquet file and what its columns are.
+/// A Parquet file and its columns.
 #[derive(Debug, Clone)]
 pub(super) struct Parquet {
     /// The file as the caller named it.
@@ -41,17 +41,17 @@ pub(super) struct Parquet {
     medium: Medium,
     metadata: Arc<ParquetMetaData>,
     columns: Vec<Column>,
-    /// What instants are counted from, s since 1970; none where there are no instants.
+    /// Origin of instants, s since 1970; `None` without instants.
     origin: Option<i64>,
 }
 
-/// A column at the top of the schema.
+/// A top-level column of the schema.
 #[derive(Debug, Clone, PartialEq)]
 struct Column {
     name: String,
-    /// Its place among all columns, those within nested ones counted singly.
+    /// Index among all leaf columns, including nested ones.
     leaf: usize,
-    /// What its values are, or what they are in place of numbers.
+    /// Conversion of its values, or a description of unsupported ones.
     kind: Result<Kind, String>,
 }
 
@@ -59,7 +59,7 @@ impl Parquet {
     /// Opens a file.
     ///
     /// # Errors
-    /// A file that can't be read, or that is cut off or broken.
+    /// A file that cannot be read, is cut off or broken.
     pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
         let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let metadata = ParquetMetaDataReader::new().parse_and_finish(&input);
@@ -76,12 +76,12 @@ impl Parquet {
         Ok(opened)
     }
 
-    /// The whole second in which the first instant of the file is; none where it has none.
+    /// Whole second of the first instant of the file; `None` without instants.
     fn beginning(&self) -> Option<i64> {
         let mut places = self.columns.iter();
         let place = places.position(|column| matches!(column.kind, Ok(Kind::Instant(_))))?;
         let mut first = [0.0];
-        // What is wrong with the column is told to who asks for it.
+        // Errors in the column are reported when it is requested.
         let found = self
             .rows(&[(place, "")])
             .and_then(|mut rows| rows.next(&mut first));
@@ -156,7 +156,7 @@ impl Stored for Parquet {
     }
 }
 
-/// The columns at the top of a schema.
+/// Top-level columns of a schema.
 fn columns(metadata: &FileMetaData) -> Vec<Column> {
     let stored = metadata.key_value_metadata().into_iter().flatten();
     let arrow = stored.filter(|pair| pair.key == durations::KEY);
@@ -190,7 +190,7 @@ fn columns(metadata: &FileMetaData) -> Vec<Column> {
     columns
 }
 
-/// What is said of a file that can't be opened.
+/// The problem of a file that cannot be opened.
 fn broken(file: &str, why: &str) -> Problem {
     let message = format!(
         "the file starts as Parquet does, but can't be read: {}",

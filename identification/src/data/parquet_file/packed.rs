@@ -1,5 +1,7 @@
-//! Pages that are packed by gzip or Zstandard. They are unpacked here and not by the library, whose Zstandard takes
-//! a C compiler and as long to build as the library itself, and whose gzip would be the second one of overact.
+//! Pages compressed by gzip or Zstandard.
+//!
+//! They are unpacked here instead of by the library. Its Zstandard needs a C compiler and doubles
+//! the build time. Its gzip would be a second implementation in overact.
 
 use std::io::Read;
 
@@ -12,26 +14,26 @@ use parquet::{
 };
 use ruzstd::decoding::StreamingDecoder;
 
-/// Bytes of a page when it is unpacked, at most; usual ones have a megabyte.
+/// Largest unpacked size of a page; usual ones have a megabyte.
 const LARGEST_PAGE: u64 = 1 << 27;
 
-/// How the pages of a column are packed, where the library does not unpack them.
+/// Compression of a column's pages that the library does not unpack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Method {
     Gzip,
     Zstandard,
 }
 
-/// The packing of a column's pages.
+/// Compression of a column's pages.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Packing {
     method: Method,
-    /// Bytes of the whole column when it is unpacked, or of the largest page that is unpacked.
+    /// Largest unpacked size: that of the column, limited by that of a page.
     most: u64,
 }
 
 impl Packing {
-    /// The packing of a column; none where the library undoes it, or there is none.
+    /// Compression of a column; `None` if the library unpacks it, or it is uncompressed.
     pub(super) fn of(chunk: &ColumnChunkMetaData) -> Option<Self> {
         let method = match chunk.compression() {
             Compression::GZIP(_) => Method::Gzip,
@@ -43,10 +45,10 @@ impl Packing {
         Some(Self { method, most })
     }
 
-    /// Unpacks a page that was read as if it were not packed.
+    /// Unpacks a page that was read as uncompressed.
     ///
     /// # Errors
-    /// Bytes that can't be unpacked, or that become more than the file says.
+    /// Bytes that cannot be unpacked, or that exceed the size in the file.
     pub(super) fn unpack(self, page: &mut Page) -> Result<()> {
         let (bytes, levels) = match page {
             Page::DataPage { buf, .. } | Page::DictionaryPage { buf, .. } => (buf, 0),
@@ -64,7 +66,7 @@ impl Packing {
                 def_levels_byte_len.saturating_add(*rep_levels_byte_len),
             ),
         };
-        // In a page of the second version the levels, which tell where values are missing, are never packed.
+        // Pages of version 2 never compress their levels, which mark missing values.
         let split = bytes.split_at_checked(levels as usize);
         let unpacked = split
             .ok_or_else(|| String::from("a page is cut off"))
@@ -73,11 +75,11 @@ impl Packing {
         Ok(())
     }
 
-    /// A page's beginning, which is not packed, and behind it what is.
+    /// Returns the uncompressed start of a page, followed by the unpacked rest.
     fn unpacked(self, beginning: &[u8], mut packed: &[u8]) -> Result<Vec<u8>, String> {
         let mut page = beginning.to_vec();
         let most = self.most + 1;
-        // A page without values may have no bytes, and one may have been packed piece by piece.
+        // A page without values may be empty, and a page may consist of several streams.
         while !packed.is_empty() {
             match self.method {
                 Method::Gzip => {
@@ -98,7 +100,7 @@ impl Packing {
     }
 }
 
-/// Unpacks a frame of Zstandard.
+/// Unpacks a Zstandard frame.
 fn zstandard(packed: &mut &[u8], most: u64, page: &mut Vec<u8>) -> Result<(), String> {
     let mut frame = StreamingDecoder::new(packed).map_err(broken)?;
     let unpacked = frame.by_ref().take(most).read_to_end(page);
@@ -111,7 +113,7 @@ fn zstandard(packed: &mut &[u8], most: u64, page: &mut Vec<u8>) -> Result<(), St
     Ok(())
 }
 
-/// What is said of bytes that can't be unpacked.
+/// The message for bytes that cannot be unpacked.
 fn broken(why: impl std::fmt::Display) -> String {
     format!("a page can't be unpacked: {why}")
 }
@@ -136,7 +138,7 @@ mod tests {
         compress_to_vec(bytes, CompressionLevel::Fastest)
     }
 
-    /// Both packings, and something packed by each.
+    /// Both compressions, with `bytes` compressed by each.
     fn both(most: u64, bytes: &[u8]) -> [(Packing, Vec<u8>); 2] {
         let packing = |method| Packing { method, most };
         [
@@ -145,7 +147,7 @@ mod tests {
         ]
     }
 
-    /// A page of the second version, whose levels take `levels` bytes.
+    /// A page of version 2, whose levels take `levels` bytes.
     fn page(content: Vec<u8>, levels: u32, is_compressed: bool) -> Page {
         Page::DataPageV2 {
             buf: content.into(),
@@ -198,7 +200,7 @@ mod tests {
                 let told = told.expect_err("cut off");
                 assert!(told.starts_with("a page can't be unpacked: "), "{told}");
             }
-            // Bytes from the end to the checksum; behind that of gzip stands the length.
+            // Bytes from the end to the checksum; in gzip, the length follows it.
             let behind = match packing.method {
                 Method::Gzip => 8,
                 Method::Zstandard => 4,

@@ -1,4 +1,4 @@
-//! The pages of a column, unpacked and checked for what the library takes for granted.
+//! Pages of a column, unpacked and checked for assumptions of the library.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use parquet::{
 use super::packed::Packing;
 use crate::data::medium::Opened;
 
-/// The pages of a column within a row group.
+/// Pages of a column within a row group.
 pub(super) struct Pages {
     pages: SerializedPageReader<Opened>,
     packing: Option<Packing>,
@@ -20,7 +20,7 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// Goes to the first page.
+    /// Starts at the first page.
     ///
     /// # Errors
     /// A compression that the library does not know.
@@ -32,7 +32,7 @@ impl Pages {
         let packing = Packing::of(chunk);
         let mut chunk = chunk.clone();
         if packing.is_some() {
-            // The library is to give the bytes of the pages as they are.
+            // Makes the library return the compressed bytes.
             let plain = chunk.into_builder();
             chunk = plain.set_compression(Compression::UNCOMPRESSED).build()?;
         }

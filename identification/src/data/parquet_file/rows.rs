@@ -1,5 +1,6 @@
-//! The rows of a Parquet file: some columns at a time, a few thousand rows of each, so that memory does not grow
-//! with the file or with its row groups.
+//! Rows of a Parquet file, some thousand at a time.
+//!
+//! Memory is independent of the size of the file and of its row groups.
 
 use overact::Code;
 use std::{fmt, sync::Arc};
@@ -25,10 +26,10 @@ use crate::{
     error::{Error, Problem},
 };
 
-/// Rows of a column that are in memory.
+/// Number of rows of a column in memory.
 const BATCH: usize = 4096;
 
-/// A column that is read: where it is, what its values are, and its name for messages.
+/// A requested column: its leaf, its conversion, and its name for messages.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wanted<'a> {
     pub(super) leaf: usize,
@@ -36,30 +37,30 @@ pub(super) struct Wanted<'a> {
     pub(super) name: &'a str,
 }
 
-/// The rest of a file.
+/// The remaining rows of a file.
 #[derive(Debug)]
 pub(super) struct Rows<'a> {
     /// The file as the caller named it.
     file: &'a str,
     input: Arc<Opened>,
     metadata: &'a ParquetMetaData,
-    /// What instants are counted from, s since 1970.
+    /// Origin of instants, s since 1970.
     origin: i64,
     columns: Vec<Column<'a>>,
-    /// Number of row groups that have been begun.
+    /// Number of row groups started.
     groups: usize,
-    /// Rows of the last group that have not been read.
+    /// Unread rows of the last group.
     left: usize,
-    /// Rows of the batch, and how many of them have been given out.
+    /// Rows of the batch, and number of those returned.
     filled: usize,
     next: usize,
-    /// Number of rows that have been given out.
+    /// Number of rows returned.
     samples: usize,
     is_broken: bool,
 }
 
 impl<'a> Rows<'a> {
-    /// Goes to the first row of a file that has been opened.
+    /// Starts at the first row of an open file.
     pub(super) fn new(
         file: &'a str,
         input: Opened,
@@ -119,7 +120,7 @@ impl<'a> Rows<'a> {
         Ok(true)
     }
 
-    /// What is said of a file that can't be read on.
+    /// The problem of a file that cannot be read further.
     fn broken(&self, column: Option<usize>, why: &str) -> Problem {
         let from = format!("from sample {} on: {}", self.samples, legible(why));
         let help = "if the file was copied or its writer was stopped, copy or write it again; else export CSV";
@@ -147,7 +148,7 @@ impl StoredRows for Rows<'_> {
         self.is_broken
     }
 
-    // In the mean over the rows: columns stand one behind the other.
+    // Mean over the rows, since columns are stored one after the other.
     fn bytes(&self) -> u64 {
         let rows = self.metadata.file_metadata().num_rows().max(1) as f64;
         let part = (self.samples as f64 / rows).min(1.0);
@@ -191,10 +192,10 @@ impl StoredRows for Rows<'_> {
     }
 }
 
-/// How a compression that is not read is told.
+/// Description of an unsupported compression.
 const NOT_READ: &str = "which is not read";
 
-/// Begins a column of a row group.
+/// Opens a column of a row group.
 fn open(
     input: &Arc<Opened>,
     chunk: &ColumnChunkMetaData,
@@ -205,7 +206,7 @@ fn open(
         Compression::LZO => return Err(format!("it is packed by LZO, {NOT_READ}")),
         _ => {}
     }
-    // What the library takes for granted of a chunk's place.
+    // The library assumes valid positions of chunks.
     let start = chunk.dictionary_page_offset();
     let start = u64::try_from(start.unwrap_or(chunk.data_page_offset()));
     let size = u64::try_from(chunk.compressed_size());
@@ -223,9 +224,9 @@ fn open(
 struct Column<'a> {
     wanted: Wanted<'a>,
     reader: Option<ColumnReader>,
-    /// Whether rows have a value, as Parquet tells it.
+    /// Definition levels: whether rows have a value.
     levels: Vec<i16>,
-    /// The rows of the batch, without a number where there is no value.
+    /// Rows of the batch; `None` for missing values.
     values: Vec<Option<f64>>,
 }
 
@@ -283,7 +284,7 @@ fn batch<T: DataType>(
     let (rows, ..) = reader.read_records(count, Some(levels), None, &mut found)?;
     let mut found = found.iter().map(number);
     if levels.is_empty() {
-        // A column in which every row has a value.
+        // A required column, in which every row has a value.
         values.extend(found.map(Some).take(rows));
     } else {
         let present = levels.iter().map(|level| *level > 0);

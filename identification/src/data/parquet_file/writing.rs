@@ -1,4 +1,4 @@
-//! A run as Parquet: a column of doubles for each of its signals.
+//! Writes a run as Parquet, with a column of doubles for each signal.
 
 use overact::Code;
 use std::sync::Arc;
@@ -13,7 +13,9 @@ use parquet::{
 
 use crate::error::{Error, Problem};
 
-/// The bytes of a Parquet file with these columns, which are equally long. The same columns give the same bytes.
+/// The bytes of a Parquet file with these columns of equal length.
+///
+/// Equal columns give equal bytes.
 ///
 /// # Errors
 /// Columns of different lengths.

@@ -1,36 +1,35 @@
-//! The period after which a motion repeats itself, found from the motion.
+//! Finds the period of a motion.
 //!
-//! The part D(L) of the variance by which positions differ from those L samples before is small at every
-//! multiple of the period. It is looked for on some thousand means first, then next to each of its
-//! minima sample by sample. A period that has no whole number of samples is off by a part of one; among
-//! its multiples, the first one that fits as well as the best is taken.
+//! D(L) is the mean squared difference of positions to those L samples before, by their variance.
+//! It is small at every multiple of the period. Minima are first searched on about two thousand
+//! means, then refined sample by sample. If the period has no whole number of samples, the first
+//! multiple that fits as well as the best is taken.
 
 use super::Log;
 use crate::error::Error;
 
-/// Values of the beginning of a run in which the period is looked for (4 MB), so that memory does not
-/// grow with the run.
+/// Values at the start of a run in which the period is searched (4 MB).
 const LARGEST_BEGINNING: usize = 1 << 19;
 
-/// Means on which minima are looked for.
+/// Number of means in the coarse search.
 const MEANS: usize = 2048;
 
 /// Shortest period, in means.
 const SHORTEST: usize = 8;
 
-/// D of means below which a minimum is looked at.
+/// Largest D of a minimum of the coarse search.
 const LARGEST_COARSE: f64 = 0.1;
 
-/// D below which a motion repeats itself.
+/// Largest D of a periodic motion.
 const LARGEST_FINE: f64 = 1e-3;
 
-/// Pairs of samples from which D is told.
+/// Number of sample pairs for D.
 const PAIRS: usize = 2000;
 
-/// A lag fits as well as the best if D is at most so many times as large.
+/// A lag is as good as the best if its D is at most this multiple.
 const AS_GOOD: f64 = 2.0;
 
-/// Samples of the period, or of the fewest periods that have a whole number of them.
+/// Samples of the period, or of its shortest multiple with a whole number of samples.
 pub(super) fn period(log: &Log) -> Result<Option<usize>, Error> {
     let n = log.actuators();
     let motion = Motion::new(beginning(log, LARGEST_BEGINNING / n)?, n);
@@ -53,10 +52,10 @@ pub(super) fn period(log: &Log) -> Result<Option<usize>, Error> {
     Ok(found.iter().find(fits).map(|(lag, _)| *lag))
 }
 
-/// Whether two runs begin with the same motion.
+/// Whether two runs start with the same motion.
 ///
 /// # Errors
-/// A log that can't be read.
+/// A log that cannot be read.
 pub(super) fn same(first: &Log, second: &Log) -> Result<bool, Error> {
     let n = first.actuators();
     let samples = (LARGEST_BEGINNING / n).min(first.samples());
@@ -64,7 +63,7 @@ pub(super) fn same(first: &Log, second: &Log) -> Result<bool, Error> {
     let (a, b) = (beginning(first, samples)?, beginning(second, samples)?);
     let count = a.len().min(b.len()) / n;
     let stride = (count / PAIRS).max(1);
-    // Differences of one and the spread of the other of each actuator.
+    // Mean squared difference of each actuator by its variance.
     let part = |i: usize| {
         let rows = || (0..count).step_by(stride).map(|row| row * n + i);
         let taken = rows().count().max(1) as f64;
@@ -92,7 +91,7 @@ fn beginning(log: &Log, samples: usize) -> Result<Vec<f64>, Error> {
     Ok(positions)
 }
 
-/// Positions of all actuators, freed of their means, by their deviations.
+/// Standardised positions of all actuators: zero mean, unit variance.
 struct Motion {
     values: Vec<f64>,
     width: usize,
@@ -106,7 +105,7 @@ impl Motion {
             let own = || values[i..].iter().step_by(width);
             let mean = own().sum::<f64>() / samples;
             let variance = own().map(|q| (q - mean).powi(2)).sum::<f64>() / samples;
-            // An actuator that stands still says nothing.
+            // An actuator at rest is ignored.
             let scale = if variance > 0.0 {
                 moving += 1;
                 variance.sqrt().recip()
@@ -125,7 +124,7 @@ impl Motion {
         self.values.len() / self.width
     }
 
-    /// Means of so many samples each.
+    /// Means of `count` samples each.
     fn means(&self, count: usize) -> Vec<f64> {
         let mut means = Vec::new();
         for rows in self.values.chunks_exact(count * self.width) {
@@ -137,7 +136,7 @@ impl Motion {
         means
     }
 
-    /// D of a lag, from about so many pairs of samples.
+    /// D of a lag, from about `pairs` sample pairs.
     fn difference(&self, lag: usize, pairs: usize) -> f64 {
         let count = self.samples().saturating_sub(lag);
         if count == 0 {
@@ -159,7 +158,7 @@ impl Motion {
         0.5 * sum / f64::from(taken)
     }
 
-    /// The lag with the smallest D, and D, where two periods are in the run.
+    /// The lag with the smallest D, and D; the run must have two periods.
     fn finest(&self, lags: std::ops::RangeInclusive<usize>) -> Option<(usize, f64)> {
         lags.filter(|lag| *lag > 0 && 2 * lag <= self.samples())
             .map(|lag| (lag, self.difference(lag, PAIRS)))
@@ -167,10 +166,10 @@ impl Motion {
     }
 }
 
-/// Differences that are squared side by side.
+/// Number of partial sums.
 const SIDE_BY_SIDE: usize = 16;
 
-/// Σ (a - b)² of two rows of numbers.
+/// Σ (a - b)² of two slices.
 fn squared_distance(first: &[f64], second: &[f64]) -> f64 {
     let (own, rest) = first.as_chunks::<SIDE_BY_SIDE>();
     let (other, end) = second.as_chunks::<SIDE_BY_SIDE>();

@@ -1,18 +1,19 @@
-//! A run of a periodic motion, seen as the repetitions of one period.
+//! A run of periodic motion as repetitions of one period.
 //!
-//! The mean of the other periods at the same phase is a motion that goes with the measured one, but
-//! not with its errors, as long as the error of one period is independent of that of another. It is
-//! not where the error depends on the position alone and the position repeats: an encoder's steps and
-//! its eccentricity return with every period. What returns can't be told from the motion at its own
-//! frequencies, but it can above them: the fourth differences of a smooth motion are tiny, those of noise
-//! are not. With N periods of fourth differences d_k the correlation of the errors of two periods is
+//! The mean of the other periods at the same phase follows the measured motion but not its errors,
+//! if errors of different periods are independent. They are not if the error is a function of the
+//! position, such as steps or eccentricity of an encoder.
+//!
+//! Periodic errors cannot be distinguished from the motion at its own frequencies, but above them.
+//! There the fourth differences of a smooth motion are much smaller than those of noise. With the
+//! fourth differences d_k of N periods, the correlation of the errors of two periods is
 //!
 //! ```text
 //! ρ = (|Σ_k d_k|²/Σ_k |d_k|² - 1)/(N - 1).
 //! ```
 //!
-//! Phases are compared at samples, so a period has a whole number of them; of a period that does not,
-//! some periods together may have it.
+//! Phases are compared at samples, so a period needs a whole number of them. Otherwise several
+//! periods together may have one.
 
 mod find;
 mod returns;
@@ -23,45 +24,45 @@ use super::Log;
 use crate::error::{Error, Problem};
 use overact::Code;
 
-/// Periods that are taken together so that they have a whole number of samples, at most.
+/// Largest number of periods combined for a whole number of samples.
 const MOST_TOGETHER: usize = 10;
 
-/// Phase, in samples, by which the last period may be off.
+/// Largest phase error of the last period, in samples.
 const LARGEST_DRIFT: f64 = 0.05;
 
-/// Numbers of a period that are kept (16 MB), at most, so that memory does not grow with the run.
+/// Largest number of values of a period (16 MB), which bounds memory.
 const LARGEST_PERIOD: usize = 1 << 21;
 
-/// Part of the motion's variance by which periods may differ: more is no repetition.
+/// Largest difference between periods, by the motion's variance.
 const LARGEST_DIFFERENCE: f64 = 1e-3;
 
-/// Fourth differences of numbers of size one that are rounding.
+/// Fourth differences of numbers of size one that are rounding errors.
 const ROUNDING: f64 = 1e-14;
 
-/// The repetitions of a run.
+/// Periods of a run.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Periods {
     /// Samples of a period.
     pub samples: usize,
-    /// Whole periods.
+    /// Number of whole periods.
     pub count: usize,
-    /// ρ: the correlation of the errors of two periods; none where the positions have no noise.
+    /// ρ: correlation of the errors of two periods; `None` if the positions have no noise.
     pub correlation: Option<f64>,
-    /// Part of the motion's variance by which the periods differ.
+    /// Difference between the periods, by the motion's variance.
     pub difference: f64,
     /// Number of actuators.
     width: usize,
-    /// Sums over all periods at each phase, samples x n.
+    /// Sums over all periods at each phase, samples × n.
     sums: Vec<f64>,
-    /// How many values these have.
+    /// Number of values in each sum.
     counts: Vec<u32>,
 }
 
-/// The repetitions of a run, of which the period (s) is known or is to be found.
+/// Periods of a run with a given `period` (s), or one to be found.
 ///
 /// # Errors
-/// A run of fewer than two periods, or one that does not repeat itself.
+/// A run of fewer than two periods, or a motion that is not periodic.
 pub(crate) fn periods(log: &Log, period: Option<f64>) -> Result<Periods, Error> {
     let samples = match period {
         Some(period) => together(log, period)?,
@@ -88,7 +89,7 @@ pub(crate) fn periods(log: &Log, period: Option<f64>) -> Result<Periods, Error> 
     Ok(periods)
 }
 
-/// The samples of the fewest periods (s) that have a whole number of them.
+/// Samples of the shortest multiple of `period` (s) with a whole number of samples.
 fn together(log: &Log, period: f64) -> Result<usize, Error> {
     let problem = |text: String, help: &str| {
         let problem = Problem::new(Code::PERIODS, text)
@@ -133,7 +134,7 @@ fn together(log: &Log, period: f64) -> Result<usize, Error> {
     )
 }
 
-/// Goes through a run once for the sums of its periods.
+/// Reads a run once to sum its periods.
 fn gathered(log: &Log, samples: usize) -> Result<Periods, Error> {
     let n = log.actuators();
     let count = log.samples() / samples;
@@ -183,7 +184,7 @@ fn gathered(log: &Log, samples: usize) -> Result<Periods, Error> {
     Ok(periods)
 }
 
-/// ρ over all actuators, each by the size of its own noise.
+/// ρ over all actuators, each scaled by its own noise.
 fn correlation((own, together): (&[f64], &[f64]), count: usize, floor: f64) -> Option<f64> {
     let n = own.len();
     let noisy: Vec<usize> = (0..n).filter(|&i| own[i] > floor).collect();
@@ -196,7 +197,7 @@ fn correlation((own, together): (&[f64], &[f64]), count: usize, floor: f64) -> O
 }
 
 impl Periods {
-    /// The part of the motion's variance by which periods differ; the actuator that differs most.
+    /// Difference between periods by the motion's variance, for the actuator with the largest one.
     fn differ(&self, origin: &[f64], (squares, totals): (&[f64], &[f64]), samples: usize) -> f64 {
         let n = self.width;
         let of = |i: usize| {
@@ -218,9 +219,9 @@ impl Periods {
     }
 }
 
-/// Fourth differences of rows that come one by one.
+/// Fourth differences of successive rows.
 struct Differences {
-    /// Differences of the order 0 to 3 that end with the last row.
+    /// Differences of orders 0 to 3 that end with the last row.
     last: [Vec<f64>; 4],
     taken: usize,
 }
@@ -233,7 +234,7 @@ impl Differences {
         }
     }
 
-    /// The fourth differences that end with a row; none for the first four.
+    /// The fourth differences that end with a row; `None` for the first four rows.
     fn next(&mut self, row: &[f64]) -> Option<Vec<f64>> {
         let mut difference = row.to_vec();
         for last in &mut self.last {
@@ -248,11 +249,11 @@ impl Differences {
     }
 }
 
-/// Replaces positions, block by block, by those of the other periods.
+/// Replaces positions by those of the other periods, block by block.
 #[derive(Debug)]
 pub(super) struct Others<'a> {
     periods: &'a Periods,
-    /// The next sample.
+    /// Number of the next sample.
     sample: usize,
 }
 

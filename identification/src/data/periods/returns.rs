@@ -1,22 +1,23 @@
-//! Which motions return: after a period within a run, or from run to run.
+//! Periodic motions: within a run, or equal motions in several runs.
 
 use super::{Log, find, together};
 use crate::error::Error;
 
-/// By how much the lengths of runs of one motion may differ.
+/// Largest relative difference of the lengths of runs with the same motion.
 const LENGTHS: f64 = 0.01;
 
-/// The motion of a run that returns.
+/// Periodic motion of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Return {
-    /// Samples after which it returns; those of the run where it does so in another run only.
+    /// Samples of the period; those of the run if it only repeats in another run.
     pub(crate) samples: usize,
     /// Number of the first run with this motion.
     pub(crate) motion: usize,
 }
 
-/// The motions of runs that return, of which the period (s) is known or is to be found. Runs with different
-/// payloads have different equations, be their motion the same.
+/// Periodic motions of runs with a given `period` (s), or one to be found.
+///
+/// Runs with different payloads count as different motions, since their equations differ.
 pub(crate) fn returns(runs: &[Log], period: Option<f64>) -> Vec<Option<Return>> {
     let within: Vec<Option<usize>> = runs.iter().map(|log| of_run(log, period)).collect();
     let first = |number: usize| {
@@ -47,7 +48,7 @@ pub(crate) fn returns(runs: &[Log], period: Option<f64>) -> Vec<Option<Return>> 
         .collect()
 }
 
-/// Samples of the period of a run; none of one that has none.
+/// Samples of the period of a run; `None` if it is not periodic.
 fn of_run(log: &Log, period: Option<f64>) -> Option<usize> {
     let found: Result<Option<usize>, Error> = match period {
         Some(period) => together(log, period).map(Some),
@@ -56,7 +57,7 @@ fn of_run(log: &Log, period: Option<f64>) -> Option<usize> {
     found.ok().flatten()
 }
 
-/// Whether two runs are as long as each other.
+/// Whether two runs have nearly equal lengths.
 fn as_long(a: &Log, b: &Log) -> bool {
     let (a, b) = (a.samples() as f64, b.samples() as f64);
     (a - b).abs() <= LENGTHS * a.max(b)

@@ -1,11 +1,12 @@
-//! Periodic runs, with errors that repeat themselves and errors that do not.
+//! Periodic runs with periodic errors and with random errors.
 
 use super::{Log, Return, periods, returns};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// A run of two actuators at 1 kHz with a period of so many samples; an error as large as `fresh` is
-/// drawn at each sample, one as large as `repeated` at each phase.
+/// A run of two actuators at 1 kHz with a period in samples.
+///
+/// It has random errors of size `fresh` at each sample, and of size `repeated` at each phase.
 fn run(period: f64, samples: usize, (fresh, repeated): (f64, f64)) -> Log {
     let mut generator = Pcg64::seed_from_u64(4);
     let size = period.round() as usize;
@@ -54,7 +55,7 @@ fn the_others_are_the_mean_of_the_other_periods() {
     let others = log.others(periods(&log, None).expect("periodic"));
     let (mean, same) = others.load().expect("in memory");
     assert_eq!((mean.len(), same), (own.len(), torques));
-    // Phase 100 is there four times, phase 300 three times.
+    // Phase 100 occurs four times, phase 300 three times.
     for (sample, at) in [(600, &[100, 1100, 1600][..]), (300, &[800, 1300])] {
         let expected = at.iter().map(|k| own[2 * k + 1]).sum::<f64>() / at.len() as f64;
         assert!((mean[2 * sample + 1] - expected).abs() < 1e-14);

@@ -1,16 +1,16 @@
-//! The clocks of files: their usual steps, whether they agree, and whether their times overlap.
+//! Clocks of files: usual steps, agreement, and overlap of times.
 
 use super::super::{problems::shown, table::Rows};
 use crate::error::Problem;
 use overact::Code;
 
-/// Steps of a clock from which the usual one is told.
+/// Number of steps of a clock from which the usual one is determined.
 const FIRST_STEPS: usize = 256;
 
-/// Usual steps over which numbers are interpolated, at most: what is missing in between can't be known.
+/// Longest gap for interpolation, in usual steps.
 pub(super) const LONGEST_STEP: f64 = 3.5;
 
-/// The usual step of a clock, s, from its first times: the mean of all but gaps.
+/// Usual step of a clock, s, from its first times: the mean of all steps except gaps.
 pub(in crate::data) fn usual_step(times: impl Iterator<Item = f64>) -> f64 {
     let times: Vec<f64> = times.take(FIRST_STEPS + 1).collect();
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -23,7 +23,7 @@ pub(in crate::data) fn usual_step(times: impl Iterator<Item = f64>) -> f64 {
     steps.iter().sum::<f64>() / steps.len() as f64
 }
 
-/// The times of a file, up to its end or to what is wrong with it, which is told where the file is gone through.
+/// Times of a file up to its end or an error, which is reported when the file is read.
 pub(in crate::data) fn times(mut clock: Rows<'_>) -> impl Iterator<Item = f64> {
     std::iter::from_fn(move || {
         let mut time = [0.0];
@@ -31,7 +31,7 @@ pub(in crate::data) fn times(mut clock: Rows<'_>) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Whether clocks differ: whether they are off by more than a fiftieth of a step, or one ends before the others.
+/// Whether clocks differ by more than a fiftieth of a step, or one ends before the others.
 pub(in crate::data) fn differ(mut clocks: Vec<Rows<'_>>) -> bool {
     let mut last = None;
     loop {
@@ -41,7 +41,7 @@ pub(in crate::data) fn differ(mut clocks: Vec<Rows<'_>>) -> bool {
             match clock.next(&mut time) {
                 Ok(true) => times.push(time[0]),
                 Ok(false) => {}
-                // What is wrong with the clock is told where the file is gone through.
+                // An error in the clock is reported when the file is read.
                 Err(_) => return false,
             }
         }
@@ -57,7 +57,7 @@ pub(in crate::data) fn differ(mut clocks: Vec<Rows<'_>>) -> bool {
     }
 }
 
-/// What is said of two files of which one ends before the other begins; `first` is the file whose times are taken.
+/// The problem of two files without a common time; the times of `first` are used.
 pub(in crate::data) fn apart(
     (first, (begin, end)): (&str, (f64, f64)),
     (file, (own_begin, own_end)): (&str, (f64, f64)),

@@ -1,18 +1,18 @@
-//! The low-pass before a rate is lowered: what the new samples could not tell from slower motion is removed first.
+//! Anti-aliasing low-pass filter before a rate is lowered.
 //!
-//! A sinc in Kaiser's window, of finite length and without delay. In parts of the new rate it passes what lies below
-//! 0.4 and damps what lies above 0.6 by 80 dB, so that nothing is folded to below 0.4.
+//! It is a sinc with Kaiser window: finite length, zero phase. In units of the new rate, it passes
+//! frequencies below 0.4 and attenuates those above 0.6 by 80 dB. Nothing aliases to below 0.4.
 
-/// Half the kernel's length, in steps of the new rate.
+/// Half length of the kernel, in steps of the new rate.
 pub(super) const HALF_LENGTH: f64 = 13.0;
 
 /// Kaiser's β for 80 dB: 0.1102 (80 - 8.7).
 const BETA: f64 = 7.857;
 
-/// Values of the kernel in a step of the new rate, between which it is a line.
+/// Tabulated values of the kernel per step of the new rate, linearly interpolated.
 const RESOLUTION: usize = 1024;
 
-/// The kernel from its middle on.
+/// One half of the symmetric kernel, starting at the centre.
 #[derive(Debug)]
 pub(super) struct Kernel(Vec<f64>);
 
@@ -30,11 +30,11 @@ impl Kernel {
                 window * angle.sin() / angle
             }
         };
-        // Behind the end it is zero.
+        // It is zero beyond the end.
         Self((0..=count).map(value).chain([0.0, 0.0]).collect())
     }
 
-    /// The kernel's value so many steps of the new rate from its middle.
+    /// Value of the kernel at a distance from its centre, in steps of the new rate.
     pub(super) fn at(&self, x: f64) -> f64 {
         let place = x.abs() * RESOLUTION as f64;
         let index = (place as usize).min(self.0.len() - 2);
@@ -43,7 +43,7 @@ impl Kernel {
     }
 }
 
-/// The modified Bessel function of the first kind and order zero, by its series.
+/// Modified Bessel function of the first kind and order zero, by its series.
 fn bessel(x: f64) -> f64 {
     let quarter = 0.25 * x * x;
     let (mut sum, mut term) = (1.0, 1.0);

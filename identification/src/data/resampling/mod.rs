@@ -1,8 +1,7 @@
-//! Numbers at other times than those at which they were sampled: of files with clocks of their own at the times of
-//! another one, and of a whole run at uniform times.
+//! Resampling: files with separate clocks at the times of one of them, or a run at uniform times.
 //!
-//! Between samples a polynomial is taken. Where the new rate is lower, a low-pass comes first, on a grid that is
-//! at least twice as fine as the samples.
+//! Values between samples are interpolated by polynomials. For a lower rate, a low-pass filter
+//! comes first, on a grid with at least twice the rate of the samples.
 
 mod clocks;
 mod low_pass;
@@ -20,20 +19,20 @@ use self::{
 use super::expression::Expression;
 use crate::error::{Error, Problem};
 
-/// Usual steps that lie between two samples, at least: nearer ones are left out, since their difference is noise.
+/// Shortest distance of two samples, in usual steps; nearer samples are skipped as noise.
 const SHORTEST_STEP: f64 = 0.5;
 
-/// The new rate is lower if it is less than this part of that of the samples.
+/// The new rate is lower if it is below this fraction of that of the samples.
 const LOWER: f64 = 0.95;
 
-/// How many times lower or higher the new rate may be.
+/// Largest factors by which the new rate may be lower or higher.
 pub(super) const MOST_LOWER: f64 = 1000.0;
 pub(super) const MOST_HIGHER: f64 = 10.0;
 
-/// Gives the next row of numbers; `false` at the end.
+/// Reads the next row of numbers; `false` at the end.
 pub(super) type Source<'a> = dyn FnMut(&mut [f64]) -> Result<bool, Error> + 'a;
 
-/// Where a time lies.
+/// Position of a time relative to the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     Before,
@@ -41,43 +40,43 @@ pub(super) enum Place {
     Behind,
 }
 
-/// Rows of numbers that are read at other times than their own.
+/// Rows of numbers that are read at other times.
 #[derive(Debug)]
 pub(super) struct Resampled {
-    /// The file, for messages.
+    /// File name for messages.
     file: String,
-    /// The time of a row.
+    /// Time of a row.
     clock: Expression,
-    /// The usual step between two rows, s.
+    /// Usual step between two rows, s.
     step: f64,
-    /// The last samples.
+    /// Last samples.
     nodes: VecDeque<Node>,
-    /// The time of the last row that was read, which may be too near to a sample to be one.
+    /// Time of the last row, which may be too near to a sample to be one itself.
     last: Option<f64>,
-    /// The first time, and that of the last sample.
+    /// First time, and time of the last sample.
     range: Option<(f64, f64)>,
     has_ended: bool,
-    /// The columns of a row.
+    /// Columns of a row.
     width: usize,
     low_pass: Option<LowPass>,
 }
 
-/// What is kept for the low-pass.
+/// State of the low-pass filter.
 #[derive(Debug)]
 struct LowPass {
     kernel: Kernel,
-    /// The new rate, Hz.
+    /// New rate, Hz.
     rate: f64,
-    /// The step of the grid, s, and its origin, which is the first time that was asked for.
+    /// Step of the grid, s, and its origin, which is the first requested time.
     step: f64,
     origin: Option<f64>,
-    /// Numbers on the grid, the first of them so many steps from the origin.
+    /// Values on the grid, and the grid index of the first one.
     values: VecDeque<Vec<f64>>,
     first: i64,
 }
 
 impl Resampled {
-    /// Rows of `width` numbers whose usual `step`, s, is known, for a new `rate`, Hz.
+    /// Rows of `width` numbers with a usual `step`, s, for a new `rate`, Hz.
     pub(super) fn new(
         file: String,
         clock: Expression,
@@ -85,7 +84,7 @@ impl Resampled {
         (step, rate): (f64, f64),
     ) -> Self {
         let ratio = 1.0 / (step * rate);
-        // Written so that a step that is not a number has no low-pass; it is refused with its times.
+        // A NaN step gets no low-pass filter; its times are rejected later.
         let low_pass = is_lower(step, rate).then(|| LowPass {
             kernel: Kernel::new(),
             rate,
@@ -107,12 +106,12 @@ impl Resampled {
         }
     }
 
-    /// The first time, and that of the last sample that was read.
+    /// First time, and time of the last sample read.
     pub(super) const fn range(&self) -> Option<(f64, f64)> {
         self.range
     }
 
-    /// The first time at which there are numbers; none of rows without any.
+    /// First time with values; `None` without any rows.
     ///
     /// # Errors
     /// As [`at`](Self::at).
@@ -123,17 +122,17 @@ impl Resampled {
         Ok(self.range.map(|(first, _)| first + self.margin()))
     }
 
-    /// The time before a new sample, and behind it, that has to be known, s.
+    /// Time around a new sample that must be known, s.
     fn margin(&self) -> f64 {
         self.low_pass
             .as_ref()
             .map_or(0.0, |own| HALF_LENGTH / own.rate)
     }
 
-    /// Puts the numbers at a time into `values`, if it lies inside. Times are asked for one after the other.
+    /// Writes the values at a time to `values`, if it lies inside. Times must increase.
     ///
     /// # Errors
-    /// Cells that are no numbers, a clock that stands or leaps.
+    /// Cells that are no numbers; a clock that stops or has a gap.
     pub(super) fn at(
         &mut self,
         source: &mut Source<'_>,
@@ -148,7 +147,7 @@ impl Resampled {
         place
     }
 
-    /// The numbers at a time behind the low-pass.
+    /// Filtered values at a time.
     fn passed(
         &mut self,
         low_pass: &mut LowPass,
@@ -174,7 +173,7 @@ impl Resampled {
             let mut row = vec![0.0; self.width];
             match self.between(source, origin + next as f64 * low_pass.step, &mut row)? {
                 Place::Inside => low_pass.values.push_back(row),
-                // What comes before the first sample is never asked for again.
+                // Times before the first sample are not requested again.
                 Place::Before => {
                     low_pass.values.clear();
                     return Ok(Place::Before);
@@ -199,7 +198,7 @@ impl Resampled {
         Ok(Place::Inside)
     }
 
-    /// The numbers at a time between samples.
+    /// Interpolated values at a time.
     fn between(
         &mut self,
         source: &mut Source<'_>,
@@ -212,7 +211,7 @@ impl Resampled {
         };
         while !self.has_ended && !is_enough(&self.nodes) {
             self.advance(source)?;
-            // Six before a time are enough, should they be the last.
+            // Six samples before a time suffice, even at the end.
             while self.nodes.get(NODES).is_some_and(|(own, _)| *own < time) {
                 self.nodes.pop_front();
             }
@@ -224,12 +223,12 @@ impl Resampled {
         }
         let polynomial = Polynomial::new(&self.nodes, time, self.step);
         polynomial.values(&self.nodes, values);
-        // Later times need no earlier samples than these.
+        // Later times need no earlier samples.
         self.nodes.drain(..polynomial.start);
         Ok(Place::Inside)
     }
 
-    /// Goes on by one row.
+    /// Reads one row.
     fn advance(&mut self, source: &mut Source<'_>) -> Result<(), Error> {
         let mut row = vec![f64::NAN; self.width];
         let read = source(&mut row);
@@ -245,7 +244,7 @@ impl Resampled {
             self.nodes.push_back((time, row));
             return Ok(());
         };
-        // Written so that a step that is not a number counts as bad.
+        // Also false for NaN.
         if !(time > before && time - last <= LONGEST_STEP * self.step) {
             self.has_ended = true;
             let message = format!("the time steps from {before} s to {time} s");
@@ -262,7 +261,7 @@ impl Resampled {
     }
 }
 
-/// Whether a rate is lower than that of samples whose usual step is known, so that a low-pass is needed.
+/// Whether a rate is lower than that of samples with this step, and needs a low-pass filter.
 pub(super) fn is_lower(step: f64, rate: f64) -> bool {
     rate * step < LOWER
 }

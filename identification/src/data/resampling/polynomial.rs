@@ -1,28 +1,34 @@
-//! Values between samples: the polynomial of degree 5 through the six samples around a time.
+//! Interpolation by the polynomial of degree 5 through the six samples around a time.
 //!
-//! Its error is that of interpolation by polynomials, |x⁽⁶⁾| |(t - t₁)…(t - t₆)| / 720, so below 0.0049 h⁶ |x⁽⁶⁾|
-//! inside of a run whose steps are h, and below 0.024 h⁶ |x⁽⁶⁾| in its first and last two steps: of a sine 5e-6 of its
-//! size with twenty samples in a period, 3e-4 with ten. Samples keep their values.
+//! Its error is |x⁽⁶⁾| |(t - t₁)…(t - t₆)|/720. For steps h:
+//!
+//! | place | bound of the error |
+//! |---|---|
+//! | inside a run | 0.0049 h⁶ \|x⁽⁶⁾\| |
+//! | first and last two steps | 0.024 h⁶ \|x⁽⁶⁾\| |
+//!
+//! The relative error of a sine is 5e-6 with twenty samples per period, and 3e-4 with ten. Samples
+//! keep their values.
 
 use std::collections::VecDeque;
 
-/// Samples through which a polynomial goes.
+/// Number of samples of a polynomial.
 pub(super) const NODES: usize = 6;
 
-/// A sample: its time and its numbers.
+/// A sample: its time and its values.
 pub(super) type Node = (f64, Vec<f64>);
 
-/// The polynomial around a time through nodes with rising times.
+/// The polynomial around a time, through nodes with increasing times.
 pub(super) struct Polynomial {
-    /// The first of its nodes.
+    /// Index of its first node.
     pub(super) start: usize,
-    /// What each node counts; they add up to one.
+    /// Weights of the nodes; their sum is one.
     weights: [f64; NODES],
     count: usize,
 }
 
 impl Polynomial {
-    /// The polynomial that is evaluated at `time`; `step` is the usual one between nodes.
+    /// The polynomial for `time`; `step` is the usual one between nodes.
     pub(super) fn new(nodes: &VecDeque<Node>, time: f64, step: f64) -> Self {
         let next = nodes.partition_point(|(own, _)| *own < time);
         let start = next
@@ -54,14 +60,14 @@ impl Polynomial {
         }
     }
 
-    /// Its values.
+    /// Evaluates the polynomial.
     pub(super) fn values(&self, nodes: &VecDeque<Node>, values: &mut [f64]) {
         values.fill(0.0);
         for (weight, (_, row)) in self.weights[..self.count]
             .iter()
             .zip(nodes.range(self.start..))
         {
-            // A sample that is met takes none of its neighbours' numbers.
+            // At a sample's time, its neighbours have no influence, even if they are NaN.
             if *weight != 0.0 {
                 values
                     .iter_mut()

@@ -1,15 +1,17 @@
-//! The numbers of a line without quotation marks, cell by cell as they are read.
+//! Parses the numbers of a line without quotation marks.
 
 use memchr::memchr;
 
-/// Whether a byte stands apart from a number beside it, within its cell.
+/// Whether a byte is a blank next to a number in its cell.
 fn is_blank(byte: u8) -> bool {
     byte.is_ascii_whitespace()
 }
 
-/// Puts the numbers of a line into `values`: of each cell in `wanted`, in rising order, to a place among them.
-/// `false` where a cell is not there or is no finite number, or where there are more than `most` cells; nothing is
-/// said of the values then.
+/// Parses the requested cells of a line into `values`.
+///
+/// `wanted` has pairs of cell and index in `values`, by increasing cell. Returns `false` if a cell
+/// is missing or no finite number, or if there are more than `most` cells; the values are then
+/// undefined.
 pub(super) fn read(
     line: &[u8],
     (separator, most): (u8, usize),
@@ -46,16 +48,16 @@ pub(super) fn read(
     true
 }
 
-/// The rest of a line.
+/// The remaining cells of a line.
 struct Cells<'a> {
     rest: &'a [u8],
     separator: u8,
-    /// The number of the first cell of the rest, if there is one.
+    /// Number of the first remaining cell, if there is one.
     next: Option<usize>,
 }
 
 impl Cells<'_> {
-    /// The number in a cell that has not been passed, which is passed then.
+    /// Parses the number in a later cell and skips to the cell after it.
     fn at(&mut self, cell: usize) -> Option<f64> {
         while self.next? < cell {
             self.pass()?;
@@ -65,7 +67,7 @@ impl Cells<'_> {
         }
         let (value, length) = fast_float2::parse_partial::<f64, _>(self.rest).ok()?;
         self.rest = &self.rest[length..];
-        // What nearly always follows a number.
+        // The usual case: the separator follows the number.
         if self.rest.first() == Some(&self.separator) && self.separator != b' ' {
             self.rest = &self.rest[1..];
             self.next = Some(cell + 1);
@@ -84,7 +86,7 @@ impl Cells<'_> {
         value.is_finite().then_some(value)
     }
 
-    /// Passes a cell; none behind the last one.
+    /// Skips a cell; `None` after the last one.
     fn pass(&mut self) -> Option<()> {
         let end = if self.separator == b' ' {
             self.rest.iter().position(|byte| is_blank(*byte))?
@@ -99,7 +101,7 @@ impl Cells<'_> {
         Some(())
     }
 
-    /// Skips blanks that do not separate cells, or all where blanks do; tells whether there are some.
+    /// Skips blanks that are no separators, or all if blanks separate; returns whether any.
     fn skip_blanks(&mut self) -> bool {
         let separator = self.separator;
         let is_skipped = |byte: &u8| is_blank(*byte) && (*byte != separator || separator == b' ');
@@ -111,7 +113,7 @@ impl Cells<'_> {
     }
 }
 
-/// The cells of a line, as they stand.
+/// Splits a line into cells without parsing.
 pub(super) fn split(line: &[u8], separator: u8) -> Vec<&[u8]> {
     if separator == b' ' {
         let cells = line.split(|byte| is_blank(*byte));

@@ -1,4 +1,4 @@
-//! A row looked at cell by cell: its numbers, or what is wrong with it.
+//! Parses a row cell by cell to report its errors.
 
 use overact::Code;
 
@@ -8,19 +8,19 @@ use crate::{
     error::{Error, Problem},
 };
 
-/// The cells of a line of a text.
+/// Cells of a line of a text.
 pub(super) struct Row<'a> {
     pub(super) text: &'a Text,
     pub(super) line: usize,
     pub(super) cells: &'a [&'a [u8]],
 }
 
-/// What has been said of the rows before.
+/// State of the messages on previous rows.
 #[derive(Debug)]
 pub(super) struct Told {
-    /// Whether no row of numbers has been looked at.
+    /// Whether no row of numbers has been parsed.
     pub(super) is_first: bool,
-    /// Whether the way out of a cell without a number has been told.
+    /// Whether the help for a cell without a number has been given.
     is_helped: bool,
 }
 
@@ -32,10 +32,10 @@ impl Told {
         }
     }
 
-    /// Puts the numbers of a row into `values`.
+    /// Parses the numbers of a row into `values`.
     ///
     /// # Errors
-    /// Every cell that is no finite number; cells that are more than those of other rows.
+    /// Every cell that is no finite number; more cells than in other rows.
     pub(super) fn read(
         &mut self,
         row: &Row<'_>,
@@ -81,7 +81,7 @@ impl Row<'_> {
         problem.file(self.text.file.as_str()).line(self.line)
     }
 
-    /// That it has no more cells than the first one; empty ones do not count.
+    /// Checks that the row has no more cells than the first one; empty ones do not count.
     fn check_width(&self) -> Result<(), Error> {
         let dialect = &self.text.dialect;
         let beyond = self.cells.iter().enumerate().skip(dialect.most);
@@ -95,8 +95,7 @@ impl Row<'_> {
         }
     }
 
-    /// What is said of a line that has words in the place of all its numbers: the header once more, or units
-    /// below it.
+    /// The problem of a line with words instead of numbers: a repeated header, or units.
     fn words(&self, is_first: bool) -> Option<Problem> {
         let dialect = &self.text.dialect;
         let cells = || self.cells.iter().map(|cell| cell.trim_ascii());
@@ -131,7 +130,7 @@ fn is_infinite(cell: &[u8]) -> bool {
     text.parse::<f64>().is_ok()
 }
 
-/// A cell as a finite number, or what is wrong with it.
+/// Parses a cell as a finite number, or describes its error.
 fn number(cell: Option<&[u8]>, decimal_comma: bool) -> Result<f64, String> {
     let Some(cell) = cell else {
         return Err(String::from("the line ends before this column"));

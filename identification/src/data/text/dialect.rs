@@ -1,10 +1,10 @@
-//! How a text stands for columns of numbers: what separates them, whether decimals stand behind a comma,
-//! where their names are. All of it is told from the beginning of the file, and nothing is guessed where
-//! two readings are possible.
+//! Detects the dialect of a text: separator, decimal comma, header.
 //!
-//! Semicolons and tabs separate wherever they stand; commas do unless blanks separate numbers that have
-//! decimal commas. A first line with words where the second one has numbers names the columns; so does a
-//! comment of as many words before lines that are all numbers.
+//! The start of the file determines it. Ambiguous texts are an error.
+//!
+//! Semicolons and tabs always separate. Commas separate, unless blanks separate numbers with
+//! decimal commas. A first line of words above a line of numbers is a header. A comment with as
+//! many words as columns above numeric lines names the columns, too.
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 use overact::Code;
@@ -15,34 +15,33 @@ use crate::{
     error::{Error, Problem},
 };
 
-/// Bytes of the beginning from which the dialect is told.
+/// Bytes at the start of the file that determine the dialect.
 pub(super) const BEGINNING: usize = 1 << 16;
 
-/// How a text stands for columns of numbers.
+/// Dialect of a text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dialect {
-    /// What separates the columns; of blanks there may be several, and tabs among them.
+    /// Column separator; a blank also means several blanks, and tabs.
     pub(super) separator: u8,
-    /// What lines that are no data start with.
+    /// Start of comment lines.
     pub(super) comment: u8,
-    /// Whether decimals stand behind a comma.
+    /// Whether the decimal separator is a comma.
     pub(super) decimal_comma: bool,
-    /// Whether the first line that is no comment has the names.
+    /// Whether the first line that is no comment is a header.
     pub(super) has_header: bool,
-    /// Names of the columns, where there are some.
+    /// Names of the columns, if they have any.
     pub(super) names: Vec<String>,
     /// Number of columns.
     pub(super) columns: usize,
-    /// Cells of the first line, empty ones at its end as well: those of others are not more.
+    /// Largest number of cells in a line: those of the first line, including empty ones.
     pub(super) most: usize,
 }
 
 impl Dialect {
-    /// Tells the dialect of a text from its `beginning`, which is all of it where `is_whole`.
+    /// Detects the dialect from the `beginning` of a text, which is all of it if `is_whole`.
     ///
     /// # Errors
-    /// Numbers of which nobody knows what a comma in them means, or lines with more columns than there
-    /// are names.
+    /// Commas of ambiguous meaning, or lines with more columns than names.
     pub(super) fn of(file: &str, beginning: &[u8], is_whole: bool) -> Result<Self, Error> {
         let text = without_mark(beginning);
         let whole_lines = text.iter().rposition(|byte| *byte == b'\n');
@@ -81,7 +80,7 @@ impl Dialect {
         Ok(dialect)
     }
 
-    /// What is said of a line with more cells than the first one: they would be those of other columns.
+    /// The problem of a line with more cells than the first one.
     pub(super) fn wider(&self, file: &str, line: usize, cells: usize) -> Problem {
         let names = self.most;
         let message = match self.has_header {
@@ -101,7 +100,7 @@ impl Dialect {
         })
     }
 
-    /// A reader of the text's records, all of them, a header as well.
+    /// A reader of all records of the text, including a header.
     pub(super) fn builder(separator: u8, comment: u8) -> ReaderBuilder {
         let mut builder = ReaderBuilder::new();
         builder
@@ -114,7 +113,7 @@ impl Dialect {
     }
 }
 
-/// A cell as a number, if it is one.
+/// Parses a cell as a number, if it is one.
 pub(super) fn parse(cell: &str, decimal_comma: bool) -> Option<f64> {
     if !decimal_comma || !cell.contains(',') {
         return cell.parse().ok();
@@ -132,17 +131,17 @@ fn is_number(cell: &str, decimal_comma: bool) -> bool {
     parse(cell, decimal_comma).is_some()
 }
 
-/// The text without the mark of its encoding.
+/// The text without its byte order mark.
 pub(super) fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }
 
-/// The records of a text, each with its line.
+/// Records of a text, each with its line.
 fn records(text: &[u8], separator: u8, comment: u8) -> Vec<(u64, StringRecord)> {
     let builder = Dialect::builder(separator, comment);
     let mut found = Vec::new();
     let mut take = |reader: &mut dyn Iterator<Item = csv::Result<csv::ByteRecord>>| {
-        // A record that can't be read is told where all of them are gone through.
+        // Errors of a record are reported when all records are read.
         for record in reader.map_while(Result::ok) {
             let line = record.position().map_or(0, csv::Position::line);
             found.push((line, StringRecord::from_byte_record_lossy(record)));
@@ -158,14 +157,14 @@ fn records(text: &[u8], separator: u8, comment: u8) -> Vec<(u64, StringRecord)> 
     found
 }
 
-/// Number of cells up to the last one that is not empty.
+/// Number of cells up to the last non-empty one.
 fn width(record: &StringRecord) -> usize {
     let filled = |place: &usize| !record[*place].is_empty();
     let last = (0..record.len()).rev().find(filled);
     last.map_or(0, |last| last + 1)
 }
 
-/// What separates the columns of a text.
+/// Detects the column separator of a text.
 fn separator(text: &[u8], comment: u8) -> u8 {
     let splits = |separator: u8| -> bool {
         let all = records(text, separator, comment);
@@ -178,7 +177,7 @@ fn separator(text: &[u8], comment: u8) -> u8 {
         return b';';
     }
     if splits(b'\t') {
-        // Tabs that only line columns up come in runs, which leave cells without a name.
+        // Several adjacent tabs align columns, and leave cells without a name.
         let all = records(text, b'\t', comment);
         let gaps = |(_, record): &(u64, StringRecord)| {
             record.iter().take(width(record)).any(str::is_empty)
@@ -198,10 +197,10 @@ fn separator(text: &[u8], comment: u8) -> u8 {
     if whole || !has_commas { b' ' } else { b',' }
 }
 
-/// Whether decimals stand behind a comma.
+/// Detects a decimal comma.
 ///
 /// # Errors
-/// Both commas and points before decimals.
+/// Both commas and points as decimal separators.
 fn decimal_comma(
     file: &str,
     separator: u8,
@@ -235,7 +234,7 @@ fn decimal_comma(
     }
 }
 
-/// Whether the first record has the names of the columns: words where the second one has numbers.
+/// Whether the first record is a header: words above numbers.
 fn has_header(records: &[(u64, StringRecord)], is_value: &dyn Fn(&str) -> bool) -> bool {
     let Some((_, first)) = records.first() else {
         return false;
@@ -251,7 +250,7 @@ fn has_header(records: &[(u64, StringRecord)], is_value: &dyn Fn(&str) -> bool) 
     }
 }
 
-/// The names in the last comment before the numbers that has as many words as there are columns.
+/// Names from the last comment before the numbers that has as many words as columns.
 fn names_in_comments(
     text: &[u8],
     dialect: &Dialect,

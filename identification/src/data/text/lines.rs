@@ -1,5 +1,7 @@
-//! A text line by line, as long as a line is a line: where a quotation mark may hide the end of one, or returns
-//! end lines by themselves, the rest is left to a reader that knows these.
+//! Reads a text line by line, as long as each record is one line.
+//!
+//! If a quotation mark may hide a line end, or carriage returns end lines, the rest is left to a
+//! CSV reader.
 
 use std::{
     io::{Chain, Cursor, ErrorKind, Read, Result},
@@ -11,36 +13,36 @@ use memchr::{memchr, memchr2};
 use super::BUFFER;
 use crate::data::medium::Opened;
 
-/// What has not been passed yet.
+/// The unread rest of a file.
 pub(super) type Rest = Chain<Cursor<Vec<u8>>, Opened>;
 
-/// The lines of a file, read in large pieces.
+/// Lines of a file, read in large pieces.
 #[derive(Debug)]
 pub(super) struct Lines {
     input: Opened,
     buffer: Vec<u8>,
-    /// What has been read and not passed.
+    /// Bytes read but not consumed.
     left: Range<usize>,
     /// Whether the file has been read to its end.
     is_whole: bool,
-    /// Whether quotation marks or returns have been seen in what is left.
+    /// Whether the remaining bytes contain quotation marks or carriage returns.
     has_marks: bool,
-    /// Lines that have been passed, and their bytes.
+    /// Number of consumed lines, and their bytes.
     passed: usize,
     bytes: u64,
 }
 
-/// What comes next.
+/// Next item.
 pub(super) enum Next {
-    /// A line without its end, by its place in the buffer.
+    /// A line without its end, as a range of the buffer.
     Line(Range<usize>),
-    /// One that has to be read with more care.
+    /// A line that needs a CSV reader.
     Unusual,
     End,
 }
 
 impl Lines {
-    /// The lines of a file from its position on, which is number `bytes` of it.
+    /// Lines of a file from its position, which is byte number `bytes`.
     pub(super) fn new(input: Opened, bytes: u64) -> Self {
         Self {
             input,
@@ -53,22 +55,22 @@ impl Lines {
         }
     }
 
-    /// Number of lines that have been passed.
+    /// Number of consumed lines.
     pub(super) const fn passed(&self) -> usize {
         self.passed
     }
 
-    /// Bytes that have been passed.
+    /// Number of consumed bytes.
     pub(super) const fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// The bytes of a line that has been found last.
+    /// Bytes of the line found last.
     pub(super) fn line(&self, line: Range<usize>) -> &[u8] {
         &self.buffer[line]
     }
 
-    /// Goes to the next line.
+    /// Reads the next line.
     pub(super) fn next(&mut self) -> Result<Next> {
         let Some((line, end)) = self.find()? else {
             return Ok(self.nothing());
@@ -80,7 +82,7 @@ impl Lines {
         Ok(Next::Line(line))
     }
 
-    /// Passes the next line, though quotation marks may stand in it; `false` where it may go on behind its end.
+    /// Consumes a header line, possibly with quotation marks; `None` if it may span lines.
     pub(super) fn pass_header(&mut self) -> Result<Option<Range<usize>>> {
         let Some((line, end)) = self.find()? else {
             return Ok(None);
@@ -94,7 +96,7 @@ impl Lines {
         Ok(Some(line))
     }
 
-    /// What there is where no line is found.
+    /// The result if no line is found.
     fn nothing(&self) -> Next {
         if self.left.is_empty() {
             Next::End
@@ -109,7 +111,7 @@ impl Lines {
         self.passed += 1;
     }
 
-    /// The next line and where the one behind it starts; none at the end, and where it is longer than the buffer.
+    /// Next line and start of the following one; `None` at the end or for an overlong line.
     fn find(&mut self) -> Result<Option<(Range<usize>, usize)>> {
         let mut searched = 0;
         loop {
@@ -132,7 +134,7 @@ impl Lines {
         }
     }
 
-    /// Reads on behind what is left.
+    /// Reads more bytes after the remaining ones.
     fn fill(&mut self) -> Result<()> {
         self.buffer.copy_within(self.left.clone(), 0);
         self.left = 0..self.left.len();
@@ -151,7 +153,7 @@ impl Lines {
         Ok(())
     }
 
-    /// The lines that have been passed, their bytes, and the rest of the file.
+    /// Number of consumed lines and bytes, and the rest of the file.
     pub(super) fn rest(&self) -> Result<(usize, u64, Rest)> {
         let left = self.buffer[self.left.clone()].to_vec();
         let input = self.input.try_clone()?;
@@ -159,7 +161,7 @@ impl Lines {
     }
 }
 
-/// Whether quotation marks or returns stand somewhere.
+/// Whether bytes contain quotation marks or carriage returns.
 fn has_marks(bytes: &[u8]) -> bool {
     memchr2(b'"', b'\r', bytes).is_some()
 }

@@ -1,12 +1,13 @@
-//! Text: lines of numbers, separated by commas, semicolons, tabs or blanks, with or without names.
+//! Text files: lines of numbers, separated by commas, semicolons, tabs or blanks.
 //!
-//! A file is looked through once, from end to end, when it is opened: every cell is checked, samples
-//! are counted and the frequency is told. A small one is in memory then; the numbers of a large one stand in a
-//! temporary file, or it is read again, row by row, whenever its run is gone through.
+//! A file is read once when it is opened. This pass checks every cell, counts samples and computes
+//! the frequency. Small files are then in memory. The numbers of a large file are in a temporary
+//! file, or it is read again, row by row.
 //!
-//! - `dialect`: what separates columns and decimals, and where the names are;
-//! - `lines`, `cells`: plain lines and their numbers, where they stand;
-//! - `squeeze`: columns apart by any number of blanks;
+//! - `dialect`: separators, decimal commas and names;
+//! - `lines`, `cells`: plain lines and their numbers;
+//! - `closely`: error messages for a row;
+//! - `squeeze`: columns separated by several blanks;
 //! - `rows`: rows of plain lines, or of records with quotation marks.
 
 mod cells;
@@ -30,10 +31,10 @@ use super::{
 };
 use crate::error::{Error, Problem};
 
-/// Bytes that are read at once.
+/// Bytes of one read.
 const BUFFER: usize = 1 << 18;
 
-/// A text and how its columns are told apart.
+/// A text file and its dialect.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Text {
     /// The file as the caller named it.
@@ -43,10 +44,10 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// Looks at the beginning of a text.
+    /// Opens a text and detects its dialect.
     ///
     /// # Errors
-    /// A file that can't be read, or that can be read in more than one way.
+    /// A file that cannot be read, or an ambiguous one.
     pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
         let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let mut beginning = Vec::new();
@@ -72,16 +73,16 @@ impl Text {
         self.dialect.columns
     }
 
-    /// The place of a column that is called by its name.
+    /// Index of the column with this name.
     ///
     /// # Errors
-    /// Two columns of one name: nobody knows which one is meant.
+    /// Two columns with this name.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
         let names = self.dialect.names.iter().map(String::as_str);
         only(&self.file, name, names)
     }
 
-    /// What columns there are.
+    /// The existing columns.
     pub(super) fn existing(&self) -> Existing<'_> {
         let names = self.dialect.names.iter().map(String::as_str);
         Existing {
@@ -91,10 +92,10 @@ impl Text {
         }
     }
 
-    /// Goes through some columns, whose names are for messages, from the first row on.
+    /// Reads some columns from the first row on; the names are for messages.
     ///
     /// # Errors
-    /// A file that can't be read any more.
+    /// A file that cannot be read any more.
     pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
         let input = self
             .data()
@@ -102,7 +103,7 @@ impl Text {
         Rows::new(self, wanted, input)
     }
 
-    /// The file behind the mark of its encoding, if it has one, and the length of that.
+    /// The file after its byte order mark, and the length of that mark.
     fn data(&self) -> std::io::Result<(Opened, u64)> {
         let mut file = self.medium.open()?;
         let mut start = Vec::new();
@@ -112,7 +113,7 @@ impl Text {
         Ok((file, mark as u64))
     }
 
-    /// A text that is not one, from a line on where that is known.
+    /// The problem of a broken text, with its line if known.
     fn broken(&self, error: &dyn Display, line: Option<usize>) -> Problem {
         let message = format!("the text can't be read: {error}");
         let problem = Problem::new(Code::LOG_FORMAT, message).file(self.file.as_str());

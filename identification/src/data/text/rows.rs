@@ -1,5 +1,4 @@
-//! The rows of a text: numbers of the columns that are read, line by line where lines are plain, else record by
-//! record with all that quotation marks allow.
+//! Rows of a text: plain lines as long as possible, then CSV records.
 
 use csv::{ByteRecord, Trim};
 use std::io::{Read, Result as IoResult};
@@ -13,13 +12,13 @@ use super::{
 };
 use crate::{data::medium::Opened, error::Error};
 
-/// The rows of a text that is being read.
+/// Remaining rows of a text.
 #[derive(Debug)]
 pub(in crate::data) struct Rows<'a> {
     text: &'a Text,
-    /// Places and names of the columns that are read.
+    /// Indices and names of the requested columns.
     wanted: Vec<(usize, &'a str)>,
-    /// The same places in rising order, each with its number among those wanted.
+    /// Requested columns by increasing index, each with its number in the request.
     order: Vec<(usize, usize)>,
     source: Source,
     /// Line of the last row in the file.
@@ -29,7 +28,7 @@ pub(in crate::data) struct Rows<'a> {
     told: Told,
 }
 
-/// Where rows come from.
+/// Source of the rows.
 #[derive(Debug)]
 enum Source {
     Lines(Lines),
@@ -37,7 +36,7 @@ enum Source {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a file from its position on, which is number `bytes` of it, behind the header if there is one.
+    /// Rows of a file from its position, which is byte number `bytes`, after an optional header.
     pub(super) fn new(
         text: &'a Text,
         wanted: &[(usize, &'a str)],
@@ -72,7 +71,7 @@ impl<'a> Rows<'a> {
         self.is_broken
     }
 
-    /// Bytes that have been read.
+    /// Number of bytes read.
     pub(in crate::data) fn bytes(&self) -> u64 {
         match &self.source {
             Source::Lines(lines) => lines.bytes(),
@@ -80,11 +79,11 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Puts the numbers of the next row into `values`; `false` at the end.
+    /// Writes the next row to `values`; `false` at the end.
     ///
     /// # Errors
-    /// Every cell of the row that is no finite number, cells that are more than those of other rows, or a
-    /// file that can't be read on.
+    /// Every cell of the row that is no finite number, more cells than in other rows, or a file
+    /// that cannot be read further.
     pub(in crate::data) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         let Dialect {
             separator,
@@ -135,7 +134,7 @@ impl<'a> Rows<'a> {
         self.told.read(&row, &self.wanted, values)
     }
 
-    /// Passes the names of the columns.
+    /// Skips the header.
     fn pass_header(&mut self) -> Result<(), Error> {
         let Dialect {
             separator, comment, ..
@@ -155,7 +154,7 @@ impl<'a> Rows<'a> {
         self.advance().map(|_| ())
     }
 
-    /// Goes on record by record.
+    /// Switches to the CSV reader.
     fn leave_lines(&mut self) -> Result<(), Error> {
         if let Source::Lines(lines) = &self.source {
             let rest = lines.rest();
@@ -166,7 +165,7 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Goes to the next record; `false` at the end.
+    /// Reads the next record; `false` at the end.
     fn advance(&mut self) -> Result<bool, Error> {
         let Source::Records(records) = &mut self.source else {
             return Ok(false);
@@ -186,14 +185,14 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// A file that can't be read on.
+    /// The error of a file that cannot be read further.
     fn broken(&mut self, error: &std::io::Error) -> Error {
         self.is_broken = true;
         self.text.broken(error, None).into()
     }
 }
 
-/// A line without the blanks around it, where blanks separate columns.
+/// A line without surrounding blanks, if blanks separate columns.
 fn inside(line: &[u8], separator: u8) -> &[u8] {
     if separator == b' ' {
         line.trim_ascii()
@@ -202,7 +201,7 @@ fn inside(line: &[u8], separator: u8) -> &[u8] {
     }
 }
 
-/// Where records come from.
+/// Source of the records.
 #[derive(Debug)]
 enum Input {
     Plain(Rest),
@@ -223,7 +222,7 @@ impl Read for Input {
 struct Records {
     reader: csv::Reader<Input>,
     record: ByteRecord,
-    /// Lines before them, and their bytes.
+    /// Number of lines before the records, and their bytes.
     lines: usize,
     passed: u64,
 }
@@ -236,7 +235,7 @@ impl Records {
         };
         Self {
             reader: Dialect::builder(dialect.separator, dialect.comment)
-                // Only cells that are read are trimmed.
+                // Only requested cells are trimmed.
                 .trim(Trim::None)
                 .buffer_capacity(BUFFER)
                 .from_reader(input),
@@ -246,18 +245,18 @@ impl Records {
         }
     }
 
-    /// Bytes of the file that have been read.
+    /// Number of bytes of the file read.
     fn bytes(&self) -> u64 {
         self.passed + self.reader.position().byte()
     }
 
-    /// Goes to the next record and tells its line in the file; none at the end.
+    /// Reads the next record and returns its line in the file; `None` at the end.
     fn next(&mut self) -> csv::Result<Option<usize>> {
         if !self.reader.read_byte_record(&mut self.record)? {
             return Ok(None);
         }
-        // The record's own position is before comments and empty lines that precede it; the
-        // reader's is behind its line break, if it has one.
+        // The record's own position is before preceding comments and empty lines. The reader's
+        // position is after its line break, if it has one.
         let before = self.record.position().map_or(0, csv::Position::line);
         let behind = self.reader.position().line().saturating_sub(1);
         Ok(Some(self.lines + before.max(behind) as usize))

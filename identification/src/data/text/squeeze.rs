@@ -1,14 +1,14 @@
-//! Columns that stand apart by any number of blanks and tabs, as if there were one blank between two.
+//! Merges runs of blanks and tabs, so that one blank separates two columns.
 
 use std::io::{BufRead, BufReader, Read, Result};
 
-/// Passes a text on with each run of blanks and tabs as one blank, and none at the ends of a line.
+/// Replaces each run of blanks and tabs by one blank, and removes those at line ends.
 #[derive(Debug)]
 pub(super) struct Squeeze<R> {
     input: BufReader<R>,
-    /// Whether nothing has been passed on of this line.
+    /// Whether nothing of this line has been output.
     at_start: bool,
-    /// Whether blanks were seen that are passed on once something follows them in the line.
+    /// Whether a blank is to be output before the next character of the line.
     waiting: bool,
 }
 
@@ -44,7 +44,7 @@ impl<R: Read> Read for Squeeze<R> {
                         used += 1;
                         byte
                     }
-                    // The byte itself comes behind its blank.
+                    // The byte itself follows its blank.
                     _ if std::mem::take(&mut self.waiting) => b' ',
                     _ => {
                         self.at_start = false;

@@ -1,11 +1,11 @@
-//! Which columns can hold a position within one turn, and the periods that are possible.
+//! Columns that may be wrapped angles, and their possible periods.
 
 use std::f64::consts::TAU;
 
 use super::Rotation;
 use crate::data::expression::Expression;
 
-/// Periods of counters, in counts: those of encoders and of registers of 8 to 32 bits.
+/// Periods of counters, in counts: encoders and registers of 8 to 32 bits.
 pub(super) const COUNTERS: [f64; 25] = {
     let mut all = [0.0; 25];
     let mut bits = 0;
@@ -19,19 +19,19 @@ pub(super) const COUNTERS: [f64; 25] = {
 /// One turn in units of angles: radians, degrees, gons and turns.
 const UNITS: [f64; 4] = [TAU, 360.0, 400.0, 1.0];
 
-/// How much longer than the turn of the joint the turn of its motor may be.
+/// Largest relative excess of the motor's turn over the joint's.
 const ROUNDING: f64 = 1e-6;
 
-/// A position of a rotating joint, or of its motor, as a function of columns.
+/// Position of a rotating joint, or of its motor, as a function of columns.
 pub(in crate::data) struct Position<'a> {
     pub(in crate::data) text: &'a str,
     pub(in crate::data) expression: &'a Expression,
-    /// The factor to rad.
+    /// Factor to rad.
     pub(in crate::data) scale: f64,
 }
 
 impl Rotation {
-    /// The columns of which a position is a linear function, if it is one.
+    /// The columns of a position that is linear in them; empty otherwise.
     pub(in crate::data) fn of_columns(position: &Position<'_>, names: &[&str]) -> Vec<Self> {
         let Some(slopes) = slopes(position.expression, names.len()) else {
             return Vec::new();
@@ -45,7 +45,7 @@ impl Rotation {
         slopes.into_iter().map(one).collect()
     }
 
-    /// A position that is another function of its columns, as an angle of atan2; by its place among all positions.
+    /// A position that is a nonlinear function, such as atan2, by its index among all positions.
     pub(in crate::data) fn of_value(
         position: &Position<'_>,
         place: usize,
@@ -60,8 +60,9 @@ impl Rotation {
     }
 }
 
-/// The periods of a column in which the joint's turn has a length: that of the joint, and those of a motor before a
-/// gear.
+/// Possible periods of a column whose value for one turn of the joint is `joint`.
+///
+/// They are that of the joint, those of a motor before a gear, and those of counters.
 fn periods(joint: f64) -> Vec<f64> {
     let units = UNITS.into_iter();
     let motors = units.filter(|turn| *turn <= joint * (1.0 + ROUNDING));
@@ -70,7 +71,7 @@ fn periods(joint: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The slope of a linear expression in each column that it depends on; none of other expressions.
+/// Slopes of a linear expression in each of its columns; `None` for other expressions.
 fn slopes(expression: &Expression, width: usize) -> Option<Vec<(usize, f64)>> {
     if let Expression::Column(place) = expression {
         return Some(vec![(*place, 1.0)]);
@@ -83,7 +84,7 @@ fn slopes(expression: &Expression, width: usize) -> Option<Vec<(usize, f64)>> {
     let origin = expression.evaluate(&vec![0.0; width]);
     let slopes = (0..width).map(|column| at(column, 1.0) - origin);
     let slopes: Vec<f64> = slopes.collect();
-    // Points that no function but a linear one passes.
+    // Test points that only a linear function satisfies.
     let is_linear = [0.7, -3.3, 41.0].into_iter().all(|factor| {
         let row: Vec<f64> = (0..width)
             .map(|column| factor * (1.0 + 0.61 * column as f64))

@@ -1,17 +1,17 @@
-//! Positions of rotating joints that were logged within one turn.
+//! Unwraps positions of rotating joints that were logged within one turn.
 //!
-//! An encoder of one turn, or a wrapped angle, jumps by the period P of its column where it passes the end of the
-//! turn. The step u between two samples that is nearest to zero modulo P undoes the jump,
+//! A single-turn encoder, or a wrapped angle, jumps by the period P of its column at the end of the
+//! turn. The smallest step u modulo P between two samples removes the jump,
 //!
 //! ```text
 //! u = d - P round(d/P),   d = x_k - x_(k-1),
 //! ```
 //!
-//! as long as the joint turns by less than half a turn between two samples. Columns are unwrapped as they are read,
-//! in their own unit, before expressions, interpolation, filters and differences see them.
+//! if the joint moves by less than half a turn between two samples. Columns are unwrapped on
+//! reading, in their own unit, before expressions, interpolation, filters and differences.
 //!
-//! - `watch`: whether a column wraps, and by which period;
-//! - `columns`: which columns can wrap, and the periods that are possible.
+//! - `watch`: detects whether a column wraps, and its period;
+//! - `columns`: columns that can wrap, and their possible periods.
 
 mod columns;
 mod watch;
@@ -21,21 +21,21 @@ pub(super) use self::{columns::Position, watch::Wrap};
 use super::table;
 use crate::error::Error;
 
-/// A column that may hold a position within one turn.
+/// A column that may be a wrapped angle.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rotation {
-    /// Its place among the columns that are read.
+    /// Index among the requested columns.
     pub(super) column: usize,
-    /// As messages call it.
+    /// Name in messages.
     pub(super) name: String,
-    /// The periods that are possible, in the unit of the column; that of the joint first.
+    /// Possible periods, in the unit of the column; that of the joint first.
     pub(super) periods: Vec<f64>,
-    /// The period by which it wraps, once that is known.
+    /// Period of the wrapped angle, once it is known.
     pub(super) period: Option<f64>,
 }
 
 impl Rotation {
-    /// The same column by its place behind the first `before` ones; none if it comes earlier.
+    /// The same column, with its index reduced by `before`; `None` if that is negative.
     pub(super) fn behind(&self, before: usize) -> Option<Self> {
         let column = self.column.checked_sub(before)?;
         Some(Self {
@@ -45,7 +45,7 @@ impl Rotation {
     }
 }
 
-/// Unwraps the columns of rows that are gone through, and watches those whose period is not known.
+/// Unwraps columns with known periods, and watches the others.
 #[derive(Debug)]
 pub(super) struct Unwrapper {
     columns: Vec<Column>,
@@ -55,7 +55,7 @@ pub(super) struct Unwrapper {
 #[derive(Debug)]
 struct Column {
     rotation: Rotation,
-    /// The value before, as it was logged, and what is added to it.
+    /// The previous logged value, and the offset added to it.
     last: Option<(f64, f64)>,
     watch: Watch,
 }
@@ -72,7 +72,7 @@ impl Unwrapper {
         }
     }
 
-    /// Takes the next row and unwraps its columns.
+    /// Unwraps the columns of the next row.
     pub(super) fn take(&mut self, row: &mut [f64]) {
         for own in &mut self.columns {
             let Some(value) = row.get_mut(own.rotation.column) else {
@@ -90,7 +90,7 @@ impl Unwrapper {
         }
     }
 
-    /// What was found of the columns that were watched: those that wrap.
+    /// The watched columns that wrap.
     pub(super) fn wraps(&self) -> Vec<Wrap> {
         let watched = self.columns.iter();
         watched
@@ -99,7 +99,7 @@ impl Unwrapper {
     }
 }
 
-/// The rest of a table whose columns are unwrapped.
+/// The remaining rows of a table, with unwrapped columns.
 #[derive(Debug)]
 pub(super) struct UnwrappedRows<'a> {
     rows: table::Rows<'a>,
@@ -114,10 +114,10 @@ impl<'a> UnwrappedRows<'a> {
         }
     }
 
-    /// Puts the numbers of the next sample into `values`; `false` at the end.
+    /// Writes the next sample to `values`; `false` at the end.
     ///
     /// # Errors
-    /// Numbers that are not finite, or a file that can't be read on.
+    /// Numbers that are not finite, or a file that cannot be read further.
     pub(super) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         let goes_on = self.rows.next(values)?;
         if goes_on {
@@ -126,7 +126,7 @@ impl<'a> UnwrappedRows<'a> {
         Ok(goes_on)
     }
 
-    /// The rows as they are in the file.
+    /// The rows as stored in the file.
     pub(super) const fn logged(&self) -> &table::Rows<'a> {
         &self.rows
     }

@@ -1,7 +1,7 @@
 use super::{Rotation, Unwrapper};
 use std::f64::consts::TAU;
 
-/// A column that may wrap by some periods.
+/// A column with these possible periods.
 fn rotation(periods: &[f64]) -> Rotation {
     Rotation {
         column: 0,
@@ -22,12 +22,12 @@ fn noise() -> impl FnMut() -> f64 {
     }
 }
 
-/// Wraps an angle into a turn from `low` on.
+/// Wraps an angle to a turn that starts at `low`.
 fn wrapped(angle: f64, low: f64, turn: f64) -> f64 {
     (angle - low).rem_euclid(turn) + low
 }
 
-/// The period that is found for a signal, and the problem that it has.
+/// The period found for a signal, and its problem.
 fn found(signal: &[f64], periods: &[f64]) -> Option<(f64, Option<String>)> {
     let mut watch = Unwrapper::new(vec![rotation(periods)]);
     signal.iter().for_each(|value| watch.take(&mut [*value]));
@@ -36,7 +36,7 @@ fn found(signal: &[f64], periods: &[f64]) -> Option<(f64, Option<String>)> {
     Some((wrap.period, problem))
 }
 
-/// The largest error of an unwrapped signal, but for a multiple of its period.
+/// Largest error of an unwrapped signal, up to a multiple of its period.
 fn error(signal: &[f64], turn: f64, wanted: impl Fn(usize) -> f64) -> f64 {
     let mut own = rotation(&[turn]);
     own.period = Some(turn);
@@ -51,7 +51,7 @@ fn error(signal: &[f64], turn: f64, wanted: impl Fn(usize) -> f64) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// Ten turns in 2000 samples, back and forth besides, in turns.
+/// Ten turns in 2000 samples, with an added oscillation, in turns.
 fn turns(sample: usize) -> f64 {
     let time = sample as f64 / 2000.0;
     10.0 * time + 0.3 * (40.0 * time).sin()
@@ -112,7 +112,7 @@ fn lost_samples_and_turns_that_are_counted_are_no_wraps() {
     assert_eq!(found(&lost, &[TAU]), None);
     let counted: Vec<f64> = (0..2000).map(|sample| TAU * turns(sample)).collect();
     assert_eq!(found(&counted, &[TAU]), None);
-    // A period of another length than the jump.
+    // A period that differs from the jump.
     let signal: Vec<f64> = counted
         .iter()
         .map(|angle| wrapped(*angle, 0.0, TAU))

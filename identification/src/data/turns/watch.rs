@@ -1,38 +1,38 @@
-//! Whether a column wraps: jumps of one period between samples that are smooth otherwise.
+//! Detects wrapped columns: jumps of one period between otherwise smooth samples.
 
 use super::{Rotation, columns::COUNTERS};
 use crate::{error::Problem, significant};
 use overact::Code;
 
-/// Part of a period by which the values of a wrapped column may exceed it: noise is added behind the wrap.
+/// Relative excess of a wrapped column's range over its period, from noise added after wrapping.
 const SLACK: f64 = 0.05;
 
-/// By how much steps may change at a wrap: this part of a period, ...
+/// Largest change of a step at a wrap, as a fraction of the period.
 const LARGEST_CHANGE: f64 = 0.1;
 
-/// ... so many times the mean change elsewhere, and so many of the smallest steps.
+/// Largest change of a step at a wrap, in mean changes elsewhere plus smallest steps.
 const USUAL_CHANGES: f64 = 10.0;
 const RESOLUTIONS: f64 = 2.0;
 
-/// Steps of more than this part of a turn, after one of that part, may as well go the other way round.
+/// A step above this fraction of a turn, after one above the second, is ambiguous.
 const AMBIGUOUS: f64 = 0.4;
 const BEFORE_AMBIGUOUS: f64 = 0.3;
 
-/// A column that wraps.
+/// A wrapped column.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::data) struct Wrap {
     pub(in crate::data) name: String,
-    /// The place of the column where it was watched.
+    /// Index of the column where it was watched.
     pub(in crate::data) column: usize,
     pub(in crate::data) period: f64,
-    /// How often it wraps.
+    /// Number of wraps.
     count: usize,
-    /// The sample at which its direction is not known any more, and the step there in turns.
+    /// First sample of ambiguous direction, and the step there in turns.
     ambiguous: Option<(usize, f64)>,
 }
 
 impl Wrap {
-    /// What is done to the column, in words.
+    /// A note on the unwrapped column.
     pub(in crate::data) fn note(&self) -> String {
         format!(
             "`{}` was logged within one turn and is unwrapped: it jumps by {} {} times",
@@ -42,7 +42,7 @@ impl Wrap {
         )
     }
 
-    /// What is wrong with a column of which the direction of a step is not known.
+    /// The problem of a column with an ambiguous step.
     pub(in crate::data) fn problem(&self, file: &str) -> Option<Problem> {
         let (sample, turns) = self.ambiguous?;
         let message = format!(
@@ -62,34 +62,34 @@ impl Wrap {
     }
 }
 
-/// Follows a column.
+/// Statistics of a watched column.
 #[derive(Debug)]
 pub(super) struct Watch {
     samples: usize,
     last: f64,
     low: f64,
     high: f64,
-    /// The smallest step that is not zero.
+    /// Smallest non-zero step.
     resolution: f64,
-    /// Whether all values are whole numbers, as those of counters.
+    /// Whether all values are integers, as those of counters.
     is_whole: bool,
     candidates: Vec<Candidate>,
 }
 
-/// What the column is like if this is its period.
+/// Statistics for a possible period.
 #[derive(Debug)]
 struct Candidate {
     period: f64,
     /// Whether it is the turn of the joint, not that of a motor or a counter.
     is_joint: bool,
-    /// The step before.
+    /// Previous step.
     step: Option<f64>,
     wraps: Changes,
     others: Changes,
     ambiguous: Option<(usize, f64)>,
 }
 
-/// Changes of a step from one sample to the next.
+/// Changes between successive steps.
 #[derive(Debug, Default)]
 struct Changes {
     sum: f64,
@@ -123,7 +123,7 @@ impl Watch {
         }
     }
 
-    /// Takes the next value.
+    /// Adds the next value.
     pub(super) fn take(&mut self, value: f64) {
         if self.samples > 0 {
             let step = value - self.last;
@@ -141,7 +141,7 @@ impl Watch {
         self.samples += 1;
     }
 
-    /// The period by which the column wraps, if it does: the one that makes it smoothest.
+    /// Period by which the column wraps, if it does: the one with the smoothest result.
     pub(super) fn wrap(&self, rotation: &Rotation) -> Option<Wrap> {
         let range = self.high - self.low;
         let fits = |own: &&Candidate| {
@@ -165,12 +165,12 @@ impl Watch {
 }
 
 impl Candidate {
-    /// Takes the next step, which leads to the sample of this number.
+    /// Adds the next step, which leads to sample number `sample`.
     fn take(&mut self, logged: f64, sample: usize) {
         let nearest = |step: f64| step - self.period * (step / self.period).round();
         let step = nearest(logged);
         let before = self.step.replace(step);
-        // Steps near half a turn change by little where they are taken for ones of the other direction.
+        // Steps near half a turn change little if their direction is taken wrongly.
         let change = nearest(step - before.unwrap_or(step)).abs();
         let changes = if logged.abs() > 0.5 * self.period {
             &mut self.wraps

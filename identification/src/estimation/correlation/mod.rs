@@ -1,29 +1,30 @@
-//! How residuals hang together over time and between the lines, and what that means for the
-//! estimates.
+//! Covariance of the estimates for residuals correlated over time and between lines.
 //!
-//! The deviations (46)-(47) hold for white residuals. Those of a real robot, or of a model that lacks
-//! something, are correlated: cogging and friction return with every period of the trajectory, and
-//! what returns does not average out. Least squares χ = A^-1 Σ_j λ_j W_jᵀ Y_j with
-//! A = Σ_j λ_j W_jᵀ W_j and the weights λ_j of the lines has the covariance
+//! The standard deviations (46)-(47) hold for white residuals. Real residuals are correlated:
+//! cogging and friction repeat with the trajectory and do not average out. Least squares χ = A^-1
+//! Σ_j λ_j W_jᵀ Y_j with A = Σ_j λ_j W_jᵀ W_j and the weights λ_j of the lines has the covariance
 //!
 //! ```text
 //! A^-1 M A^-1,   M = Σ_jk λ_j λ_k W_jᵀ Γ_jk W_k,
 //! ```
 //!
-//! where Γ_jk(t - s) are the covariances of the residuals of lines j and k. They are taken from the
-//! residuals themselves at all lags of a piece of the data (no window: a residual that repeats itself
-//! with the trajectory stays as bad however often it is repeated). By the transform over time, padded
-//! so that nothing wraps round, M is a sum over frequencies,
+//! where Γ_jk(t - s) are the covariances of the residuals of lines j and k. They are estimated from
+//! the residuals at all lags of a piece of the data. Without a window, a residual that repeats with
+//! the trajectory keeps its full effect. With a zero-padded Fourier transform over time,
 //!
 //! ```text
 //! M = Σ_f Re(u_f u_f*)/(P N),   u_f = Σ_j λ_j W_j(f)* ρ_j(f),
 //! ```
 //!
-//! with P the padded length and N the samples of the piece. The fit has taken away a part of the
-//! residual where the columns are strong; each frequency is freed of that by its leverage
-//! h_f = Σ_j λ_j W_j(f)* A^-1 W_j(f)/(N r), dividing by 1 - h_f. Where the fit has a frequency nearly to
-//! itself, as a constant column has frequency zero, there is little to divide: there the neighbouring
-//! frequencies speak, as far as they tell more.
+//! with P the padded length and N the samples of the piece. The fit removes part of the residual.
+//! Each frequency is corrected by 1/(1 - h_f) with its leverage
+//!
+//! ```text
+//! h_f = Σ_j λ_j W_j(f)* A^-1 W_j(f)/(N r).
+//! ```
+//!
+//! If the leverage is large, as at frequency zero of a constant column, the residual there is too
+//! small to correct. The neighbouring frequencies replace it if they are larger.
 
 use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
@@ -37,20 +38,19 @@ use crate::{
     series::LineResidual,
 };
 
-/// Equations of a line that are transformed at once.
+/// Largest number of equations of a line in one transform.
 const LARGEST_PIECE: usize = 1 << 12;
 
-/// A frequency that the fit has nearly to itself says nothing about the residual; its share is freed
-/// of the leverage only up to here.
+/// Largest leverage that is corrected; beyond it a frequency says nothing about the residual.
 const LARGEST_LEVERAGE: f64 = 0.9;
 
-/// Frequencies on either side that are neighbours.
+/// Number of neighbouring frequencies on either side.
 const NEIGHBOURS: usize = 10;
 
 /// Lags of the plotted autocorrelation.
 const LAGS: usize = 200;
 
-/// 95 % of normal values are within so many deviations.
+/// 95 % of normal values lie within this many standard deviations.
 const NORMAL_95: f64 = 1.96;
 
 /// The matrix M of a set of columns.
@@ -61,8 +61,9 @@ pub(crate) struct Noise {
 }
 
 impl Noise {
-    /// The matrix of the residual which the `estimation` of the columns `selected` leaves; none without
-    /// successive equations.
+    /// M for the residual of the `estimation` of the columns `selected`.
+    ///
+    /// `None` without successive equations.
     pub(crate) fn new(
         system: &System,
         selected: &[usize],
@@ -99,8 +100,10 @@ impl Noise {
         })
     }
 
-    /// Standard deviations of an estimate of some of the columns, from its R^-1: those under white
-    /// residuals where these are larger, since the spectrum of few data can miss what is there.
+    /// Standard deviations of an estimate of some of the columns.
+    ///
+    /// They are at least those for white residuals, since the spectrum of short data can be too
+    /// small.
     pub(crate) fn deviations(&self, selected: &[usize], estimation: &Estimation) -> Vec<f64> {
         let places: Vec<usize> = selected
             .iter()
@@ -120,7 +123,7 @@ impl Noise {
     }
 }
 
-/// Pieces of a stretch that are short enough: first equation and number of equations.
+/// Splits a stretch into pieces: first equation and number of equations.
 pub(crate) fn pieces(stretch: &Stretch) -> impl Iterator<Item = (&Stretch, usize, usize)> {
     let rows = stretch.lines.first().map_or(0, DMatrix::nrows);
     let count = rows.div_ceil(LARGEST_PIECE).max(1);
@@ -130,7 +133,7 @@ pub(crate) fn pieces(stretch: &Stretch) -> impl Iterator<Item = (&Stretch, usize
     })
 }
 
-/// What all pieces share.
+/// Data that all pieces share.
 struct Context<'a> {
     selected: &'a [usize],
     values: &'a [f64],
@@ -141,7 +144,7 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// The share of one piece in M.
+    /// Contribution of one piece to M.
     fn piece(&self, stretch: &Stretch, first: usize, count: usize) -> DMatrix<f64> {
         let p = self.selected.len();
         if count == 0 {
@@ -159,7 +162,7 @@ impl Context<'_> {
             .map(|bin| lines.iter().map(|line| line.leverage[bin]).sum::<f64>())
             .map(|sum| (sum / (count * lines.len()) as f64).min(LARGEST_LEVERAGE))
             .collect();
-        // Frequencies inside stand for their negative ones, too.
+        // Inner frequencies also represent their negative ones.
         let scale = |bin: usize| {
             let twice = if bin == 0 || bin + 1 == bins {
                 1.0
@@ -182,7 +185,7 @@ impl Context<'_> {
                 ]
             };
             let scaled: Vec<[f64; 3]> = (0..bins).map(scaled).collect();
-            // Column by column, as they lie in memory.
+            // Column by column, as stored in memory.
             for column in 0..p {
                 let (mut to_real, mut to_imaginary) =
                     (real.column_mut(column), imaginary.column_mut(column));
@@ -202,7 +205,7 @@ impl Context<'_> {
         share + square(&real) + square(&imaginary)
     }
 
-    /// The spectra of a line.
+    /// Spectra of a line.
     fn line(&self, fourier: &Fourier, rows: &View<'_>, weight: f64) -> Line {
         let (real, imaginary) = self.spectra(fourier, rows);
         let mut leverage = vec![0.0; fourier.frequencies()];
@@ -223,7 +226,7 @@ impl Context<'_> {
         }
     }
 
-    /// Real and imaginary parts of the spectra of the selected columns, frequencies x columns.
+    /// Real and imaginary parts of the spectra of the selected columns, frequencies × columns.
     fn spectra(&self, fourier: &Fourier, rows: &View<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
         let bins = fourier.frequencies();
         let (mut real, mut imaginary) = (Vec::new(), Vec::new());
@@ -243,29 +246,28 @@ impl Context<'_> {
     }
 }
 
-/// Mᵀ M, as a product of matrices, which is quicker than one of columns.
+/// Mᵀ M as a matrix product, which is faster than a product of columns.
 pub(crate) fn square(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     matrix.transpose() * matrix
 }
 
-/// The spectra of the residual and the columns of a line.
+/// Spectra of the residual and the columns of a line.
 struct Line {
     weight: f64,
     residual: Spectrum,
     real: DMatrix<f64>,
     imaginary: DMatrix<f64>,
-    /// The line's share in N r times the leverage.
+    /// Contribution of the line to N r h_f.
     leverage: Vec<f64>,
 }
 
 impl Line {
-    /// What the neighbours have more of the residual's square than a frequency itself, in so far as the
-    /// fit has taken it away.
+    /// Excess of the neighbours' squared residual over that of each frequency, times its leverage.
     fn missing(&self, leverage: &[f64]) -> Vec<f64> {
         let squares: Vec<f64> = self.residual.squares().collect();
         let around = |bin: usize| {
             let range = bin.saturating_sub(NEIGHBOURS)..(bin + NEIGHBOURS + 1).min(squares.len());
-            // A square over 1 - h, weighted by 1 - h.
+            // A square by 1 - h, weighted with 1 - h.
             let sum: f64 = squares[range.clone()].iter().sum();
             let weight: f64 = leverage[range].iter().map(|leverage| 1.0 - leverage).sum();
             sum / weight
@@ -289,8 +291,9 @@ pub(crate) fn residual(rows: &View<'_>, selected: &[usize], values: &[f64]) -> V
     residual.iter().copied().collect()
 }
 
-/// Autocorrelation and spectrum of the residual of line number `line`, decimated to one equation in
-/// `interval` seconds; its values over time are left empty.
+/// Autocorrelation and spectrum of the residual of line number `line`.
+///
+/// Equations are `interval` seconds apart. The values over time stay empty.
 pub(crate) fn line_residual(
     system: &System,
     line: usize,
@@ -337,8 +340,9 @@ pub(crate) fn line_residual(
     }
 }
 
-/// Bartlett's estimate of the one-sided power spectral density at as many frequencies as there are
-/// lags: the transform of the autocovariance, tapered linearly.
+/// Bartlett's estimate of the one-sided power spectral density, at as many frequencies as lags.
+///
+/// It is the transform of the linearly tapered autocovariance.
 fn spectrum(sums: &[f64], count: usize, interval: f64) -> (Vec<f64>, Vec<f64>) {
     let size = sums.len();
     let last = size.saturating_sub(1).max(1);

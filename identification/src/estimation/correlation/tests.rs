@@ -1,4 +1,4 @@
-//! Deviations against repetitions of synthetic experiments.
+//! Standard deviations against repetitions of synthetic experiments.
 
 use super::super::estimate::{Estimation, estimate};
 use super::{Noise, line_residual};
@@ -17,8 +17,9 @@ use rand_pcg::Pcg64;
 const SAMPLES: usize = 600;
 const TRUTH: [f64; 3] = [2.0, -1.0, 0.5];
 
-/// Two lines: slow columns, a constant and a fast one, with residuals x_k = a x_(k-1) + white that
-/// the lines share in part.
+/// Two lines with slow columns, a constant and a fast one.
+///
+/// The residuals are x_k = a x_(k-1) + white noise, partly common to the lines.
 fn system(a: f64, seed: u64) -> System {
     let mut generator = Pcg64::seed_from_u64(seed);
     let mut white = || {
@@ -116,11 +117,11 @@ fn deviations_are_those_of_many_repetitions() {
         let (white, correlated) = (ratio(white), ratio(correlated));
         println!("a = {a}: white {white:.2?}, correlated {correlated:.2?} of the true deviations");
         for ratio in correlated {
-            // The constant suffers most: both lines have a part of the lowest frequency.
+            // The constant has the largest error: both lines share the lowest frequency.
             assert!((0.7..1.35).contains(&ratio), "{a}: {ratio}");
         }
         if a > 0.0 {
-            // The constant and the slow column suffer from slow residuals.
+            // Slow residuals affect the constant and the slow column.
             assert!(white[0] < 0.5 && white[1] < 0.5);
         }
     }
@@ -128,7 +129,7 @@ fn deviations_are_those_of_many_repetitions() {
 
 #[test]
 fn a_residual_that_repeats_itself_does_not_average_out() {
-    // A forgotten harmonic with the period of the trajectory: forty periods tell no more than ten.
+    // A missing harmonic with the trajectory's period: more periods add no information.
     let with_periods = |periods: usize| {
         let samples = 100 * periods;
         let mut rows = DMatrix::zeros(samples, 3);
@@ -181,7 +182,7 @@ fn autocorrelation_and_spectrum_are_those_of_the_process() {
         assert!((found.autocorrelation[lag] - expected).abs() < 0.1);
     }
     assert!(found.within_bound < 0.9);
-    // The density integrates to the variance, and slow parts are the strongest.
+    // The density integrates to the variance, and low frequencies dominate.
     let step = found.frequency_hz[1];
     let inner: f64 = found.power.iter().sum::<f64>()
         - 0.5 * (found.power[0] + found.power[found.power.len() - 1]);

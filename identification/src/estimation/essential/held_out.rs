@@ -1,7 +1,7 @@
-//! Cross-validation inside the data: each fold is predicted from all others.
+//! Cross-validation within the data: each fold is predicted from all others.
 //!
-//! A fold is a run, where the other runs determine the parameters without it; else it is the same part
-//! of every run. From R factors, a fold costs one small factorisation, however long the runs are.
+//! A fold is a run if the other runs determine the parameters, else the same part of every run.
+//! From R factors, a fold costs one small factorisation, for runs of any length.
 
 use super::super::estimate::percent;
 use crate::regression::{
@@ -10,7 +10,7 @@ use crate::regression::{
     system::{Part, System},
 };
 
-/// The folds of a system.
+/// Folds of a system.
 #[derive(Debug, Clone)]
 pub(crate) struct HeldOut {
     folds: Vec<Fold>,
@@ -18,21 +18,22 @@ pub(crate) struct HeldOut {
     measured: f64,
 }
 
-/// Data that are held out, and all others.
+/// A fold and all other data.
 #[derive(Debug, Clone)]
 struct Fold {
-    /// Equations of the lines together, unweighted.
+    /// Unweighted equations of the fold, all lines together.
     own: Factor,
-    /// The others', weighted.
+    /// Weighted equations of the other folds.
     others: Factor,
 }
 
 impl HeldOut {
-    /// The folds of a system whose lines have the given weights; none where the columns `selected` are
-    /// not determined without one of them.
+    /// Folds of a system with these line weights.
+    ///
+    /// `None` if the columns `selected` are not determined without one of the folds.
     pub(crate) fn new(system: &System, selected: &[usize], weights: &[f64]) -> Option<Self> {
         let runs: Vec<usize> = system.parts.iter().map(|part| part.run).collect();
-        // The number of each part within its run.
+        // Number of each part within its run.
         let parts: Vec<usize> = (0..runs.len())
             .map(|part| {
                 runs[..part]
@@ -88,12 +89,12 @@ impl HeldOut {
         })
     }
 
-    /// 100 ||Y - W χ||/||Y|| over all folds, χ being estimated from the others each time.
+    /// 100 ||Y - W χ||/||Y|| over all folds, with χ estimated from the others.
     pub(super) fn error_percent(&self, selected: &[usize]) -> Option<f64> {
         self.error_percent_in(self, selected)
     }
 
-    /// ||Y - W χ||² of each fold, χ being estimated from the others.
+    /// ||Y - W χ||² of each fold, with χ estimated from the others.
     pub(crate) fn squares(&self, selected: &[usize]) -> Option<Vec<f64>> {
         let square = |fold: &Fold| {
             let reduced = fold.others.reduced(selected);
@@ -103,8 +104,9 @@ impl HeldOut {
         self.folds.iter().map(square).collect()
     }
 
-    /// The relative error with the equations of another projection: its folds are predicted by what is
-    /// estimated from the others of this one.
+    /// Relative error of predicting another projection's folds.
+    ///
+    /// χ is estimated from the other folds of this projection.
     pub(crate) fn error_percent_in(&self, other: &Self, selected: &[usize]) -> Option<f64> {
         if self.folds.len() != other.folds.len() {
             return None;

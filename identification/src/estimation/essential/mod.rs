@@ -1,21 +1,18 @@
-//! Essential parameters: backward elimination of the base parameters that the data do not
-//! determine, section 5.3 of the paper, with a second opinion.
+//! Essential parameters by backward elimination, section 5.3 of the paper, with two further tests.
 //!
-//! The parameter of the largest relative standard deviation is cancelled and the rest estimated
-//! anew, until max σ_r/min σ_r < r_σ. The rule can walk past the right model: with weak excitation
-//! it goes on cancelling parameters that the data do determine, while the relative error stays
-//! harmless. So every step is judged twice:
+//! The paper removes the parameter of largest relative standard deviation and repeats until max
+//! σ_r/min σ_r < r_σ. With weak excitation, this rule also removes parameters that the data
+//! determine, while the relative error stays small. Two tests therefore judge each step:
 //!
-//! - *Significance*: F = (χ/σ)² is the statistic of the test that the parameter is zero, σ being the
-//!   deviation under correlated residuals (as many as there are, not as many as independent ones would
-//!   be). Above the square of the threshold the data speak clearly for the parameter.
-//! - *Consequence*: a significant parameter may still be small (friction of a light robot). It matters
-//!   when without it data that were held out, whole runs where there are enough of them, are predicted
-//!   worse, or when another parameter moves away from its base estimate to make up for it, so far that
-//!   the inputs feel it.
+//! - *Significance*: F = (χ/σ)² tests whether the parameter is zero, with σ for correlated
+//!   residuals. A parameter with F above the squared threshold is significant.
+//! - *Consequence*: a significant parameter may still be unimportant, such as friction of a light
+//!   robot. It matters if its removal worsens the prediction of folds left out of the estimation.
+//!   It also matters if another parameter drifts from its base estimate enough to change the
+//!   torques.
 //!
-//! A significant parameter that matters is not cancelled, and the elimination ends there. The path is
-//! recorded as far as r_σ alone would go, so that both ends can be compared.
+//! A significant parameter that matters is kept, and the elimination ends there. The path is
+//! recorded as far as r_σ alone would go, to compare both ends.
 
 mod held_out;
 
@@ -34,14 +31,15 @@ use crate::{
 
 pub(crate) use held_out::HeldOut;
 
-/// Relative error in percent below which the fit is exact but for rounding, and deviations are
-/// rounding, too.
+/// Relative error in percent below which the fit is exact up to rounding.
+///
+/// Standard deviations are then rounding errors, too.
 const EXACT_PERCENT: f64 = 1e-7;
 
 /// One step of the elimination.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Removal {
-    /// Name of the cancelled parameter.
+    /// Name of the removed parameter.
     pub name: String,
     /// Its column.
     #[serde(skip)]
@@ -56,26 +54,25 @@ pub struct Removal {
     pub relative_error_before_percent: f64,
     /// ||ρ||/||Y|| after the step, percent.
     pub relative_error_after_percent: f64,
-    /// F statistic of the cancellation, (χ/σ)² with the σ of correlated residuals.
+    /// F statistic of the removal, (χ/σ)² with σ for correlated residuals.
     pub f_statistic: f64,
-    /// Whether the parameter was significant all the same: F above the square of the threshold.
+    /// Whether the parameter was significant: F above the squared threshold.
     pub significant: bool,
-    /// ||ρ||/||Y|| on parts of the data that were not estimated from, before the step, percent; none
-    /// where the data can't be divided.
+    /// Cross-validated ||ρ||/||Y|| before the step, percent; `None` if the data cannot be divided.
     pub held_out_before_percent: Option<f64>,
-    /// Relative error of the held-out data after the step, percent.
+    /// Cross-validated ||ρ||/||Y|| after the step, percent.
     pub held_out_after_percent: Option<f64>,
-    /// The remaining parameter that the step moves most, seen from the base estimate and counted in
-    /// units of the tolerance.
+    /// The remaining parameter with the largest drift from its base estimate.
     pub drift: Option<Drift>,
-    /// Whether the step was taken. Behind the first one that was refused stand those that r_σ alone
-    /// would have taken, too.
+    /// Whether the step was taken.
+    ///
+    /// After the first refused step follow those that r_σ alone would have taken.
     pub accepted: bool,
-    /// Why it was taken or refused, in words.
+    /// Reason, in words.
     pub reason: String,
 }
 
-/// How far a step of the elimination leads a remaining parameter from its base estimate.
+/// Drift of a remaining parameter from its base estimate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Drift {
     /// Name of the parameter.
@@ -88,31 +85,32 @@ pub struct Drift {
     pub inputs_percent: f64,
 }
 
-/// The essential parameters and the way to them.
+/// Essential parameters and the path of the elimination.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Essential {
-    /// Columns that are left, in the order of the base parameters.
+    /// Remaining columns, in the order of the base parameters.
     pub selected: Vec<usize>,
     /// Their names.
     pub names: Vec<String>,
     /// Their estimates.
     pub estimation: Estimation,
-    /// What was cancelled, in order, and the step that was refused, if one was.
+    /// Removed parameters in order, and the refused step, if there is one.
     pub removals: Vec<Removal>,
-    /// Why the elimination ended, in words.
+    /// Reason for the end of the elimination, in words.
     pub stop: String,
-    /// The correlation of the residual that all base parameters leave.
+    /// Correlation of the base estimate's residual.
     pub(crate) noise: Option<Noise>,
-    /// The parts of the data that are held out in turn.
+    /// Folds of the cross-validation.
     pub(crate) folds: Option<HeldOut>,
 }
 
-/// Eliminates parameters, starting from the estimation `start` of the columns `selected` with
-/// their `names`.
+/// Eliminates parameters, starting from the estimation `start` of the columns `selected`.
+///
+/// `names` are those of the columns.
 ///
 /// # Errors
-/// An estimation that is not possible.
+/// An estimation fails.
 pub fn essential(
     system: &System,
     selected: &[usize],
@@ -158,7 +156,7 @@ pub fn essential(
     })
 }
 
-/// Why the elimination ended, in words; `last` is where r_σ alone ends.
+/// Reason for the end of the elimination; `last` is where r_σ alone ends.
 fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
     let refused = removals.iter().find(|removal| !removal.accepted);
     match refused {
@@ -182,7 +180,7 @@ fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
     }
 }
 
-/// Where the elimination is.
+/// State of the elimination.
 struct Place {
     selected: Vec<usize>,
     names: Vec<String>,
@@ -190,23 +188,23 @@ struct Place {
     held_out: Option<f64>,
 }
 
-/// What all steps share.
+/// Data that all steps share.
 struct Walk<'a> {
     system: &'a System,
     settings: &'a Settings,
     thresholds: Thresholds,
     noise: Option<Noise>,
     folds: Option<HeldOut>,
-    /// The base parameters that are significant.
+    /// Significant base parameters.
     base: Vec<Known>,
 }
 
-/// A base parameter that is significant.
+/// A significant base parameter.
 struct Known {
     column: usize,
     value: f64,
     deviation: f64,
-    /// The norm of its column by that of the inputs.
+    /// Norm of its column divided by that of the inputs.
     influence: f64,
 }
 
@@ -241,12 +239,12 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The error on held-out data of the model with these columns, percent.
+    /// Cross-validated relative error with these columns, percent.
     fn held_out(&self, selected: &[usize]) -> Option<f64> {
         self.folds.as_ref()?.error_percent(selected)
     }
 
-    /// The parameter that r_σ would cancel next, or `None` at its stop.
+    /// The parameter that r_σ would remove next; `None` where r_σ stops.
     fn worst(&self, here: &Place) -> Option<usize> {
         let estimation = &here.estimation;
         if here.selected.len() < 2
@@ -260,7 +258,7 @@ impl<'a> Walk<'a> {
         largest.map(|(worst, _)| worst)
     }
 
-    /// The place without one of the parameters.
+    /// The state without one of the parameters.
     fn without(&self, here: &Place, worst: usize) -> Result<Place, Error> {
         let (mut selected, mut names) = (here.selected.clone(), here.names.clone());
         selected.remove(worst);
@@ -273,7 +271,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// The step from one place to the next, judged.
+    /// The step between two states, with its tests.
     fn removal(&self, here: &Place, worst: usize, next: &Place) -> Removal {
         let (estimation, rest) = (&here.estimation, &next.estimation);
         let value = estimation.values[worst];
@@ -281,7 +279,7 @@ impl<'a> Walk<'a> {
         let ratio = value.abs() / own;
         let significant = ratio > self.thresholds.significance;
         let drift = self.drift(next);
-        // Without held-out data the data themselves have to do.
+        // Without folds, use the error on the training data.
         let (before, after) = match (here.held_out, next.held_out) {
             (Some(before), Some(after)) => (before, after),
             _ => (
@@ -328,7 +326,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The significant parameter that is farthest from its base estimate, in units of the tolerance.
+    /// The significant parameter with the largest drift, in units of the tolerance.
     fn drift(&self, next: &Place) -> Option<Drift> {
         let places = next.selected.iter().enumerate();
         let drifts = places.filter_map(|(place, column)| {
@@ -344,8 +342,9 @@ impl<'a> Walk<'a> {
         drifts.max_by(|a, b| self.measure(a).total_cmp(&self.measure(b)))
     }
 
-    /// A drift in units of the tolerance: it counts where it is large for the parameter, beyond the
-    /// noise, and large for the inputs.
+    /// A drift in units of the tolerance.
+    ///
+    /// It counts only if it is large for the parameter, beyond the noise and large for the inputs.
     fn measure(&self, drift: &Drift) -> f64 {
         let tolerance = &self.thresholds;
         (drift.percent / tolerance.drift_percent)
@@ -354,7 +353,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The norm of a column by that of the inputs.
+/// Norm of a column divided by that of the inputs.
 fn influence(system: &System, column: usize) -> f64 {
     let norm = |of: &dyn Fn(&Factor) -> f64| {
         let squares = system.lines.iter().map(|line| of(line).powi(2));
@@ -368,7 +367,7 @@ fn influence(system: &System, column: usize) -> f64 {
     }
 }
 
-/// Deviations under correlated residuals where they are known, else under white ones.
+/// Standard deviations for correlated residuals if known, else for white ones.
 fn deviations(noise: Option<&Noise>, selected: &[usize], estimation: &Estimation) -> Vec<f64> {
     noise.map_or_else(
         || estimation.standard_deviations.clone(),

@@ -1,18 +1,20 @@
-//! Durbin, Wu and Hausman: whether least squares and instruments estimate the same.
+//! Durbin-Wu-Hausman test: do least squares and instrumental variables agree?
 //!
-//! If the regressor has no errors, both estimates are consistent and their difference d is noise. Its
-//! instants are weighed by M = [-(Wᵀ Λ² W)^-1, (Zᵀ Λ² W)^-1], so its covariance V is found as that of any
-//! linear estimate (see `intervals::scores`), whatever the residual is like in time, size and between the
-//! lines; the textbook difference of two covariance matrices holds for white residuals only. Then
+//! If the regressor has no errors, both estimates are consistent and their difference d is noise.
+//! It is linear in the data with the influence M = [-(Wᵀ Λ² W)^-1, (Zᵀ Λ² W)^-1]. Its covariance V
+//! is therefore estimated like that of any linear estimate (see `intervals::scores`), for residuals
+//! of any correlation and size. The textbook difference of two covariances requires white
+//! residuals. Then
 //!
 //! ```text
 //! F = (ν - k + 1)/(ν k) dᵀ V^-1 d
 //! ```
 //!
-//! has Fisher's distribution of k and ν - k + 1 degrees of freedom (Hotelling), with k the rank of V:
-//! columns without errors add nothing. For each parameter d_i/√V_ii is Student's of ν_i degrees, and
-//! counts as different at the level of the whole test divided by the number of parameters (Bonferroni).
-//! Where k exceeds half of ν, the joint test is that of the parameter that differs most.
+//! has Fisher's distribution with k and ν - k + 1 degrees of freedom (Hotelling), where k is the
+//! rank of V; columns without errors do not count. For each parameter, d_i/√V_ii has Student's
+//! distribution with ν_i degrees of freedom. A parameter differs at the level of the test divided
+//! by the number of parameters (Bonferroni). If k exceeds ν/2, the joint test is that of the
+//! parameter with the largest difference.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -28,45 +30,47 @@ use crate::{
     regression::system::System,
 };
 
-/// The probability with which estimates that agree are called different: what one of twelve families of checks has of
-/// false alarms in one of a hundred reports.
+/// Level of the test.
+///
+/// It is the part of one of twelve families of checks of a false-alarm rate of 1 % per report.
 pub(crate) const LEVEL: f64 = 0.01 / 12.0;
 
-/// Directions of V below this part of the largest, in units of deviations, do not count: there the
-/// estimates differ by a hundredth of what they may differ by otherwise, which tells nothing of errors.
+/// Smallest eigenvalue of the scaled V that counts, relative to the largest.
+///
+/// Below it, the estimates can only differ by a hundredth of the largest difference.
 const SMALLEST_DIRECTION: f64 = 1e-4;
 
-/// A difference below this part of the standard deviation is rounding.
+/// A difference below this fraction of the standard deviation is rounding.
 const SMALLEST_DIFFERENCE: f64 = 1e-6;
 
-/// The outcome of the test.
+/// Result of the test.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hausman {
     /// F.
     pub(crate) statistic: f64,
     /// k and ν - k + 1.
     pub(crate) freedoms: [f64; 2],
-    /// Of a larger F by chance.
+    /// p-value.
     pub(crate) probability: f64,
-    /// Whether all parameters are tested together, not the one that differs most.
+    /// Whether all parameters are tested together, instead of the one with the largest difference.
     pub(crate) together: bool,
-    /// Each parameter.
+    /// Difference of each parameter.
     pub(crate) parameters: Vec<Difference>,
 }
 
-/// What both estimates of a parameter differ by.
+/// Difference between both estimates of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Difference {
-    /// d_i, instruments less least squares.
+    /// d_i, instrumental variables minus least squares.
     pub(crate) difference: f64,
     /// √V_ii.
     pub(crate) deviation: f64,
-    /// Of a larger difference by chance.
+    /// p-value.
     pub(crate) probability: f64,
 }
 
 impl Hausman {
-    /// Compares the estimates of the columns `selected`; none without successive equations.
+    /// Compares the estimates of the columns `selected`; `None` without successive equations.
     pub(crate) fn new(
         system: &System,
         selected: &[usize],
@@ -133,7 +137,7 @@ impl Hausman {
         }
     }
 
-    /// The joint test where there are too few degrees of freedom for all parameters together.
+    /// The joint test if there are too few degrees of freedom for all parameters together.
     fn of_the_largest(
         parameters: Vec<Difference>,
         places: &[usize],
@@ -155,18 +159,18 @@ impl Hausman {
         }
     }
 
-    /// Whether the estimates differ by more than chance explains.
+    /// Whether the estimates differ significantly.
     pub(crate) fn rejects(&self) -> bool {
         self.probability < LEVEL
     }
 
-    /// Whether a parameter on its own does.
+    /// Whether a parameter differs significantly.
     pub(crate) fn differs(&self, parameter: &Difference) -> bool {
         parameter.probability * (self.parameters.len() as f64) < LEVEL
     }
 }
 
-/// dᵀ V^-1 d of some parameters in units of their deviations, and the rank of V.
+/// dᵀ V^-1 d of some parameters, scaled by their standard deviations, and the rank of V.
 fn distance(parameters: &[Difference], places: &[usize], covariance: &DMatrix<f64>) -> (f64, f64) {
     let deviation = |place: usize| parameters[places[place]].deviation;
     let scaled = DMatrix::from_fn(places.len(), places.len(), |i, j| {

@@ -1,30 +1,30 @@
 //! Instrumental variables: estimates that errors of the regressor do not bias.
 //!
-//! Least squares minimises ||Y - W χ|| as if W were exact. Its columns come from measured positions,
-//! and an error of W that is independent from one instant to the next pulls the estimate towards zero,
-//! however long the run is. Instruments Z are columns that go with the motion as those of W do, but
-//! not with the errors of this W. Then Zᵀ(Y - W χ) vanishes in the mean for the true χ, and
+//! Least squares minimises ||Y - W χ|| as if W were exact. Its columns come from measured
+//! positions. Errors of W that are independent over time bias the estimate towards zero, for runs
+//! of any length. Instruments Z are columns that are correlated with those of W but not with the
+//! errors of W. Then Zᵀ(Y - W χ) has zero mean for the true χ, and
 //!
 //! ```text
 //! χ = (Zᵀ Λ² W)^-1 Zᵀ Λ² Y
 //! ```
 //!
-//! is consistent (A. Janot, P.-O. Vandanjon, M. Gautier, *A generic instrumental variable approach for
-//! industrial robot identification*, IEEE Trans. Control Systems Technology 22, 2014). Z is the regressor
-//! at another motion: that of the simulated robot, or that of the other periods of a periodic motion.
-//! Λ are the weights of least squares. With the R factor of Λ[Z W Y],
+//! is consistent (A. Janot, P.-O. Vandanjon, M. Gautier, *A generic instrumental variable approach
+//! for industrial robot identification*, IEEE Trans. Control Systems Technology 22, 2014). Z is the
+//! regressor of another motion: that of the simulated robot, or that of the other periods of a
+//! periodic motion. Λ are the weights of least squares. With the R factor of Λ[Z W Y],
 //!
 //! ```text
 //!     | R_zz R_zw R_zy |
-//! R = |      R_ww R_wy | ,   χ = R_zw^-1 R_zy,
+//! R = |      R_ww R_wy | ,   χ = R_zw^-1 R_zy.
 //!     |           R_yy |
 //! ```
 //!
-//! so that no product of regressors is formed and no digits are lost to its condition.
+//! This forms no product of regressors, so the condition number is not squared.
 //!
-//! - `hausman`: whether both estimates agree (Durbin, Wu, Hausman);
-//! - `strength`: whether the instruments go with the columns well enough;
-//! - `regressor`: all of it as it is reported.
+//! - `hausman`: whether both estimates agree;
+//! - `strength`: correlation of the instruments with the columns;
+//! - `regressor`: the reported result.
 
 pub(crate) mod hausman;
 pub(crate) mod regressor;
@@ -42,12 +42,12 @@ use crate::{
     regression::{factor::Factor, system::System},
 };
 
-/// The estimate by instruments, with what belongs to it.
+/// Instrumental-variable estimate with its factors.
 #[derive(Debug, Clone)]
 pub(crate) struct Instrumental {
     /// The estimate; its R^-1 is that of least squares.
     pub(crate) estimation: Estimation,
-    /// Its intervals; none without successive equations.
+    /// Intervals; `None` without successive equations.
     pub(crate) intervals: Option<Intervals>,
     /// R_zz and R_zw.
     triangle: DMatrix<f64>,
@@ -57,7 +57,7 @@ pub(crate) struct Instrumental {
 }
 
 impl Instrumental {
-    /// The estimate of the columns `selected`, whose estimate by least squares is `start`.
+    /// Estimates the columns `selected`; `start` is their least-squares estimate.
     ///
     /// # Errors
     /// A system without instruments, or instruments that do not determine the parameters.
@@ -102,7 +102,7 @@ impl Instrumental {
         Ok(found)
     }
 
-    /// [0, (Zᵀ Λ² W)^-1] by which weighted columns and instruments make the estimate.
+    /// Influence [0, (Zᵀ Λ² W)^-1] of weighted columns and instruments on the estimate.
     fn influence(&self) -> Option<DMatrix<f64>> {
         let p = self.crossed.ncols();
         // R_zw^-1 R_zz^-T, the transpose of R_zz^-1 R_zw^-T.
@@ -116,13 +116,13 @@ impl Instrumental {
             .then_some(influence)
     }
 
-    /// R_ww: what the instruments do not explain of the columns.
+    /// R_ww: the part of the columns that the instruments do not explain.
     pub(crate) const fn unexplained(&self) -> &DMatrix<f64> {
         &self.errors
     }
 }
 
-/// The solution of R_zw χ = R_zy and R_zw^-1, with columns scaled so that units do not matter.
+/// Solves R_zw χ = R_zy and inverts R_zw, with columns scaled to be independent of units.
 fn solve(crossed: &DMatrix<f64>, wanted: &DVector<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
     let scales: Vec<f64> = crossed
         .column_iter()
@@ -141,8 +141,9 @@ fn solve(crossed: &DMatrix<f64>, wanted: &DVector<f64>) -> Option<(Vec<f64>, DMa
     finite.then_some((values, inverse))
 }
 
-/// An estimation with other values, whose deviations under white residuals are σ_ρ times the norms of
-/// the rows of R_zw^-1.
+/// An estimation with other values.
+///
+/// Its standard deviations for white residuals are σ_ρ times the row norms of R_zw^-1.
 fn with_values(
     system: &System,
     selected: &[usize],

@@ -1,5 +1,4 @@
-//! What is known of errors in the regressor of one model: the test, the estimates beside each other, and
-//! what the instruments are worth.
+//! Reported result on errors in the regressor of one model: test, estimates and strength.
 
 use serde::Serialize;
 
@@ -15,48 +14,49 @@ use crate::{
     settings::Instruments,
 };
 
-/// Errors of two periods that are correlated by more than this are not told apart by instruments of other
-/// periods: a fifth of the bias would stay.
+/// Largest correlation between the errors of two periods.
+///
+/// Above it, instruments of other periods keep more than a fifth of the bias.
 const LARGEST_CORRELATION: f64 = 0.2;
 
-/// Errors in the regressor of one model.
+/// Comparison of least squares and instrumental variables for one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ErrorsInRegressor {
-    /// Which inputs are explained.
+    /// The model.
     pub model: ModelKind,
-    /// Where the instruments come from.
+    /// Source of the instruments.
     pub instruments: Instruments,
-    /// For instruments from other periods, the repetitions of each run.
+    /// Periods of each run, for instruments from other periods.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub runs: Vec<RepeatedRun>,
-    /// For instruments from the simulated robot, how well it reproduces each run.
+    /// Reproduction of each run, for instruments from the simulated robot.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub simulated: Vec<SimulatedRun>,
-    /// Why there are no instruments, or why they could not be used.
+    /// Reason for missing or unusable instruments.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
-    /// Whether least squares and instruments agree.
+    /// Test whether both estimates agree.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub agreement: Option<Agreement>,
-    /// Each base parameter.
+    /// Comparison of each base parameter.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub parameters: Vec<RegressorError>,
 }
 
-/// The repetitions of a run.
+/// Periods of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct RepeatedRun {
     /// Name of the run.
     pub run: String,
-    /// The period, or that of the fewest periods with a whole number of samples, s.
+    /// Period in s, or the shortest multiple of it with a whole number of samples.
     pub period_s: f64,
-    /// Whether the period was found from the run, not given.
+    /// Whether the period was detected, not given.
     pub found: bool,
-    /// How many whole ones the run has.
+    /// Number of whole periods in the run.
     pub periods: usize,
-    /// Correlation of the errors of two periods; none where the positions have no noise.
+    /// Correlation of the errors of two periods; `None` if the positions have no noise.
     pub error_correlation: Option<f64>,
 }
 
@@ -70,7 +70,7 @@ pub struct SimulatedRun {
     pub torque_error_percent: f64,
 }
 
-/// The test of Durbin, Wu and Hausman.
+/// Durbin-Wu-Hausman test.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Agreement {
@@ -78,52 +78,53 @@ pub struct Agreement {
     pub statistic: f64,
     /// Its degrees of freedom.
     pub degrees_of_freedom: [f64; 2],
-    /// With which chance exceeds it where the regressor has no errors.
+    /// p-value.
     pub probability: f64,
-    /// Whether all parameters are tested together. Where these data have too few degrees of freedom for
-    /// that, F is that of the parameter that differs most, and its probability that of any parameter to
-    /// differ so much (Bonferroni).
+    /// Whether all parameters are tested together.
+    ///
+    /// With too few degrees of freedom, F is that of the parameter with the largest difference. The
+    /// p-value is then that of any parameter to differ so much (Bonferroni).
     pub together: bool,
-    /// Below this probability the estimates differ.
+    /// Level below which the estimates differ.
     pub level: f64,
-    /// Whether they do.
+    /// Whether the estimates differ.
     pub differs: bool,
-    /// The smallest F of the instruments' strength over the parameters.
+    /// Smallest F of the instruments' strength over all parameters.
     pub weakest: f64,
-    /// The F below which an instrument is weak.
+    /// F below which an instrument is weak.
     pub weak_below: f64,
 }
 
-/// One parameter by least squares, by instruments and by total least squares.
+/// One parameter by least squares, instrumental variables and total least squares.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct RegressorError {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// SI unit.
     pub unit: String,
-    /// By least squares.
+    /// Least-squares estimate.
     pub least_squares: f64,
-    /// By instruments.
+    /// Instrumental-variable estimate.
     pub instruments: f64,
-    /// By total least squares, for comparison; none where it is not determined.
+    /// Total-least-squares estimate, for comparison; `None` if it is undetermined.
     pub total_least_squares: Option<f64>,
     /// Standard deviation of the difference between the first two.
     pub difference_deviation: f64,
-    /// With which chance exceeds the difference.
+    /// p-value of the difference.
     pub probability: f64,
-    /// Whether it is too large for chance, at the level of the test divided by the number of parameters.
+    /// Whether the difference is significant, at the level divided by the number of parameters.
     pub differs: bool,
-    /// Whether it exceeds the standard deviation of least squares, too, so that the parameter is spoiled.
+    /// Whether it also exceeds the standard deviation of least squares; then it is unusable.
     pub spoiled: bool,
-    /// Part of what the column has beside the others that the instruments reproduce.
+    /// Partial R²: part of the column outside the others that the instruments reproduce.
     pub partial_r2: f64,
-    /// F of that.
+    /// F statistic of the partial R².
     pub strength: f64,
 }
 
 impl RepeatedRun {
-    /// What is told of a run of that sampling frequency.
+    /// Periods of a run with this sampling frequency.
     pub(crate) fn new(run: &str, frequency: f64, found: bool, periods: &Periods) -> Self {
         Self {
             run: run.to_owned(),
@@ -134,7 +135,7 @@ impl RepeatedRun {
         }
     }
 
-    /// Whether the errors return with the motion, so that other periods have them, too.
+    /// Whether the errors repeat with the motion, so that other periods contain them, too.
     #[must_use]
     pub fn errors_return(&self) -> bool {
         self.error_correlation
@@ -143,7 +144,7 @@ impl RepeatedRun {
 }
 
 impl ErrorsInRegressor {
-    /// A model without instruments, and why.
+    /// A model without instruments, with the reason.
     pub(crate) fn without(model: ModelKind, instruments: Instruments, why: Option<String>) -> Self {
         Self {
             model,
@@ -156,8 +157,9 @@ impl ErrorsInRegressor {
         }
     }
 
-    /// Compares the estimates of the columns `selected`, each with its name and unit; `deviations` are
-    /// the honest ones of least squares.
+    /// Compares the estimates of the columns `selected`, each with its name and unit.
+    ///
+    /// `deviations` are the standard deviations of least squares for autocorrelated residuals.
     pub(crate) fn compared(
         self,
         (system, selected): (&System, &[usize]),
@@ -207,13 +209,13 @@ impl ErrorsInRegressor {
         }
     }
 
-    /// Whether the estimates differ by more than chance explains.
+    /// Whether the estimates differ significantly.
     #[must_use]
     pub fn differs(&self) -> bool {
         self.agreement.as_ref().is_some_and(|own| own.differs)
     }
 
-    /// Whether the instruments are too weak to say anything.
+    /// Whether the instruments are too weak for a comparison.
     #[must_use]
     pub fn is_weak(&self) -> bool {
         let weak = |own: &Agreement| own.weakest < own.weak_below;

@@ -1,11 +1,11 @@
-//! Whether instruments go with the columns well enough.
+//! Strength of the instruments.
 //!
-//! An instrument that hardly goes with its column makes an estimate that is neither precise nor
-//! unbiased, and whose intervals do not hold. Shea's partial R² tells for each parameter which part of
-//! what its column has beside the others the instruments reproduce (J. Shea, *Instrument relevance in
-//! multivariate linear models*, Review of Economics and Statistics 79, 1997); it is the ratio of the
-//! variances of least squares and of instruments under one residual (L. Godfrey, same review 81, 1999).
-//! With as many instruments as columns,
+//! An instrument that is weakly correlated with its column gives an imprecise, biased estimate with
+//! wrong intervals. Shea's partial R² is the part of a column, outside the other columns, that the
+//! instruments reproduce (J. Shea, *Instrument relevance in multivariate linear models*, Review of
+//! Economics and Statistics 79, 1997). It equals the ratio of the variances of least squares and of
+//! instrumental variables for the same residual (L. Godfrey, same review 81, 1999). With as many
+//! instruments as columns,
 //!
 //! ```text
 //! R_i² = [(Wᵀ Λ² W)^-1]_ii / [(R_zwᵀ R_zw)^-1]_ii,   F_i = R_i²/(1 - R_i²) (N - 2 p),
@@ -15,19 +15,19 @@
 
 use super::Instrumental;
 
-/// The F below which an instrument is weak.
+/// F below which an instrument is weak.
 pub(crate) const WEAK: f64 = 10.0;
 
-/// How well the instruments go with one column.
+/// Strength of the instruments for one column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Strength {
     /// R_i².
     pub(crate) partial_r2: f64,
-    /// F_i; infinite for a column that has no error.
+    /// F_i; infinite for a column without errors.
     pub(crate) f: f64,
 }
 
-/// The strength of the instruments for each parameter.
+/// Strength of the instruments for each parameter.
 pub(crate) fn strengths(found: &Instrumental) -> Vec<Strength> {
     let estimation = &found.estimation;
     let p = estimation.values.len();
@@ -38,7 +38,7 @@ pub(crate) fn strengths(found: &Instrumental) -> Vec<Strength> {
     own.zip(deviations)
         .map(|(own, deviation)| {
             let ratio = own * square / (deviation * deviation);
-            // Rounding alone can make it larger than one; an exact fit tells nothing.
+            // Rounding can make it exceed one; an exact fit gives NaN.
             let partial_r2 = if ratio.is_nan() { 1.0 } else { ratio.min(1.0) };
             Strength {
                 partial_r2,

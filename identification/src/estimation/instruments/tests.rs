@@ -1,4 +1,4 @@
-//! Synthetic systems whose columns have errors, or have none.
+//! Synthetic systems with and without errors of the columns.
 
 use super::{Instrumental, hausman::Hausman, strength::strengths};
 use crate::{
@@ -21,8 +21,9 @@ const TRUTH: [f64; 3] = [2.0, -1.0, 0.5];
 
 const SELECTED: [usize; 3] = [0, 1, 2];
 
-/// One line of periodic columns, of which the first has errors of a given deviation and the last is
-/// constant; instruments have errors of their own of the same size. The residual of Y remembers.
+/// One line of periodic columns; the first has errors and the last is constant.
+///
+/// The instruments have independent errors of the same size. The residual of Y is autocorrelated.
 fn system(errors: f64, seed: u64) -> System {
     const SAMPLES: usize = 500;
     let mut generator = Pcg64::seed_from_u64(seed);
@@ -44,7 +45,7 @@ fn system(errors: f64, seed: u64) -> System {
             rows[(k, column)] = value;
             instruments[(k, column)] = value;
         }
-        // A little of it even where no errors are meant, so that instruments are not the columns.
+        // A small error even if none is requested, so that instruments differ from the columns.
         rows[(k, 0)] += errors * white();
         instruments[(k, 0)] += errors.max(0.02) * white();
         rows[(k, 3)] = y + noise;
@@ -100,7 +101,7 @@ fn instruments_and_total_least_squares_are_not_biased_by_errors_of_a_column() {
         let test = Hausman::new(&system, &SELECTED, &start, &found).expect("a test");
         rejected += usize::from(test.rejects());
         assert!(strengths(&found).iter().all(|strength| strength.f > 100.0));
-        // What the errors are worth: 0.4² by 1 - 0.36/1.36 of the column's own part.
+        // Expected bias: 0.4² by 1 - 0.36/1.36 of the column's own part.
     }
     let covering = f64::from(covering as u32) / (3 * DRAWS) as f64;
     println!(
@@ -127,7 +128,7 @@ fn the_test_rejects_what_agrees_as_often_as_it_says() {
     };
     let (size, power) = (rejected(0.0), rejected(0.15));
     println!("size {size:.3}, power {power:.3}");
-    // The level is 1/12 %: of 400 draws three or more are rejected in one of 200 such trials.
+    // Level 1/12 %: three or more of 400 draws are rejected in one of 200 such trials.
     assert!(size < 0.0075, "{size}");
     assert!(power > 0.8, "{power}");
 }

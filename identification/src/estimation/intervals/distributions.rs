@@ -1,26 +1,25 @@
-//! Student's, Fisher's and the chi-squared distribution: upper tails, and the quantiles of Student's.
+//! Tails and quantiles of Student's, Fisher's and the chi-squared distribution.
 
-/// Terms of a series or a continued fraction, at most; those of the arguments in question converge in
-/// far fewer.
+/// Largest number of terms of a series or a continued fraction; far fewer are needed.
 const TERMS: usize = 500;
 
-/// Relative size of a term that no longer counts.
+/// Relative size of a negligible term.
 const SMALL: f64 = 1e-15;
 
-/// Steps of Newton after which a quantile is found; far fewer are needed.
+/// Largest number of Newton steps for a quantile; far fewer are needed.
 const STEPS: usize = 200;
 
-/// Largest degrees of freedom that are told from infinitely many.
+/// Degrees of freedom that count as infinite.
 const LARGEST_FREEDOM: f64 = 1e7;
 
-/// The value that a variable of Student's distribution exceeds in magnitude with the given probability.
+/// Two-sided quantile of Student's distribution.
 #[must_use]
 pub(crate) fn student_quantile(probability: f64, freedom: f64) -> f64 {
     let freedom = freedom.clamp(1.0, LARGEST_FREEDOM);
     let constant = log_gamma(0.5 * (freedom + 1.0)) - log_gamma(0.5 * freedom);
     let constant = constant - 0.5 * (std::f64::consts::PI * freedom).ln();
     let mut value = 0.0;
-    // The tail falls ever less steeply: steps of Newton from zero come near without passing the quantile.
+    // The tail is convex, so Newton steps from zero approach the quantile from below.
     for _ in 0..STEPS {
         let shape = (value * value / freedom).ln_1p();
         let density = (constant - 0.5 * (freedom + 1.0) * shape).exp();
@@ -33,27 +32,27 @@ pub(crate) fn student_quantile(probability: f64, freedom: f64) -> f64 {
     value
 }
 
-/// The probability that a variable of Student's distribution exceeds `value` in magnitude.
+/// Two-sided tail probability of Student's distribution.
 #[must_use]
 pub fn student_tail(value: f64, freedom: f64) -> f64 {
     fisher_tail(value * value, 1.0, freedom)
 }
 
-/// Hotelling's test of a `distance` dᵀ V^-1 d in `rank` directions, where V has been estimated with `freedom` degrees.
+/// Hotelling's test of dᵀ V^-1 d in `rank` directions, with `freedom` degrees of freedom of V.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hotelling {
     /// F.
     pub(crate) statistic: f64,
-    /// Its second degrees of freedom.
+    /// Second degrees of freedom of F.
     pub(crate) rest: f64,
-    /// Of a larger F by chance.
+    /// p-value.
     pub(crate) probability: f64,
 }
 
 impl Hotelling {
     pub(crate) fn new(distance: f64, rank: f64, freedom: f64) -> Self {
         let rest = freedom - rank + 1.0;
-        // A covariance that is known has infinitely many degrees of freedom.
+        // A known covariance has infinite degrees of freedom.
         let part = if freedom.is_infinite() {
             1.0
         } else {
@@ -68,8 +67,9 @@ impl Hotelling {
     }
 }
 
-/// The probability that a variable of Fisher's distribution exceeds `value`; zero of a value that is not a number, so
-/// that no test is passed that has no statistic.
+/// Tail probability of Fisher's distribution.
+///
+/// It is zero for NaN, so that a missing statistic never passes a test.
 #[must_use]
 pub(crate) fn fisher_tail(value: f64, numerator: f64, denominator: f64) -> f64 {
     if value.is_nan() || numerator.is_nan() || denominator.is_nan() {
@@ -79,7 +79,7 @@ pub(crate) fn fisher_tail(value: f64, numerator: f64, denominator: f64) -> f64 {
     if value <= 0.0 {
         return 1.0;
     }
-    // Both forms of the argument, so that neither loses digits next to 1.
+    // Both x and 1 - x are passed, to keep precision near 1.
     let sum = denominator + numerator * value;
     incomplete_beta(
         denominator / sum,
@@ -89,8 +89,9 @@ pub(crate) fn fisher_tail(value: f64, numerator: f64, denominator: f64) -> f64 {
     )
 }
 
-/// The regularised incomplete beta function I_x(a, b) with y = 1 - x, by Lentz's continued fraction
-/// (Abramowitz and Stegun 26.5.8).
+/// Regularised incomplete beta function I_x(a, b) with y = 1 - x.
+///
+/// Lentz's continued fraction (Abramowitz and Stegun 26.5.8).
 fn incomplete_beta(x: f64, y: f64, a: f64, b: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
@@ -122,7 +123,7 @@ fn incomplete_beta(x: f64, y: f64, a: f64, b: f64) -> f64 {
     front * fraction / a
 }
 
-/// ln Γ(x) of a positive x: Stirling's series, after a shift to where it is exact to rounding.
+/// ln Γ(x) for positive x, by Stirling's series after a shift to large x.
 fn log_gamma(x: f64) -> f64 {
     let (mut x, mut shift) = (x, 0.0);
     while x < 12.0 {
@@ -155,7 +156,7 @@ mod tests {
         let many = Hotelling::new(20.0, 9.0, 1e6);
         assert!((known.statistic - 20.0 / 9.0).abs() < 1e-12);
         assert!((known.probability - many.probability).abs() < 1e-5);
-        // 5 % point of chi-squared of 9 degrees of freedom.
+        // 5 % point of chi-squared with 9 degrees of freedom.
         let found = Hotelling::new(16.918_98, 9.0, f64::INFINITY).probability;
         assert!((found - 0.05).abs() < 1e-5, "{found}");
     }

@@ -1,28 +1,27 @@
-//! Intervals of the estimates that contain the true value as often as they say.
+//! 95 % confidence intervals that hold for any residual and after elimination of parameters.
 //!
-//! - `scores`: the covariance of the base estimate, whatever the residual is like in time and size,
-//!   and the degrees of freedom of its variances.
-//! - `repeats`: how much larger it is for what returns with the motion.
-//! - `periods`: how much larger it is for what returns from period to period.
-//! - `parts`: the covariance from sums over parts of the runs, where factors are all there is.
-//! - `distributions`: Student's distribution and its kin.
+//! - `scores`: covariance of the base estimate for any residual, with degrees of freedom.
+//! - `repeats`: its increase from residuals at the frequencies of the motion.
+//! - `periods`: its increase from residuals that are equal in all periods.
+//! - `parts`: covariance from sums over parts of the runs, if only their factors are stored.
+//! - `distributions`: Student's and related distributions.
 //!
 //! The interval of base parameter i is χ_i ± t_0.975(ν_i) σ_i.
 //!
-//! A model with fewer parameters has smaller deviations, which hold if the cancelled parameters are
-//! exactly zero. Nobody knows that: they were cancelled because these data did not speak loudly for
-//! them. An interval that is shorter than the base model's and still contains the truth as often,
-//! whatever the cancelled parameters are, does not exist (Leeb and Pötscher, *Econometric Theory* 21,
-//! 2005). So the interval of a parameter in a smaller model is that of the base model. An estimate
-//! that lies outside of it has been moved there by cancelling, and the data speak against it.
+//! **Eliminated parameters.** A smaller model has smaller standard deviations, which hold if the
+//! eliminated parameters are exactly zero. That is unknown: they were eliminated because these data
+//! hardly determine them. No shorter interval has the same coverage for all values of the
+//! eliminated parameters (Leeb and Pötscher, *Econometric Theory* 21, 2005). A parameter of a
+//! smaller model therefore has the interval of the base model. If elimination moves an estimate
+//! outside, the data contradict it.
 //!
-//! One thing more has been decided: that the parameter stays. Of parameters whose effect is hardly larger
-//! than the noise those stay whose errors happen to be large, and their intervals would contain the truth
-//! in half of the cases. If all p base parameters were zero, the largest |χ_i|/σ_i would be below
-//! t_1-0.025/p in 95 % of all cases (Bonferroni): what is beyond stays, whatever chance does. What is below
-//! may be a choice of chance. Of intervals χ_i ± t_1-0.025k/p σ_i of k chosen parameters no more than 5 %
-//! miss the truth in the mean, however they are chosen (Benjamini and Yekutieli, *J. American Statistical
-//! Association* 100, 2005), so it gets this one.
+//! **Selected parameters.** Parameters with weak effects are selected if their errors are large,
+//! and their intervals would have about 50 % coverage. If all p base parameters were zero, the
+//! largest
+//! |χ_i|/σ_i would be below t_1-0.025/p in 95 % of all cases (Bonferroni). Above this limit, chance
+//! does not affect the selection. Below it, the interval of one of k selected parameters is χ_i ±
+//! t_1-0.025k/p σ_i. At most 5 % of such intervals miss the truth on average, for any selection
+//! rule (Benjamini and Yekutieli, *J. American Statistical Association* 100, 2005).
 
 pub(crate) mod distributions;
 mod parts;
@@ -38,24 +37,26 @@ use distributions::student_quantile;
 use repeats::ratios;
 use scores::{Context, Covariance};
 
-/// What an interval may miss.
+/// Probability that an interval misses the true value.
 const MISSES: f64 = 0.05;
 
-/// The base estimates with what is known of their uncertainty.
+/// Base estimates with their covariance.
 #[derive(Debug, Clone)]
 pub(crate) struct Intervals {
     columns: Vec<usize>,
     values: Vec<f64>,
     covariance: DMatrix<f64>,
-    /// Degrees of freedom of the covariance as a whole.
+    /// Degrees of freedom of the whole covariance.
     freedom: f64,
     /// Degrees of freedom of each variance.
     freedoms: Vec<f64>,
 }
 
 impl Intervals {
-    /// Those of the base `estimation` of the columns `selected`. Without successive equations they are
-    /// those of sums over parts, and where these tell too little those under white residuals.
+    /// Intervals of the base `estimation` of the columns `selected`.
+    ///
+    /// Without successive equations, they use sums over parts. If these are insufficient, they
+    /// assume white residuals.
     pub(crate) fn new(system: &System, selected: &[usize], estimation: &Estimation) -> Self {
         let context = Context::new(selected, estimation);
         let found = Self::of_context(system, &context);
@@ -68,7 +69,7 @@ impl Intervals {
             })
     }
 
-    /// Those of any linear estimate; none without successive equations.
+    /// Intervals of any linear estimate; `None` without successive equations.
     pub(crate) fn of_context(system: &System, context: &Context<'_>) -> Option<Self> {
         let columns = context.selected.to_vec();
         let values = &context.estimation.values;
@@ -89,7 +90,7 @@ impl Intervals {
         })
     }
 
-    /// Those of sums over parts of the runs.
+    /// Intervals from sums over parts of the runs.
     fn of_parts(system: &System, context: &Context<'_>) -> Option<Self> {
         let covariance = parts::covariance(system, context)?;
         let mut sorted = covariance.freedoms.clone();
@@ -103,13 +104,13 @@ impl Intervals {
         })
     }
 
-    /// The standard deviation of the estimate of a column.
+    /// Standard deviation of the estimate of a column.
     pub(crate) fn deviation_of(&self, column: usize) -> Option<f64> {
         let place = self.columns.iter().position(|own| *own == column)?;
         Some(self.covariance[(place, place)].sqrt())
     }
 
-    /// With what else makes the estimates err, independently of their residual.
+    /// Adds the covariance of other, independent errors of the estimates.
     pub(crate) fn widened(mut self, covariance: Option<&DMatrix<f64>>) -> Self {
         if let Some(more) = covariance {
             self.covariance += more;
@@ -117,13 +118,13 @@ impl Intervals {
         self
     }
 
-    /// The standard deviation of each estimate.
+    /// Standard deviation of each estimate.
     pub(crate) fn deviations(&self) -> Vec<f64> {
         let variances = self.covariance.diagonal();
         variances.iter().map(|variance| variance.sqrt()).collect()
     }
 
-    /// Those of estimates with a known covariance of so many degrees of freedom.
+    /// Intervals of estimates with a known covariance and its degrees of freedom.
     pub(crate) fn known(
         columns: Vec<usize>,
         values: &[f64],
@@ -139,17 +140,19 @@ impl Intervals {
         }
     }
 
-    /// The covariance of the estimates.
+    /// Covariance of the estimates.
     pub(crate) const fn covariance(&self) -> &DMatrix<f64> {
         &self.covariance
     }
 
-    /// The degrees of freedom of each variance.
+    /// Degrees of freedom of each variance.
     pub(crate) fn freedoms(&self) -> &[f64] {
         &self.freedoms
     }
 
-    /// The interval of a column in a model of so many of the parameters; none that was not estimated.
+    /// Interval of a column in a model with this number of `parameters`.
+    ///
+    /// `None` if the column was not estimated.
     pub(crate) fn of(&self, column: usize, parameters: usize) -> Option<[f64; 2]> {
         let place = self.columns.iter().position(|own| *own == column)?;
         let all = self.columns.len() as f64;
@@ -160,7 +163,7 @@ impl Intervals {
         Some(self.around(place, misses))
     }
 
-    /// χ ± t σ of the parameter at a place, which misses the truth with this probability.
+    /// χ ± t σ of the parameter at `place`, which misses the truth with probability `misses`.
     fn around(&self, place: usize, misses: f64) -> [f64; 2] {
         let (value, freedom) = (self.values[place], self.freedoms[place]);
         let deviation = self.covariance[(place, place)].sqrt();
@@ -168,12 +171,12 @@ impl Intervals {
         [value - half, value + half]
     }
 
-    /// χᵀ V^-1 χ of some columns, and the degrees of freedom of V; none where V is singular.
+    /// χᵀ V^-1 χ of some columns, and the degrees of freedom of V; `None` if V is singular.
     pub(crate) fn distance(&self, columns: &[usize]) -> Option<(f64, f64)> {
         let place = |column: &usize| self.columns.iter().position(|own| own == column);
         let places: Vec<usize> = columns.iter().map(place).collect::<Option<_>>()?;
         let matrix = self.covariance.select_rows(&places).select_columns(&places);
-        // Divided by their deviations, so that units do not matter.
+        // Scaled by the standard deviations, to be independent of units.
         let scales = matrix.diagonal().map(|variance| 1.0 / variance.sqrt());
         let scaled = DMatrix::from_fn(places.len(), places.len(), |i, j| {
             matrix[(i, j)] * scales[i] * scales[j]

@@ -1,29 +1,29 @@
-//! The covariance of an estimate from the sums of its scores over parts of the runs, where successive equations
-//! are not at hand but the R factor of each part is.
+//! Covariance of an estimate from score sums over parts of the runs.
 //!
-//! The score of part g, s_g = Σ_j λ_j² W_gjᵀ ρ_gj, follows from the factors of its lines for any χ, since
-//! W_gjᵀ ρ_gj = R_Wᵀ (R_Y - R_W χ). Parts that are independent of each other give the covariance
-//! A^-1 (Σ_g s_g s_gᵀ) A^-1, whatever the residual is like inside of them (Liang and Zeger, *Biometrika* 73,
-//! 1986). The fit has taken a part of each score away: for white noise of the weighted equations the sums
-//! T_g = e_iᵀ A^-1 s_g have the covariance
+//! It only needs the R factor of each part, not successive equations. The score of part g is s_g =
+//! Σ_j λ_j² W_gjᵀ ρ_gj. It follows from the factors for any χ, since W_gjᵀ ρ_gj = R_Wᵀ (R_Y - R_W
+//! χ). For independent parts the covariance is A^-1 (Σ_g s_g s_gᵀ) A^-1, for any residual within
+//! them (Liang and Zeger, *Biometrika* 73, 1986). The fit reduces the scores. For white noise of
+//! the weighted equations, T_g = e_iᵀ A^-1 s_g has the covariance
 //!
 //! ```text
-//! C_gg' = δ_gg' a_g - z_gᵀ z_g',   a_g = e_iᵀ A^-1 G_g A^-1 e_i,   z_g = R^-T G_g A^-1 e_i,   G_g = Σ_j λ_j² W_gjᵀ W_gj.
+//! C_gg' = δ_gg' a_g - z_gᵀ z_g',   a_g = e_iᵀ A^-1 G_g A^-1 e_i,
+//! z_g = R^-T G_g A^-1 e_i,   G_g = Σ_j λ_j² W_gjᵀ W_gj.
 //! ```
 //!
-//! The variance is divided by tr C/Σ a_g and has (tr C)²/tr C² degrees of freedom (Bell and McCaffrey, *Survey
-//! Methodology* 28, 2002), which are few where there are few parts. Parts are neighbours in time and not quite
-//! independent; what returns with the motion, run by run, is not seen here.
+//! The variance is divided by tr C/Σ a_g and has (tr C)²/tr C² degrees of freedom (Bell and
+//! McCaffrey, *Survey Methodology* 28, 2002), few for few parts. Two effects are neglected:
+//! neighbouring parts are not quite independent, and residuals may repeat with the motion.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::scores::{Context, Covariance};
 use crate::regression::system::{Part, System};
 
-/// The part of the white variance that parts must be able to tell of; less is told by few of them.
+/// Smallest fraction of the white-noise variance that the parts must represent.
 const LEAST_TOLD: f64 = 1e-6;
 
-/// The covariance from the parts of a system; none where they tell too little of a parameter.
+/// Covariance from the parts of a system; `None` if they represent too little of a parameter.
 pub(super) fn covariance(system: &System, context: &Context<'_>) -> Option<Covariance> {
     let p = context.selected.len();
     let inverse = &context.inverse;

@@ -1,7 +1,7 @@
-//! How much larger the covariance is for what returns from period to period, and from run to run.
+//! Increase of the covariance from residuals that are equal in all periods and runs.
 //!
-//! Pieces of a run are taken for independent of each other by what is told of them one by one. What returns in all
-//! of them is not, and is told from the mean over all periods.
+//! The other estimates treat pieces of a run as independent. A residual that repeats in all of them
+//! violates that. Its effect is estimated from the mean over all periods.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,7 +11,7 @@ use crate::{
     regression::system::System,
 };
 
-/// By how much larger than these the variance of each parameter is, and the degrees of freedom of that.
+/// Ratio of each parameter's variance to `variances`, with its degrees of freedom.
 pub(super) fn ratios(
     system: &System,
     context: &Context<'_>,
@@ -19,7 +19,7 @@ pub(super) fn ratios(
 ) -> Vec<(f64, f64)> {
     let p = context.selected.len();
     let influence = context.influence();
-    // In the mean over all periods instruments are the columns.
+    // In the mean over all periods, the instruments equal the columns.
     let mut combinations = influence.columns(0, p).transpose();
     if influence.ncols() > p {
         combinations += influence.columns(p, p).transpose();
@@ -58,22 +58,23 @@ pub(super) fn ratios(
     enlarged(&told.collect::<Vec<_>>())
 }
 
-/// What the mean of the ratios' logarithms has to exceed: that of errors which are no noise in the runs of ten seconds of
-/// faultless virtual robots, whose intervals are wide enough without.
+/// Smallest mean log ratio that increases the covariance.
+///
+/// It is that of faultless virtual robots in runs of ten seconds, whose intervals are wide enough.
 const LEAST_MEAN: f64 = 0.5;
 
-/// A ratio of variances as the data tell it.
+/// Estimated ratio of two variances.
 #[derive(Debug, Clone, Copy)]
 struct Told {
-    /// Its logarithm, freed of its bias.
+    /// Its logarithm, corrected for bias.
     logarithm: f64,
-    /// The variance of that by chance.
+    /// Sampling variance of the logarithm.
     variance: f64,
     freedom: f64,
 }
 
 impl Told {
-    /// That of two variances of so many degrees of freedom.
+    /// Ratio of two variances with `freedom` and `told` degrees of freedom.
     fn new(ratio: f64, freedom: f64, told: f64) -> Self {
         Self {
             logarithm: ratio.ln() + 1.0 / freedom - 1.0 / told,
@@ -87,9 +88,10 @@ impl Told {
     }
 }
 
-/// Ratios that are told, as far as they are larger than one, and their mean is clearly so. Each alone scatters, and a
-/// variance that is only ever enlarged would be too large in the mean: they are drawn to their mean, as far as they
-/// differ from it by no more than chance makes them (James and Stein).
+/// Shrunken ratios above one, if their mean is clearly above one.
+///
+/// Single ratios scatter, and using only those above one would overestimate the variance. They are
+/// shrunk towards their mean as far as their spread is random (James and Stein).
 fn enlarged(told: &[Told]) -> Vec<(f64, f64)> {
     let sound = || told.iter().filter(|one| one.is_sound());
     let weights: f64 = sound().map(|one| 1.0 / one.variance).sum();
@@ -98,7 +100,7 @@ fn enlarged(told: &[Told]) -> Vec<(f64, f64)> {
         return vec![(1.0, f64::INFINITY); told.len()];
     }
     let apart = sound().map(|one| (one.logarithm - mean).powi(2) / one.variance - 1.0);
-    // The variance of the true ratios.
+    // Variance of the true ratios.
     let between = (apart.sum::<f64>() / weights).max(0.0);
     let enlarged = |one: &Told| {
         if !one.is_sound() {
@@ -139,7 +141,7 @@ mod tests {
             found.iter().all(|(ratio, _)| (ratio - first).abs() < 1e-9),
             "{found:?}"
         );
-        // Where they are truly apart each keeps most of its own.
+        // If the true ratios differ, each keeps most of its own value.
         let found = enlarged(&told(&[1.0, 1.1, 30.0, 40.0, 0.9, 35.0]));
         assert!(found[0].0 < 2.0 && found[3].0 > 20.0, "{found:?}");
         assert!(found[3].1 < 25.0 && found[0].0 >= 1.0, "{found:?}");

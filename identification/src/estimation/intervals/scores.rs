@@ -1,40 +1,40 @@
-//! The covariance of an estimate from its scores.
+//! Covariance of an estimate from its scores.
 //!
-//! The estimate is off by A^-1 Σ_t s_t, with s_t = Σ_j λ_j² w_jt ρ_jt the score of the equations of
-//! instant t: lines j, weights λ_j, rows w_jt, residuals ρ_jt, and A = Σ_t G_t, G_t = Σ_j λ_j² w_jt w_jtᵀ.
-//! So its covariance is the variance of a sum over time, which asks neither that the residual be as
-//! large everywhere nor that the lines or successive instants be independent. It is estimated by
-//! equally weighted cosines (Lazarus, Lewis, Stock and Watson, *HAR inference*, J. Business & Economic
-//! Statistics 36, 2018): with φ_b(t) = √2 cos(π b (t + 1/2)/N), the sums T_b = Σ_t φ_b(t) A^-1 s_t have
-//! that variance each for small b = 1 … B, and B = 0.41 N^(2/3), so
+//! The error of the estimate is A^-1 Σ_t s_t, with the score s_t = Σ_j λ_j² w_jt ρ_jt of instant t.
+//! Lines are j, weights λ_j, rows w_jt and residuals ρ_jt, and A = Σ_t G_t with G_t = Σ_j λ_j² w_jt
+//! w_jtᵀ. The covariance is thus the variance of a sum over time. The size of the residual may
+//! vary, and lines and successive instants may be correlated. Equally weighted cosines estimate it
+//! (Lazarus, Lewis, Stock and Watson, *HAR inference*, J. Business & Economic Statistics 36, 2018).
+//! With φ_b(t) = √2 cos(π b (t + 1/2)/N), each sum T_b = Σ_t φ_b(t) A^-1 s_t has that variance for
+//! small b = 1 … B, where B = 0.41 N^(2/3). Then
 //!
 //! ```text
-//! σ_i² = (1/B) Σ_b T_bi²,
+//! σ_i² = (1/B) Σ_b T_bi²
 //! ```
 //!
-//! of about B degrees of freedom.
+//! has about B degrees of freedom.
 //!
-//! The residual is not the noise: the fit has taken a part away, the more the closer the other columns
-//! are to column i times a slow cosine. For noise ε that is white in time, of any covariance of the lines at
-//! each instant, ρ = (I - H) ε with H = Λ W A^-1 Wᵀ Λ, so that T_1 … T_B of parameter i have the
-//! covariance matrix
+//! **Correction for the fit.** The fit removes part of the noise, more so if other columns resemble
+//! column i times a slow cosine. Let the noise ε be white in time with any covariance of the lines
+//! at each instant. Then ρ = (I - H) ε with H = Λ W A^-1 Wᵀ Λ. The sums T_1 … T_B of parameter i
+//! have the covariance
 //!
 //! ```text
 //! C_bb' = Σ_t φ_b φ_b' [A^-1 V_t A^-1]_ii - z_b · y_b' - y_b · z_b' + z_bᵀ R^-T (Σ_t V_t) R^-1 z_b',
 //! A = RᵀR,   z_b = R^-T (Σ_t φ_b G_t) A^-1 e_i,   y_b = R^-T (Σ_t φ_b V_t) A^-1 e_i,
 //! ```
 //!
-//! with V_t the covariance of the score of instant t. It is not known, but C is linear in it, so that each
-//! may be told by the instant's own s_t s_tᵀ (White, *Econometrica* 48, 1980). That matters where noise grows
-//! and shrinks within a few instants, and where lines share it: in case 2 the torque of an omitted actuator
-//! enters the equations of all kept ones, the more the closer they are to a singularity of their choice.
-//! The trace of C tells by how much σ_i² is too small, which is made good, and (tr C)²/tr C² are the degrees
-//! of freedom of σ_i² (Bell and McCaffrey, *Survey Methodology* 28, 2002), which are few where a few instants
-//! outweigh all others.
+//! with the covariance V_t of the score of instant t. C is linear in V_t, so s_t s_tᵀ may replace
+//! V_t (White, *Econometrica* 48, 1980). This matters if the noise level changes within a few
+//! instants, or if lines share noise. In the actuator projection, the torque of an omitted actuator
+//! enters the equations of all kept ones, most strongly near a singularity of the partition.
 //!
-//! Any other estimate that is linear in Y serves, too: with instruments Z, rows x = [w z] and the
-//! estimate M Σ λ² x y, the scores are M x ρ, the matrix A^-1 V_t A^-1 becomes M V_t Mᵀ with V_t of the
-//! rows x, and z_b = R^-T (Σ_t φ_b G_t)_w Mᵀ e_i with the rows of G_t that belong to w; so with y_b.
+//! The trace of C determines the correction of σ_i². The degrees of freedom of σ_i² are (tr C)²/tr
+//! C² (Bell and McCaffrey, *Survey Methodology* 28, 2002). They are few if a few instants dominate.
+//!
+//! **Other linear estimates.** With instruments Z, rows x = [w z] and the estimate M Σ λ² x y, the
+//! scores are M x ρ. Then M V_t Mᵀ replaces A^-1 V_t A^-1, with V_t of the rows x. Further, z_b =
+//! R^-T (Σ_t φ_b G_t)_w Mᵀ e_i with the rows of G_t that belong to w, and likewise y_b.
 
 use std::ops::Range;
 
@@ -49,26 +49,26 @@ use crate::{
 /// B = COSINES N^(2/3), the published rule.
 const COSINES: f64 = 0.41;
 
-/// Most cosines: more freedom than theirs hardly makes an interval shorter.
+/// Largest number of cosines; more hardly shorten the intervals.
 const MOST_COSINES: usize = 64;
 
-/// Sections of a stretch for each cosine; within a section the cosines count as constant.
+/// Sections of a stretch for each cosine; cosines are constant within a section.
 const SECTIONS: usize = 4;
 
-/// The variance of the square of a normal variable by the mean of its fourth power.
+/// Variance of the square of a normal variable divided by its fourth moment.
 const SCATTER: f64 = 2.0 / 3.0;
 
-/// The covariance of an estimate, with the degrees of freedom of its variances.
+/// Covariance of an estimate, with the degrees of freedom of its variances.
 #[derive(Debug, Clone)]
 pub(crate) struct Covariance {
-    /// The covariance matrix.
+    /// Covariance matrix.
     pub(crate) matrix: DMatrix<f64>,
     /// Degrees of freedom of each variance.
     pub(crate) freedoms: Vec<f64>,
 }
 
 impl Covariance {
-    /// That of an estimate; none without successive equations.
+    /// Covariance of an estimate; `None` without successive equations.
     pub(crate) fn new(system: &System, context: &Context<'_>) -> Option<Self> {
         let p = context.selected.len();
         let stretches = || system.stretches.par_iter();
@@ -94,7 +94,7 @@ impl Covariance {
                 shares.iter().map(|share| of(&share.moments[i])).sum()
             };
             let (expected, squares) = (sum(|own| own.expected), sum(|own| own.squares));
-            // What does not depend on the data at all has no variance.
+            // An estimate independent of the data has no variance.
             let varies = expected > 0.0;
             let factor = (sum(|own| own.wanted) / expected).sqrt();
             factors.push(if varies { factor } else { 1.0 });
@@ -110,8 +110,7 @@ impl Covariance {
         sound.then_some(Self { matrix, freedoms })
     }
 
-    /// Multiplies the variances by ratios, each with the degrees of freedom of its own, and leaves the
-    /// correlations as they are.
+    /// Multiplies the variances by ratios with their degrees of freedom; keeps correlations.
     pub(crate) fn enlarge(&mut self, ratios: &[(f64, f64)]) {
         for (i, (ratio, freedom)) in ratios.iter().enumerate() {
             let factor = ratio.sqrt();
@@ -122,20 +121,20 @@ impl Covariance {
     }
 }
 
-/// An estimate whose covariance is looked for.
+/// A linear estimate whose covariance is wanted.
 #[derive(Debug)]
 pub(crate) struct Context<'a> {
-    /// The columns.
+    /// Estimated columns.
     pub(crate) selected: &'a [usize],
-    /// Their estimation.
+    /// Estimation of these columns.
     pub(crate) estimation: &'a Estimation,
     /// A^-1.
     pub(crate) inverse: DMatrix<f64>,
-    /// M of an estimate that is not that of least squares: p x 2 p, for columns, then instruments.
+    /// M for an estimate other than least squares: p × 2 p, columns then instruments.
     influence: Option<DMatrix<f64>>,
 }
 
-/// What a stretch adds to the covariance.
+/// Contribution of a stretch to the covariance.
 struct Share {
     equations: usize,
     /// (1/B) Σ_b T_b T_bᵀ.
@@ -143,46 +142,46 @@ struct Share {
     moments: Vec<Moments>,
 }
 
-/// Sections of a stretch, a column for each.
+/// Sums over the sections of a stretch, one column each.
 struct Sections {
-    /// Σ x ρ, q x sections, of rows x of q values.
+    /// Σ x ρ, q × sections, for rows x of q values.
     scores: DMatrix<f64>,
-    /// [M V Mᵀ]_ii, p x sections.
+    /// [M V Mᵀ]_ii, p × sections.
     variances: DMatrix<f64>,
     /// Σ_t (M s_t)_i⁴ of the stretch.
     fourths: Vec<f64>,
-    /// The rows of G that belong to columns, without what lies below the diagonal.
+    /// Rows of G that belong to columns, without the lower triangle.
     fitted: DMatrix<f64>,
-    /// The rows of V that belong to columns, likewise.
+    /// Rows of V that belong to columns, without the lower triangle.
     noisy: DMatrix<f64>,
 }
 
 /// Equations of a section.
 struct Section {
-    /// The scores s_t, a row for each instant.
+    /// Scores s_t, one row per instant.
     scores: DMatrix<f64>,
     /// G.
     gram: DMatrix<f64>,
 }
 
-/// For one parameter, what noise gives that is white in time.
+/// Moments of one parameter's variance estimate for noise white in time.
 struct Moments {
-    /// The variance that is looked for.
+    /// True variance.
     wanted: f64,
-    /// The mean tr C/B of its estimate.
+    /// Mean tr C/B of its estimate.
     expected: f64,
     /// tr C²/B².
     squares: f64,
 }
 
-/// B for so many successive equations.
+/// B for this number of successive equations.
 pub(crate) fn cosines(equations: usize) -> usize {
     let cosines = (COSINES * (equations as f64).powf(2.0 / 3.0)) as usize;
     cosines.clamp(1, MOST_COSINES)
 }
 
 impl<'a> Context<'a> {
-    /// That of an `estimation` of the columns `selected`.
+    /// Context of a least-squares `estimation` of the columns `selected`.
     pub(crate) fn new(selected: &'a [usize], estimation: &'a Estimation) -> Self {
         let triangle = &estimation.inverse;
         Self {
@@ -193,8 +192,9 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// That of another linear estimate, which weighs columns and instruments by the matrix M; the
-    /// `estimation` has the values by which its residual is told, and R^-1 of least squares.
+    /// Context of another linear estimate with the influence M of columns and instruments.
+    ///
+    /// `estimation` has the values that define the residual, and R^-1 of least squares.
     pub(crate) fn with_influence(self, influence: DMatrix<f64>) -> Self {
         Self {
             influence: Some(influence),
@@ -207,7 +207,7 @@ impl<'a> Context<'a> {
         self.influence.as_ref().unwrap_or(&self.inverse)
     }
 
-    /// Σ_t V_t of a stretch, of columns.
+    /// Σ_t V_t of a stretch, for columns only.
     fn noise(&self, stretch: &Stretch) -> DMatrix<f64> {
         let p = self.selected.len();
         let mut sum = DMatrix::zeros(p, p);
@@ -236,7 +236,7 @@ impl<'a> Context<'a> {
         })
     }
 
-    /// What is needed of each section of a stretch.
+    /// Computes the sums of all sections of a stretch.
     fn sections(&self, stretch: &Stretch, sections: usize) -> Sections {
         let turned = self.influence().transpose();
         let (q, p) = turned.shape();
@@ -270,11 +270,11 @@ impl<'a> Context<'a> {
         told
     }
 
-    /// The equations of a section of a stretch; with G where that is `wanted`.
+    /// Equations of a section of a stretch; with G if `wanted`.
     fn section(&self, stretch: &Stretch, range: Range<usize>, wanted: bool) -> Section {
         let (q, count) = (self.influence().ncols(), range.len());
         let lines = stretch.lines.iter().zip(&self.estimation.weights);
-        // Weighted rows of all lines, one line below the other.
+        // Weighted rows of all lines, stacked line by line.
         let height = count * lines.len();
         let mut rows = DMatrix::zeros(height, q);
         let mut scores = DMatrix::zeros(count, q);
@@ -306,7 +306,7 @@ impl<'a> Context<'a> {
         Section { scores, gram }
     }
 
-    /// The columns of the rows x of a line of a stretch.
+    /// Columns of the rows x of a line of a stretch.
     fn columns<'s>(&'s self, stretch: &'s Stretch, line: usize) -> impl Iterator<Item = &'s [f64]> {
         let instruments = self.influence.as_ref();
         let instruments = instruments.and_then(|_| stretch.instruments.get(line));
@@ -314,8 +314,9 @@ impl<'a> Context<'a> {
         all.flat_map(|rows| self.selected.iter().map(|place| column(rows, *place)))
     }
 
-    /// R^-T (Σ φ_b X) Mᵀ of each cosine, for the rows X of columns of each section, of which `sections` hold what
-    /// does not lie below the diagonal.
+    /// R^-T (Σ φ_b X) Mᵀ of each cosine.
+    ///
+    /// `sections` holds the rows X of each section without their lower triangle.
     fn turned(&self, sections: &DMatrix<f64>, waves: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
         let (p, q) = self.influence().shape();
         let sums = sections * waves;
@@ -352,14 +353,14 @@ impl<'a> Context<'a> {
                 let spectrum = spectra.row(i);
                 let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
                 let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
-                // Half of what is symmetric: what is taken, less what is crossed.
+                // Half of the symmetric correction: the quadratic term minus the mixed ones.
                 let half = z.transpose() * (noise * &z * 0.5 - y);
                 let c = DMatrix::from_fn(cosines, cosines, |a, b| {
                     spectrum[a.abs_diff(b)] + spectrum[a + b + 2] + (half[(a, b)] + half[(b, a)])
                 });
                 let count = cosines as f64;
                 let expected = c.trace() / count;
-                // Squares of single instants scatter, which adds to every C_bb'².
+                // Scatter of single squares, which enters every C_bb'².
                 let by_chance = SCATTER * told.fourths[i];
                 let squares = c.norm_squared() / (count * count) - by_chance;
                 Moments {
@@ -378,14 +379,14 @@ fn column(matrix: &DMatrix<f64>, place: usize) -> &[f64] {
     &matrix.as_slice()[place * rows..(place + 1) * rows]
 }
 
-/// Puts values times a factor to other places.
+/// Writes `from` times `factor` to `to`.
 fn scale(to: &mut [f64], from: &[f64], factor: f64) {
     to.iter_mut()
         .zip(from)
         .for_each(|(to, from)| *to = factor * from);
 }
 
-/// Cosines and sections of a stretch; none of one that is too short.
+/// Numbers of cosines and sections of a stretch; `None` if it is too short.
 fn counts(stretch: &Stretch) -> Option<(usize, usize)> {
     let equations = stretch.lines.first()?.nrows();
     let cosines = cosines(equations);
@@ -393,7 +394,7 @@ fn counts(stretch: &Stretch) -> Option<(usize, usize)> {
     (sections > cosines).then_some((cosines, sections))
 }
 
-/// The equations of a section.
+/// Equations of a section.
 fn range(stretch: &Stretch, section: usize, sections: usize) -> Range<usize> {
     let equations = stretch.lines.first().map_or(0, DMatrix::nrows);
     equations * section / sections..equations * (section + 1) / sections

@@ -1,4 +1,4 @@
-//! How often the intervals of synthetic experiments contain the truth.
+//! Coverage of the intervals in synthetic experiments.
 
 use super::Intervals;
 use crate::{
@@ -15,19 +15,20 @@ use rand_pcg::Pcg64;
 
 const TRUTH: [f64; 3] = [2.0, -1.0, 0.5];
 
-/// What is drawn.
+/// Options of a draw.
 #[derive(Clone, Copy)]
 struct Kind {
-    /// Correlation of the residual from one instant to the next.
+    /// Correlation of the residual between successive instants.
     memory: f64,
-    /// How much larger the residual is where the first column is large.
+    /// Growth of the residual with the first column.
     growth: f64,
-    /// A part of the residual that returns with the motion.
+    /// Size of a residual that repeats with the motion.
     repeated: f64,
 }
 
-/// Two lines with periodic columns and a constant one, and residuals that the lines share in
-/// part.
+/// Two lines with periodic columns and a constant one.
+///
+/// Their residuals are partly common to both lines.
 fn system(kind: Kind, samples: usize, seed: u64) -> System {
     let mut generator = Pcg64::seed_from_u64(seed);
     let mut white = || {
@@ -84,7 +85,7 @@ fn system(kind: Kind, samples: usize, seed: u64) -> System {
     }
 }
 
-/// The intervals of one draw.
+/// Intervals of one draw.
 fn intervals(kind: Kind, samples: usize, seed: u64) -> Vec<[f64; 2]> {
     let system = system(kind, samples, seed);
     let selected = [0, 1, 2];
@@ -119,7 +120,7 @@ fn intervals_contain_the_truth_as_often_as_they_say() {
         let rates = covering.map(|count| f64::from(count as u32) / DRAWS as f64);
         println!("memory {memory}, growth {growth}, repeated {repeated}: {rates:.3?}");
         let mean = rates.iter().sum::<f64>() / 3.0;
-        // A residual of a few sharp frequencies tells little of its own size.
+        // The variance of a residual of a few sharp frequencies is badly determined.
         let least = if repeated > 0.0 { 0.88 } else { 0.925 };
         assert!((least..0.99).contains(&mean), "{mean}");
     }
@@ -139,6 +140,6 @@ fn more_periods_tell_no_more_of_what_repeats_itself() {
     };
     let (few, many) = (width(600), width(2400));
     println!("widths of 6 and 24 periods: {few:.2}, {many:.2}");
-    // Of white residuals it would be one half.
+    // For white residuals it would be one half.
     assert!(many > 0.75 * few);
 }

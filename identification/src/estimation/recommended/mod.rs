@@ -1,19 +1,19 @@
-//! The recommended model: the smallest one that the data do not refute.
+//! Recommended parameters: the smallest model that the data do not refute.
 //!
-//! Parameters are cancelled as the paper does it, the one of the largest relative standard deviation
-//! first (see the module `essential`). Where to stop is asked of the data at every step, twice:
+//! Parameters are removed in the paper's order, largest relative standard deviation first (see the
+//! module `essential`). Two tests decide where to stop:
 //!
-//! - Could all cancelled parameters C be zero together? With their base estimates χ_C and the
-//!   covariance V_C of the module `intervals`, whose degrees of freedom are ν, and k of them,
-//!   F = (ν - k + 1)/(ν k) χ_Cᵀ V_C^-1 χ_C follows Fisher's distribution of k and ν - k + 1 degrees of
-//!   freedom if they are (Hotelling's test). A set that should exceed F with a probability below the
-//!   level is refused: of right models at most that many are refused, whatever the residual is like.
-//!   A covariance of ν degrees of freedom can't tell of more than ν/2 parameters, which is the end, too.
-//! - Are data that were held out predicted worse than by the base model? The differences of the squared
-//!   errors of the folds are compared with their spread by Student's test of the same level, one-sided.
+//! - Can all k removed parameters C be zero? They have the base estimates χ_C and the covariance
+//!   V_C of the module `intervals` with ν degrees of freedom. Then F = (ν - k + 1)/(ν k) χ_Cᵀ
+//!   V_C^-1 χ_C has Fisher's distribution with k and ν - k + 1 degrees of freedom (Hotelling's
+//!   test). The step is refused if its p-value is below the level, so at most that fraction of
+//!   right models is refused. The elimination also ends at ν/2 removed parameters, since V cannot
+//!   test more.
+//! - Does the prediction of folds worsen compared with the base model? Student's one-sided test
+//!   compares the differences of their squared errors with the spread, at the same level.
 //!
-//! Unlike r_σ, none of this asks whether a parameter is large: friction of one percent of the torque
-//! stays where the data know it.
+//! Unlike r_σ, neither test depends on the size of a parameter. Friction of one percent of the
+//! torque is kept if the data determine it.
 
 #[cfg(test)]
 mod tests;
@@ -28,30 +28,32 @@ use super::{
 };
 use crate::{error::Error, regression::system::System, settings::Settings};
 
-/// How often right models are refused, at most.
+/// Level of both tests: the largest fraction of right models that is refused.
 const LEVEL: f64 = 0.05;
 
-/// Folds whose spread is worth a test.
+/// Fewest folds for the test of their errors.
 const FEWEST_FOLDS: usize = 3;
 
-/// The recommended parameters.
+/// Recommended parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Recommended {
-    /// Columns that are left, in the order of the base parameters.
+    /// Remaining columns, in the order of the base parameters.
     pub(crate) selected: Vec<usize>,
     /// Their names.
     pub(crate) names: Vec<String>,
     /// Their estimates.
     pub(crate) estimation: Estimation,
-    /// Why no more was cancelled, in words.
+    /// Reason for the end of the elimination, in words.
     pub(crate) stop: String,
 }
 
-/// Cancels parameters of the base estimation `start` of the columns `selected` with their `names`, of
-/// which `intervals` knows the covariance; `folds` are the parts of the data that are held out.
+/// Eliminates parameters from the base estimation `start` of the columns `selected`.
+///
+/// `names` are those of the columns, `intervals` have their covariance, and `folds` serve for
+/// cross-validation.
 ///
 /// # Errors
-/// An estimation that is not possible.
+/// An estimation fails.
 pub(crate) fn recommended(
     system: &System,
     (selected, names): (&[usize], &[String]),
@@ -96,14 +98,14 @@ pub(crate) fn recommended(
     Ok(here)
 }
 
-/// The place of the largest relative standard deviation.
+/// Index of the largest relative standard deviation.
 fn largest_deviation(estimation: &Estimation) -> usize {
     let deviations = estimation.relative_standard_deviations_percent.iter();
     let largest = deviations.enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     largest.map_or(0, |(place, _)| place)
 }
 
-/// Why the data do not let all these base parameters be zero, in words.
+/// Why these base parameters cannot all be zero, in words; `None` if they can.
 fn refuted(intervals: &Intervals, cancelled: &[usize]) -> Option<String> {
     let count = cancelled.len() as f64;
     let Some((square, freedom)) = intervals.distance(cancelled) else {
@@ -124,7 +126,7 @@ fn refuted(intervals: &Intervals, cancelled: &[usize]) -> Option<String> {
     })
 }
 
-/// Whether squared errors of folds have grown by more than chance explains.
+/// Whether the squared errors of folds have grown significantly.
 fn grows(before: &[f64], after: &[f64]) -> bool {
     let count = before.len() as f64;
     let differences: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();

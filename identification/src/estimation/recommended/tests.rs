@@ -1,10 +1,10 @@
-//! The level of the choice, and what it must not cancel.
+//! Level of the selection, and parameters that must not be removed.
 
 use super::{grows, refuted};
 use crate::estimation::intervals::Intervals;
 use nalgebra::DMatrix;
 
-/// Estimates of unit deviation.
+/// Estimates of unit standard deviation.
 fn intervals(values: &[f64], freedom: f64) -> Intervals {
     let count = values.len();
     let columns = (0..count).collect();
@@ -40,6 +40,6 @@ fn few_degrees_of_freedom_cannot_test_many_parameters() {
 fn held_out_errors_grow_where_all_folds_say_so() {
     assert!(grows(&[1.0, 2.0, 1.5, 1.0], &[1.2, 2.2, 1.8, 1.3]));
     assert!(!grows(&[1.0, 2.0, 1.5, 1.0], &[1.2, 1.8, 1.6, 0.9]));
-    // Two folds have no spread to speak of.
+    // The spread of two folds has no meaning.
     assert!(!grows(&[1.0, 2.0], &[1.5, 2.5]));
 }

@@ -1,4 +1,4 @@
-//! Quantities of the estimates: densities, and values by those that are believed beforehand.
+//! Quantities of the estimates: densities, and ratios to prior values.
 
 use super::motion::RunMotion;
 use crate::{
@@ -8,31 +8,33 @@ use crate::{
     units::{Powers, Quantity, Range},
 };
 
-/// Densities of a robot, mass by cubed length, kg/m³: between those of foam in a frame and lead.
+/// Possible densities of a robot, mass by cubed length, kg/m³.
 const DENSITIES: Range = Range::new(0.01, 2e4);
 const USUAL_DENSITIES: Range = Range::new(0.5, 3e3);
 
-/// Values by those that are believed beforehand.
+/// Possible ratios of estimates to prior values.
 const BY_PRIOR: Range = Range::new(0.05, 20.0);
 
-/// Deviations from which on an estimate is clear of zero.
+/// Estimates count if they differ from zero by this many standard deviations.
 const CLEAR: f64 = 5.0;
 
-/// Lengths of a robot without described ones, m: for densities that are too large at least, too small at most.
+/// Lengths (m) of a robot without described lengths.
+///
+/// The lower bound applies to densities that are too large, the upper one to those too small.
 const AXIS: Range = Range::new(1.0, 5.0);
 
-/// The lengths by which densities are judged.
+/// Lengths for the bounds on densities.
 struct Lengths {
-    /// For those that are too large.
+    /// For densities that are too large.
     long: f64,
-    /// For those that are too small.
+    /// For densities that are too small.
     short: f64,
-    /// Whether they are described, and do not change with the unit of the positions.
+    /// Whether they are described, and thus independent of the unit of positions.
     are_described: bool,
 }
 
 impl Lengths {
-    /// Of a robot that moves so in its runs; none where nothing says how large it is.
+    /// Lengths of a robot with these runs; `None` if its size is unknown.
     fn new(scales: &Scales, runs: &[RunMotion]) -> Option<Self> {
         let travel = runs.iter().fold(0.0, |most: f64, run| most.max(run.travel));
         match scales.reach() {
@@ -51,8 +53,9 @@ impl Lengths {
     }
 }
 
-/// The power of a length that makes a density of a parameter: of masses 3, of first moments 4, of inertias 5; none
-/// of friction.
+/// Power of a length that converts a parameter to a density.
+///
+/// Masses have 3, first moments 4, inertias 5, friction `None`.
 fn power(unit: &str) -> Option<i32> {
     match unit {
         "kg" => Some(3),
@@ -62,7 +65,7 @@ fn power(unit: &str) -> Option<i32> {
     }
 }
 
-/// What the base parameters of the first model say of the units.
+/// Quantities of the first model's base parameters that depend on units.
 pub(super) fn quantities(
     context: &Context<'_>,
     scales: &Scales,
@@ -80,7 +83,7 @@ pub(super) fn quantities(
     densities.chain(by_prior(context, &clear)).collect()
 }
 
-/// The largest density, and that of the heaviest parameter.
+/// The largest density, and the density of the heaviest parameter.
 fn densities(
     context: &Context<'_>,
     clear: &[&ParameterEstimate],
@@ -118,7 +121,7 @@ fn densities(
         larger(&mut densest, one.value.abs() / whole, name);
         larger(&mut heaviest, one.value.abs() / small, name);
     }
-    // A length that is a travel grows with the positions.
+    // A length that is a travel scales with the positions.
     let by_travel = if lengths.are_described { 0 } else { -3 };
     let quantity = |name: &str, value: f64, length: f64, possible: Range, usual: Range, moved| {
         let length = crate::significant(length, 3);
@@ -148,7 +151,7 @@ fn densities(
     densest.into_iter().chain(heaviest).collect()
 }
 
-/// The median of the estimates by what is believed or known of them beforehand.
+/// Median ratio of the estimates to their prior or known values.
 fn by_prior(context: &Context<'_>, clear: &[&ParameterEstimate]) -> Option<Quantity> {
     let columns = context.columns.as_slice();
     let settings = context.settings;
@@ -168,7 +171,7 @@ fn by_prior(context: &Context<'_>, clear: &[&ParameterEstimate]) -> Option<Quant
         let (sum, size) = parts.iter().fold((0.0, 0.0), |(sum, size), part: &f64| {
             (sum + part, size + part.abs())
         });
-        // Parts that cancel say nothing of the size.
+        // A sum of terms that nearly cancel says nothing about the size.
         (sum.abs() > 0.1 * size).then(|| (one.value / sum).abs())
     };
     let mut ratios: Vec<f64> = clear.iter().filter_map(ratio).collect();

@@ -1,25 +1,37 @@
-//! Whether time, positions and torques can be in SI units: a log in milliseconds, millimetres or mN m gives
-//! parameters with small deviations and a small residual, and only physical scales contradict it.
+//! Tests whether time, positions and torques can be in SI units.
 //!
-//! **Bounds.** Motion: a tip is slower than sound and accelerates by less than 200 g; a run that is sampled slower
-//! than 20 Hz accelerates by more than 1 mm/s² or it shows no inertia. Drives: torques stay within ten times their
-//! described limit, travels within thirty times the described one. Bodies: the density of a robot, its masses over
-//! L³, first moments over L⁴, inertias over L⁵, lies between 0.01 and 20 000 kg/m³.
+//! A log in milliseconds, millimetres or mN m has parameters with small standard deviations and a
+//! small residual. Only physical scales contradict it.
 //!
-//! **Length L.** The reach of the description: the largest sum of lengths along a leg, the distance between bases of
-//! legs or between their ends, 0.1 m at least. A robot without lengths is a linear axis. Its travel is no size of its
-//! body, since a table of 100 kg may move by 0.2 m: its masses are compared with the travel or 1 m, whichever is
-//! longer, and, to find masses that are too small, with the travel up to 5 m.
+//! **Bounds**
 //!
-//! **Regrouped parameters.** A base parameter is χ_k + Σ c_d χ_d, so its bound is that of χ_k plus Σ |c_d| times those
-//! of χ_d: a robot of possible bodies keeps it, however large the c_d are. Estimates within five deviations of zero
-//! are left out.
+//! | quantity | bound |
+//! |---|---|
+//! | speed of the tip | at most that of sound |
+//! | acceleration of the tip | at most 200 g |
+//! | the same, for sampling below 20 Hz | at least 1 mm/s², else no inertia shows |
+//! | torque by its described limit | at most 10 |
+//! | travel by the described one | at most 30 |
+//! | density of the robot | 0.01 to 20 000 kg/m³ |
 //!
-//! **The slip.** A value that is `factor` times too large in a signal multiplies each measured quantity by a known
-//! power of it. Of the usual slips the one is named that brings all quantities back to usual values.
+//! Densities are masses by L³, first moments by L⁴ and inertias by L⁵.
+//!
+//! **Length L.** The reach of the description: the largest sum of lengths along a leg, or the
+//! distance between the legs' bases or ends, but at least 0.1 m. A robot without lengths is a
+//! linear axis. Its travel is not its size: a table of 100 kg may move by 0.2 m. Densities that are
+//! too large are computed with the travel, at least 1 m. Those that are too small are computed with
+//! the travel, at most 5 m.
+//!
+//! **Regrouped parameters.** A base parameter is χ_k + Σ c_d χ_d. Its bound is that of χ_k plus Σ
+//! |c_d| times those of χ_d, so possible bodies satisfy it for any c_d. Estimates within five
+//! standard deviations of zero are ignored.
+//!
+//! **Unit error.** A signal that is `factor` times too large multiplies each quantity by a known
+//! power of `factor`. The common unit error that brings all quantities back to usual values is
+//! named.
 //!
 //! - `motion`: quantities of a run's raw numbers; `bodies`: those of the estimates;
-//! - `words`: what is reported.
+//! - `words`: the messages.
 
 mod bodies;
 mod motion;
@@ -39,7 +51,7 @@ use crate::{
     units::{Quantity, Slip, explanation},
 };
 
-/// Looks at all runs and at the estimates.
+/// Checks all runs and the estimates.
 ///
 /// # Errors
 /// None.
@@ -62,7 +74,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(merged(found, runs.len()))
 }
 
-/// A hint to the unit of the raw numbers of a run, where they contradict physical scales.
+/// A hint at a unit error in the raw numbers of a run.
 pub(crate) fn hint(model: &dyn Model, run: &str, monitor: &Monitor) -> Option<String> {
     let run = RunMotion::new(model, &Scales::default(), run, monitor);
     let drive = run.single_drives().into_iter().next();
@@ -70,25 +82,25 @@ pub(crate) fn hint(model: &dyn Model, run: &str, monitor: &Monitor) -> Option<St
     Some(words::hint(&found))
 }
 
-/// Quantities out of their bounds, and the slip that explains them.
+/// Quantities out of their bounds, and the unit error that explains them.
 pub(super) struct Finding {
     run: String,
-    /// The drive that it is about; none for all.
+    /// The drive; `None` for all drives.
     actuator: Option<String>,
-    /// The quantities out of their bounds, the farthest one first.
+    /// Quantities out of their bounds, the farthest first.
     contradictions: Vec<Quantity>,
-    /// The slip that brings them back, if one does.
+    /// The unit error that brings them back, if there is one.
     slip: Option<&'static Slip>,
 }
 
 impl Finding {
-    /// What contradicts a run and the estimates.
+    /// The finding from a run and the estimates.
     fn of_run(run: &RunMotion, bodies: &[Quantity]) -> Option<Self> {
         let quantities: Vec<Quantity> = run.quantities().chain(bodies).cloned().collect();
         Self::of(run, None, &quantities)
     }
 
-    /// What contradicts quantities of a run or of one of its drives.
+    /// The finding from quantities of a run or of one drive.
     fn of(run: &RunMotion, actuator: Option<&str>, quantities: &[Quantity]) -> Option<Self> {
         let mut contradictions: Vec<Quantity> = quantities
             .iter()
@@ -104,7 +116,7 @@ impl Finding {
         })
     }
 
-    /// As a check.
+    /// The finding as a check.
     fn check(&self) -> Check {
         let check = words::check(self).allowing(Grade::DoNotUse);
         match &self.actuator {
@@ -114,7 +126,7 @@ impl Finding {
     }
 }
 
-/// The findings as checks: one for all runs that have the same slip in the same drive.
+/// The findings as checks, merged if all runs have the same unit error in the same drive.
 fn merged(found: Vec<Finding>, runs: usize) -> Vec<Check> {
     let mut groups: BTreeMap<(Option<String>, Option<&str>), Vec<Finding>> = BTreeMap::new();
     for finding in found {

@@ -1,4 +1,4 @@
-//! Quantities of the raw numbers of a run: sampling, speeds, accelerations, travels, torques.
+//! Quantities of a run's raw numbers: sampling, speeds, accelerations, travels, torques.
 
 use overact::Model;
 
@@ -16,39 +16,39 @@ const SOUND: f64 = 343.0;
 /// Largest acceleration of a tip, m/s²: 200 g, ten times that of the fastest Delta robots.
 const LARGEST_ACCELERATION: f64 = 2000.0;
 
-/// Below this acceleration of a tip (m/s²) and this sampling frequency (Hz) a run shows no inertia.
+/// A run below this tip acceleration (m/s²) and sampling frequency (Hz) shows no inertia.
 const SMALLEST_ACCELERATION: f64 = 1e-3;
 const SLOW_SAMPLING: f64 = 20.0;
 
-/// Longest travel of a linear drive, m, and by the reach of the robot.
+/// Longest travel of a linear drive, in m and in reaches of the robot.
 const LONGEST_TRAVEL: f64 = 30.0;
 const LONGEST_BY_REACH: f64 = 100.0;
 
-/// A travel, or a torque, by the described one.
+/// Largest ratio of a travel, or a torque, to the described one.
 const BY_DESCRIBED_TRAVEL: f64 = 30.0;
 const BY_DESCRIBED_TORQUE: f64 = 10.0;
 
-/// Where lengths are not described, a drive that turns moves a tip at this distance (m).
+/// Distance (m) from a revolute drive to the tip if no lengths are described.
 const ARM: f64 = 0.3;
 
-/// The motion of a run.
+/// Motion quantities of a run.
 pub(super) struct RunMotion {
     pub(super) name: String,
     sampling: Vec<Quantity>,
     drives: Vec<DriveMotion>,
     pub(super) has_revolute: bool,
     pub(super) has_prismatic: bool,
-    /// The longest travel of a linear drive, m.
+    /// Longest travel of a linear drive, m.
     pub(super) travel: f64,
 }
 
-/// The motion of a drive in a run.
+/// Motion quantities of a drive in a run.
 struct DriveMotion {
     actuator: String,
     is_revolute: bool,
     /// Travel, speed and acceleration.
     motion: Vec<Quantity>,
-    /// The largest torque by the described one.
+    /// Ratio of the largest torque to its limit.
     torque: Option<Quantity>,
 }
 
@@ -87,7 +87,7 @@ impl RunMotion {
         }
     }
 
-    /// All quantities: those of the drives only for the drive that has most of it.
+    /// All quantities; those of drives only for the drive with the largest value.
     pub(super) fn quantities(&self) -> impl Iterator<Item = &Quantity> {
         let count = self.drives.iter().map(|drive| drive.motion.len()).max();
         let most = (0..count.unwrap_or(0)).filter_map(|place| {
@@ -110,7 +110,7 @@ impl RunMotion {
         }
     }
 
-    /// Drives whose motion is impossible beside others whose motion is not, or whose torques are.
+    /// Drives with impossible motion while others are possible; likewise for torques.
     pub(super) fn single_drives(&self) -> Vec<Finding> {
         let is_moving = |drive: &&DriveMotion| !drive.motion.is_empty();
         let moving = self.drives.iter().filter(is_moving);
@@ -136,7 +136,7 @@ impl RunMotion {
         found
     }
 
-    /// What contradicts quantities of a drive.
+    /// The finding from quantities of a drive.
     fn of_drive(&self, drive: &DriveMotion, quantities: &[Quantity]) -> Option<Finding> {
         let own = Self {
             name: self.name.clone(),
@@ -150,7 +150,7 @@ impl RunMotion {
     }
 }
 
-/// The sampling frequency, by itself and by that of the virtual experiment.
+/// The sampling frequency, in Hz and relative to that of the virtual experiment.
 fn sampling(frequency: f64, scales: &Scales) -> Vec<Quantity> {
     let powers = Powers {
         time: -1,
@@ -175,7 +175,7 @@ fn sampling(frequency: f64, scales: &Scales) -> Vec<Quantity> {
     std::iter::once(own).chain(described).collect()
 }
 
-/// The largest torque of a drive by the described one.
+/// The ratio of a drive's largest torque to its limit.
 fn by_limit(drive: &str, ratio: f64) -> Quantity {
     Quantity {
         name: format!("the largest torque of {drive} by its `torque_limit`"),
@@ -194,16 +194,16 @@ fn by_limit(drive: &str, ratio: f64) -> Quantity {
 struct Drive {
     name: String,
     is_revolute: bool,
-    /// Largest less smallest position, rad or m.
+    /// Largest minus smallest position, rad or m.
     range: f64,
-    /// rad/s or m/s.
+    /// Speed, rad/s or m/s.
     speed: f64,
     /// Sampling frequency, Hz.
     frequency: f64,
 }
 
 impl Drive {
-    /// Travel, speed and acceleration; none of a drive that rests.
+    /// Travel, speed and acceleration; empty for a drive that does not move.
     fn quantities(&self, scales: &Scales, index: usize) -> Vec<Quantity> {
         if !(self.range > 0.0 && self.speed > 0.0) {
             return Vec::new();
@@ -218,7 +218,7 @@ impl Drive {
             positions: 1,
             torques: 0,
         };
-        // Of a sine of amplitude R/2 and largest speed v, the largest acceleration is 2 v²/R.
+        // A sine of amplitude R/2 and peak speed v has the peak acceleration 2 v²/R.
         let acceleration = 2.0 * self.speed.powi(2) / self.range * arm;
         let least = if self.frequency < SLOW_SAMPLING {
             SMALLEST_ACCELERATION
@@ -247,7 +247,7 @@ impl Drive {
         ]
     }
 
-    /// By how much it moves.
+    /// Travel of the drive.
     fn travel(&self, scales: &Scales, index: usize) -> Quantity {
         let described = scales.travel.get(index).map(|travel| 2.0 * travel);
         let described = described.filter(|travel| *travel > 0.0);

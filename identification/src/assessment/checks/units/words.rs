@@ -1,4 +1,4 @@
-//! What is reported of units.
+//! Messages of the unit check.
 
 use super::Finding;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     units::{Quantity, Slip},
 };
 
-/// Quantities that a report names, at most.
+/// Largest number of quantities named in a message.
 const NAMED: usize = 3;
 
 /// A finding as a check.
@@ -39,7 +39,7 @@ pub(super) fn hint(found: &Finding) -> String {
     }
 }
 
-/// What contradicts, which slip explains it, what to do.
+/// States the contradiction, the unit error and the remedy.
 fn sentence(found: &Finding) -> String {
     let told: Vec<String> = found
         .contradictions

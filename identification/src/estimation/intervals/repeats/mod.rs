@@ -1,23 +1,25 @@
-//! How much more of the residual returns with the motion than beside it.
+//! Ratio of the residual's power at the frequencies of the motion to that at their neighbours.
 //!
-//! A column that varies with a period has its power at the multiples of one frequency. What a model
-//! lacks, or a sensor's error that depends on the position, returns with the same period: it stands at
-//! the very frequencies of the columns and does not average out, however often it is repeated. Scores
-//! do not show it, since the fit makes their sum zero; the covariance of the module `scores`
-//! looks at the frequencies around those of the columns and is too small by the ratio
+//! A periodic column has its power at multiples of one frequency. Missing terms of the model, or
+//! position-dependent sensor errors, have the same period. Their residual is at exactly these
+//! frequencies, and more periods do not reduce it. The scores do not show it, since the fit makes
+//! their sum zero. The covariance of the module `scores` uses the frequencies around those of the
+//! columns and is too small by the ratio
 //!
 //! ```text
-//! Q_i/Q'_i,   Q_i = Σ_f Σ_jk c_ij* P_jk c_ik,   Q'_i = Σ_f Σ_jk c_ij* S_jk c_ik,   P_jk = ρ_j ρ_k*,
+//! Q_i/Q'_i,   Q_i = Σ_f Σ_jk c_ij* P_jk c_ik,   Q'_i = Σ_f Σ_jk c_ij* S_jk c_ik,   P_jk = ρ_j ρ_k*.
 //! ```
 //!
-//! with c_i = λ W A^-1 e_i, everything transformed over time, and S the mean of P over the neighbours of a
-//! frequency, without itself, as far as the cosines of the scores reach.
+//! Here c_i = λ W A^-1 e_i, transformed over time. S is the mean of P over the neighbours of a
+//! frequency, without itself, within the band of the cosines of the scores.
 //!
 //! - `power`: P of the lines of a piece, and S.
-//! - `piece`: what a piece adds to Q and Q'.
-//! - `signs`: what the ratio would be of a residual that has nothing to do with the motion. It is 1 in the
-//!   mean where that is as large everywhere, else less or more, since the fit takes another part of it. The
-//!   ratio is divided by what random signs of each instant's residual give.
+//! - `piece`: contribution of a piece to Q and Q'.
+//! - `signs`: the ratio for residuals that are unrelated to the motion.
+//!
+//! The latter ratio is 1 on average for a residual of constant size. Otherwise it differs, since
+//! the fit removes another part of the residual. The result is divided by the ratio for residuals
+//! with random signs.
 
 mod piece;
 mod power;
@@ -54,7 +56,7 @@ pub(crate) fn ratios(system: &System, context: &Context<'_>) -> Vec<(f64, f64)> 
             let ratio = sum(|share| share.own) / around;
             let by_chance = sum(|share| share.drawn.own) / sum(|share| share.drawn.around);
             let freedom = 2.0 * around * around / sum(|share| share.squares);
-            // What signs give scatters, too, as much as so many residuals in the mean.
+            // The ratio for random signs also scatters, like the mean of `DRAWS` residuals.
             (ratio / by_chance, freedom / (1.0 + 1.0 / DRAWS as f64))
         })
         .collect()

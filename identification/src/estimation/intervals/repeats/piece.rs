@@ -1,8 +1,8 @@
-//! What a piece of a run adds to Q and Q'.
+//! Contribution of a piece of a run to Q and Q'.
 //!
-//! Of white noise as large everywhere the fit takes a part, H_jk(f) = λ_j λ_k W_j(f) A^-1 W_k(f)*, so that
-//! the mean of c* P c is N c*c - c*H c. Up to one half, the part that is taken is divided out; what is taken
-//! beyond is supposed to be like the neighbours.
+//! The fit removes H_jk(f) = λ_j λ_k W_j(f) A^-1 W_k(f)* of white noise of constant size, so the
+//! mean of c* P c is N c*c - c*H c. Removal of up to one half is corrected by division. Beyond
+//! that, the removed part is replaced by the mean of the neighbours.
 
 use nalgebra::DMatrix;
 
@@ -16,19 +16,19 @@ use crate::estimation::{
     intervals::scores::{Context, cosines},
 };
 
-/// What is divided out at most is the inverse of this.
+/// Inverse of the largest factor of this correction.
 const LEAST_LEFT: f64 = 0.5;
 
-/// What a piece adds for one parameter.
+/// Contribution of a piece for one parameter.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Share {
-    /// Its part of Q_i.
+    /// Part of Q_i.
     pub(super) own: f64,
-    /// Its part of Q'_i.
+    /// Part of Q'_i.
     pub(super) around: f64,
-    /// Its part of the variance of Q_i.
+    /// Part of the variance of Q_i.
     pub(super) squares: f64,
-    /// The parts with random signs, of all draws.
+    /// Parts for random signs, summed over all draws.
     pub(super) drawn: Parts,
 }
 
@@ -39,8 +39,9 @@ pub(super) struct Parts {
     pub(super) around: f64,
 }
 
-/// The columns of a line of a piece over frequency; real and imaginary parts, parameters x frequencies:
-/// what belongs to a frequency lies together.
+/// Spectra of the columns of a line of a piece.
+///
+/// Real and imaginary parts are parameters × frequencies, so each frequency is contiguous.
 struct Line {
     /// Weighted columns.
     columns: [DMatrix<f64>; 2],
@@ -49,7 +50,7 @@ struct Line {
 }
 
 impl Line {
-    /// That of weighted columns over time.
+    /// Transforms weighted columns.
     fn new(context: &Context<'_>, fourier: &Fourier, columns: &DMatrix<f64>) -> Self {
         let spectra: Vec<Spectrum> = fourier.columns(columns);
         let bins = fourier.frequencies();
@@ -70,7 +71,7 @@ impl Line {
         })
     }
 
-    /// H_jk/N of two lines at a frequency, real and imaginary part.
+    /// H_jk/N of two lines at a frequency, real and imaginary parts.
     fn leverage(&self, other: &Self, bin: usize, count: usize) -> [f64; 2] {
         let [a, b] = self.columns.each_ref().map(|part| part.column(bin));
         let [c, d] = other.influence.each_ref().map(|part| part.column(bin));
@@ -80,7 +81,7 @@ impl Line {
     }
 }
 
-/// What the lines of a piece, each with its weight, add for each parameter.
+/// Contributions of the lines of a piece, each with its weight, for each parameter.
 pub(super) fn shares<'a>(
     context: &Context<'_>,
     views: impl Iterator<Item = (View<'a>, f64)>,
@@ -113,8 +114,10 @@ pub(super) fn shares<'a>(
     )
 }
 
-/// The shares of all parameters, of what is taken and the powers of the residual and of those drawn, their own
-/// and their neighbours'.
+/// Contributions for all parameters.
+///
+/// `powers` are those of the fit's removal, the residual, its neighbours, the drawn residuals, and
+/// their neighbours.
 fn summed(
     parameters: usize,
     lines: &[Line],
@@ -125,7 +128,7 @@ fn summed(
     let mut sums = [const { Vec::new() }; FORMS];
     sums.iter_mut().for_each(|own| own.resize(parameters, 0.0));
     for bin in 0..bins {
-        // Frequencies inside stand for their negative ones, too.
+        // Inner frequencies also represent their negative ones.
         let edge = bin == 0 || bin + 1 == bins;
         let twice = if edge { 1.0 } else { 2.0 };
         let c: Vec<[&[f64]; 2]> = lines.iter().map(|line| line.at(bin)).collect();
@@ -149,8 +152,8 @@ fn summed(
             let [square, mean] = filled(own, around);
             share.own += square;
             share.around += mean;
-            // The transform is padded: so many frequencies tell one thing. The fit takes either of the
-            // two degrees of freedom of a frequency; what is filled in does not vary.
+            // With zero padding, `padding` frequencies carry one independent value. The fit removes
+            // either of the two degrees of freedom of a frequency; a filled-in part does not vary.
             let varies = (factor * left).powi(2) * (1.0 / left.max(LEAST_LEFT));
             share.squares += padding * mean.powi(2) * varies;
             let [square, mean] = filled(drawn, drawn_around);

@@ -5,21 +5,21 @@ use pulp::NullaryFnOnce;
 
 use crate::estimation::fourier::Spectrum;
 
-/// A Hermitian matrix over pairs of lines for each frequency from 0 to half the sampling frequency.
+/// A Hermitian matrix over pairs of lines, for each frequency from 0 to Nyquist.
 pub(super) struct Powers {
     lines: usize,
-    /// Below the diagonal and on it, row by row: real and imaginary parts over frequency.
+    /// Lower triangle, row by row: real and imaginary parts over frequency.
     pairs: Vec<[Vec<f64>; 2]>,
 }
 
 impl Powers {
-    /// Σ ρ_j ρ_k* over the residuals of each line, which are as many for each.
+    /// Σ ρ_j ρ_k* over the residuals of each line; each line has the same number of residuals.
     pub(super) fn new(residuals: &[Vec<Spectrum>], bins: usize) -> Self {
         let lines = residuals.len();
         let below = (0..lines).flat_map(|j| (0..=j).map(move |k| (j, k)));
         let pairs = below.map(|(j, k)| {
             let (mut real, mut imaginary) = (vec![0.0; bins], vec![0.0; bins]);
-            // Residual by residual, as they lie in memory.
+            // Residual by residual, as stored in memory.
             for (a, b) in residuals[j].iter().zip(&residuals[k]) {
                 let sums = real.iter_mut().zip(&mut imaginary);
                 let (first, second) = (
@@ -39,7 +39,7 @@ impl Powers {
         }
     }
 
-    /// The matrices with entries `of` row, column and frequency.
+    /// Matrices with entries `of` row, column and frequency.
     pub(super) fn from_fn(
         lines: usize,
         bins: usize,
@@ -61,21 +61,21 @@ impl Powers {
     }
 }
 
-/// How many matrices have their forms told at a time.
+/// Number of matrices whose forms are computed together.
 pub(super) const FORMS: usize = 5;
 
-/// Σ_jk Re(c_j* M_jk c_k) of several matrices at a frequency, for many vectors c.
+/// Hermitian forms Σ_jk Re(c_j* M_jk c_k) of several matrices at a frequency, for many c.
 pub(super) struct Forms<'a> {
     pub(super) matrices: [&'a Powers; FORMS],
     pub(super) bin: usize,
-    /// For each line the real and imaginary parts of c_j of all vectors.
+    /// For each line, the real and imaginary parts of c_j of all vectors.
     pub(super) vectors: &'a [[&'a [f64]; 2]],
-    /// For each matrix the forms of all vectors, as many as these are.
+    /// For each matrix, the forms of all vectors.
     pub(super) sums: &'a mut [Vec<f64>; FORMS],
 }
 
 impl Forms<'_> {
-    /// Puts the forms into `sums`.
+    /// Writes the forms to `sums`.
     pub(super) fn tell(self) {
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = pulp::x86::V3::try_new() {
@@ -102,7 +102,7 @@ impl Forms<'_> {
                 });
                 pair += 1;
                 let (a, b, d, e) = (&a[..count], &b[..count], &d[..count], &e[..count]);
-                // A loop: closures that iterators call would not be compiled for wide vectors.
+                // A loop, since closures in iterators would not be vectorised.
                 for i in 0..count {
                     let (x, y) = (a[i] * d[i] + b[i] * e[i], a[i] * e[i] - b[i] * d[i]);
                     first[i] += both * (x * m[0] - y * m[1]);
@@ -126,7 +126,7 @@ impl NullaryFnOnce for Forms<'_> {
     }
 }
 
-/// The frequencies on either side of one that are its neighbours, as distances.
+/// Neighbouring frequencies on either side, as distances.
 pub(super) struct Neighbours {
     padding: f64,
     nearest: usize,
@@ -134,7 +134,8 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Those of a piece of `count` equations, padded to so many frequencies, as far as `cosines` reach.
+    /// For a piece of `count` equations, padded to `bins` frequencies, within the band of
+    /// `cosines`.
     pub(super) fn new(count: usize, bins: usize, cosines: usize) -> Self {
         let padding = 2.0 * bins.saturating_sub(1) as f64 / count.max(1) as f64;
         let reach = 0.5 * cosines as f64 * padding;
@@ -145,12 +146,12 @@ impl Neighbours {
         }
     }
 
-    /// How many frequencies tell one thing.
+    /// Number of frequencies per independent value.
     pub(super) const fn padding(&self) -> f64 {
         self.padding
     }
 
-    /// Means of the neighbours around each frequency, freed of what the fit has taken away.
+    /// Means of the neighbours around each frequency, corrected for the fit's removal.
     pub(super) fn means(&self, powers: &Powers, taken: &Powers) -> Powers {
         let lines = powers.lines;
         let left: Vec<Vec<f64>> = (0..lines)
@@ -170,10 +171,10 @@ impl Neighbours {
         }
     }
 
-    /// The sum of the values of the neighbours over that of their weights.
+    /// Sum of the neighbours' values divided by the sum of their weights.
     fn mean(&self, [real, imaginary]: &[Vec<f64>; 2], weights: &[f64]) -> [Vec<f64>; 2] {
         let bins = weights.len();
-        // Beyond either end stand the conjugates of the frequencies inside.
+        // Frequencies beyond either end are the conjugates of those inside.
         let inside = |place: isize| -> (usize, f64) {
             let last = bins as isize - 1;
             if place < 0 {
@@ -226,7 +227,7 @@ mod tests {
         }]
     }
 
-    /// The mean of ρ_a ρ_b* around a frequency by its definition, on the whole circle of frequencies.
+    /// Mean of ρ_a ρ_b* around a frequency by definition, on the circle of frequencies.
     fn mean(
         neighbours: &Neighbours,
         [a, b]: [&Spectrum; 2],
@@ -253,7 +254,7 @@ mod tests {
 
     #[test]
     fn neighbours_are_averaged_on_the_circle_of_frequencies() {
-        // At the ends, which are their own conjugates, the transform of real numbers is real.
+        // The ends are their own conjugates, so the transform of real numbers is real there.
         let imaginary = |bin: f64| bin * (bin - (BINS - 1) as f64);
         let residuals = [
             line(|k| [1.0 + k * k, 0.3 * imaginary(k)]),

@@ -1,8 +1,9 @@
-//! Residuals that have nothing to do with the motion, and are as large as the residual at each instant.
+//! Residuals unrelated to the motion, with the same size at each instant (wild bootstrap).
 //!
-//! The residual of every instant gets a random sign, all lines the same, and the model is fitted anew:
-//! ρ* = ηρ - W A^-1 Σ λ² w ηρ. What returns with the motion does so no longer; how noise grows and shrinks
-//! with it, and what lines share, remains (the wild bootstrap, Liu, *Annals of Statistics* 16, 1988).
+//! The residual of each instant is multiplied by a random sign η, equal for all lines, and the
+//! model is fitted again: ρ* = ηρ - W A^-1 Σ λ² w ηρ. This destroys repetition with the motion, but
+//! keeps changes of the noise level and correlation between lines (Liu, *Annals of Statistics* 16,
+//! 1988).
 
 use std::ops::Range;
 
@@ -19,25 +20,25 @@ use crate::{
     regression::system::System,
 };
 
-/// How many residuals are drawn; no more than an instant has bits.
+/// Number of draws; at most the number of bits of an instant.
 pub(super) const DRAWS: usize = 32;
 
-/// The signs of all instants, and what the fit takes away.
+/// Signs of all instants, and the fits.
 pub(super) struct Signs {
-    /// For each stretch and instant a bit for each draw.
+    /// For each stretch and instant, a bit for each draw.
     bits: Vec<Vec<u64>>,
-    /// A^-1 Σ λ² w ηρ, p x draws.
+    /// A^-1 Σ λ² w ηρ, p × draws.
     fits: DMatrix<f64>,
 }
 
-/// The signs of the instants of a piece.
+/// Signs of the instants of a piece.
 pub(super) struct Drawn<'a> {
     bits: &'a [u64],
     fits: &'a DMatrix<f64>,
 }
 
 impl Signs {
-    /// Those for all stretches; the same ones for the same system.
+    /// Draws the signs of all stretches, reproducibly.
     pub(super) fn new(system: &System, context: &Context<'_>) -> Self {
         let p = context.selected.len();
         let bits: Vec<Vec<u64>> = (0_u64..)
@@ -73,7 +74,7 @@ impl Signs {
         Self { bits, fits }
     }
 
-    /// Those of the instants of a piece of a stretch.
+    /// Signs of a piece of a stretch.
     pub(super) fn of(&self, stretch: usize, first: usize, count: usize) -> Drawn<'_> {
         let instants: Range<usize> = first..first + count;
         Drawn {
@@ -84,7 +85,7 @@ impl Signs {
 }
 
 impl Drawn<'_> {
-    /// ηρ of all draws, a column for each.
+    /// ηρ of all draws, one column each.
     fn signed(&self, residual: &[f64]) -> DMatrix<f64> {
         DMatrix::from_fn(residual.len(), DRAWS, |instant, draw| {
             if self.bits[instant] >> draw & 1 == 0 {
@@ -95,7 +96,7 @@ impl Drawn<'_> {
         })
     }
 
-    /// ρ* of all draws, of a line with these weighted columns and this residual.
+    /// ρ* of all draws, for a line with these weighted columns and this residual.
     pub(super) fn residuals(&self, columns: &DMatrix<f64>, residual: &[f64]) -> DMatrix<f64> {
         let mut drawn = self.signed(residual);
         drawn.gemm(-1.0, columns, self.fits, 1.0);
@@ -103,7 +104,7 @@ impl Drawn<'_> {
     }
 }
 
-/// λ w of the columns that were estimated.
+/// λ w of the estimated columns.
 pub(super) fn weighted(context: &Context<'_>, rows: &View<'_>, weight: f64) -> DMatrix<f64> {
     rows.select_columns(context.selected) * weight
 }
