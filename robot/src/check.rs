@@ -69,7 +69,7 @@ pub fn check_text(source: Source) -> Result<CheckedFile, Error> {
 }
 
 impl Robot {
-    /// Refuses a table `[prior]` with bodies that nobody can build.
+    /// Rejects a `[prior]` table with bodies that are not physically consistent.
     pub(crate) fn check_prior(&self) -> Result<(), Error> {
         let mut errors = Diagnostics::new();
         let mechanism = &self.model().model().mechanism;
@@ -98,7 +98,7 @@ fn checked(source: &Source) -> Result<Checked, Diagnostics> {
     errors.into_result(checked)
 }
 
-/// Bodies of the table `[prior]` that nobody can build.
+/// Reports bodies of the `[prior]` table that are not physically consistent.
 fn check_prior(
     source: &Source,
     description: &Description,
@@ -126,7 +126,7 @@ fn check_prior(
     }
 }
 
-/// What simulation and identification of the virtual experiment would refuse.
+/// Reports what simulation and identification of the virtual experiment would reject.
 fn check_experiment(
     source: &Source,
     description: &Description,
@@ -154,8 +154,7 @@ fn check_experiment(
     }
 }
 
-/// Runs of the virtual experiment that are too short, or sampled too slowly, for the filters of the
-/// identification.
+/// Reports runs of the virtual experiment that are too short or sampled too slowly for the filters.
 fn check_filters(
     source: &Source,
     description: &Description,
@@ -213,8 +212,9 @@ fn check_filters(
     }
 }
 
-/// Calls with what an experiment is checked against: all but the parameters, whose number follows from the
-/// model and is right by construction.
+/// Calls a function with the information that an experiment is checked against.
+///
+/// Parameters are omitted: their number follows from the model.
 fn with_info<T>(mechanism: &Mechanism, then: impl FnOnce(&Info<'_>) -> T) -> T {
     let joints = mechanism.joints();
     let actuated_joints = mechanism.actuated();
