@@ -1,5 +1,7 @@
-//! A description checked as a whole: what has no model, and what the virtual experiment and the
-//! identification would refuse, all of it at once and without simulating.
+//! Complete check of a description without its model.
+//!
+//! It also reports what simulation and identification of the virtual experiment would reject,
+//! without simulating.
 
 use crate::{
     body::body,

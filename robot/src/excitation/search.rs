@@ -215,7 +215,8 @@ impl<'a> Search<'a> {
         (score - parameters * lost, violation == 0.0)
     }
 
-    /// The best series that evolution finds from a start. `tell` hears how many generations are done.
+    /// Best series that evolution finds from a start; `tell` receives the number of completed
+    /// generations.
     pub(super) fn evolved(
         &self,
         series: &Series<'_>,
@@ -254,8 +255,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// A series with the numbers that are written, scaled down until it keeps all limits at and between the
-    /// samples of a fine grid.
+    /// Series with rounded numbers, scaled down until it keeps all limits at and between fine
+    /// samples.
     pub(super) fn settled(
         &self,
         series: &Series<'_>,
@@ -266,7 +267,7 @@ impl<'a> Search<'a> {
         let mut factor = 1.0;
         for _ in 0..SETTLING {
             let trajectory = series.rounded(&series.scaled(trajectory, factor));
-            // Amplitudes below the written digits are no motion.
+            // All amplitudes were rounded to zero.
             if is_standstill(&trajectory) {
                 return None;
             }
@@ -293,8 +294,8 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// The best of some random series, as [`settled`](Self::settled), that can be; the time is not looked at, for
-    /// there is nothing yet.
+    /// Best random series for which [`settled`](Self::settled) succeeds, regardless of the
+    /// deadline.
     pub(super) fn settled_random(
         &self,
         series: &Series<'_>,
@@ -312,7 +313,7 @@ impl<'a> Search<'a> {
             .find_map(|one| unhurried.settled(series, &one.trajectory))
     }
 
-    /// The candidate that tells most beside what the runs before it tell.
+    /// Candidate with the most information in addition to that of the earlier runs.
     pub(super) fn best<'c>(
         &self,
         all: &'c [Candidate],
@@ -327,7 +328,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The information of runs together.
+/// Sum of the information matrices of runs.
 pub(super) fn added(before: &[DMatrix<f64>], own: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
     match before.is_empty() {
         true => own.to_vec(),
