@@ -33,14 +33,14 @@ pub struct CheckedFile {
     pub file: String,
     /// The mechanism with its home configuration.
     pub mechanism: Mechanism,
-    /// What the description says that may not be meant.
+    /// Contents that may be unintended.
     pub note: Option<String>,
 }
 
 /// Reads and checks a description.
 ///
 /// # Errors
-/// A file that can't be read, or everything that is wrong with the description.
+/// A file that cannot be read, or all errors of the description.
 pub fn check(path: &Path) -> Result<CheckedFile, Error> {
     check_text(read(path)?)
 }
@@ -55,7 +55,7 @@ pub fn check(path: &Path) -> Result<CheckedFile, Error> {
 /// ```
 ///
 /// # Errors
-/// Everything that is wrong with the description.
+/// All errors of the description.
 pub fn check_text(source: Source) -> Result<CheckedFile, Error> {
     match checked(&source) {
         Ok(checked) => Ok(CheckedFile {

@@ -191,7 +191,7 @@ fn plus(old: &Value, variable: &str) -> Value {
     new
 }
 
-/// Adds to a coordinate of the point `at` of a leg's table, which may be left out.
+/// Adds to a coordinate of the point `at` of a leg's table; a missing point is created.
 fn component(
     leg: &mut dyn TableLike,
     table: &str,
@@ -208,7 +208,7 @@ fn component(
     Some(())
 }
 
-/// The tables of a list, which may be written in one line or as tables.
+/// Number of tables in a list, written inline or as an array of tables.
 fn count(item: &Item) -> usize {
     let tables = item.as_array_of_tables().map(ArrayOfTables::len);
     tables
@@ -227,7 +227,7 @@ fn nth(item: &mut Item, at: usize) -> Option<&mut dyn TableLike> {
     }
 }
 
-/// Writes `position_offset`, with the columns that a log has without a table `[data]` where there is none.
+/// Writes `position_offset`; without a `[data]` table, also the default columns.
 fn offsets(document: &mut DocumentMut, robot: &Robot, calibration: &Calibration) -> Option<()> {
     let info = robot.model().info();
     let mapping = robot.mapping();
