@@ -7,7 +7,7 @@
 //! τ̈ + 2ζω τ̇ + ω² τ = ω² g i,
 //! ```
 //!
-//! of a motor behind a spring, with an inertia that is small against the motor's. If the spring's
+//! of a motor behind a spring, whose inertia is small against that of the joint. If the spring's
 //! stiffness k is given, the encoder is on the motor side and shows q + τ/k. Cogging adds A sin(N
 //! q) to the torque at the joint, N periods per turn, or A sin(2πN q), N periods per metre.
 //!
