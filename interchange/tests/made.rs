@@ -1,4 +1,4 @@
-//! Files of each format become descriptions that pass their check.
+//! Files of each format are imported as valid descriptions.
 
 use overact_codegen::{Source, check};
 use overact_interchange::{Options, import};
@@ -10,7 +10,7 @@ fn model(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// The text and what its check finds.
+/// Text of the description and result of its check.
 fn made(name: &str, options: &Options) -> (String, overact_codegen::Checked) {
     let imported = import(&model(name), options).expect("a robot that can be said");
     let source = Source::new("made.toml", imported.text.clone());
