@@ -42,7 +42,7 @@ pub struct Dynamics<'a> {
     system: OnceCell<[DMatrix<f64>; 2]>,
 }
 
-/// Case 2: what multiplies the parameters and the projected torques (36).
+/// Actuator projection: matrices of the parameters and of the projected torques (36).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Partition {
     /// IDM_red of case 2, r x n_st: the inputs of the kept actuators.
@@ -125,8 +125,8 @@ impl<'a> Dynamics<'a> {
             + columns.rows(joints, self.mechanism.dof()))
     }
 
-    /// Actuator torques, of some overconstraint, for right-hand sides of (16), by the
-    /// pseudo-inverse of the equations with end wrenches and torques as unknowns.
+    /// Some actuator torques for right-hand sides of (16), by the pseudo-inverse of the equations
+    /// with end wrenches and torques as unknowns.
     fn any_torques(&self, loads: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let [system, inverse] = self.system.get_or_init(|| {
             let system = self.wrenches_and_torques();
@@ -146,7 +146,7 @@ impl<'a> Dynamics<'a> {
     fn wrenches_and_torques(&self) -> DMatrix<f64> {
         let jacobians = &self.jacobians;
         let (wrenches, joints) = jacobians.ends.shape();
-        // Of a platform that moves aside, all six components of its wrench.
+        // With parasitic motion: all six components of the platform's wrench.
         let (dof, actuators) = (jacobians.attachments.ncols(), jacobians.actuated.len());
         let mut system = DMatrix::zeros(joints + dof, wrenches + actuators);
         system
@@ -232,8 +232,9 @@ impl<'a> Dynamics<'a> {
         })
     }
 
-    /// Case 2 of a platform that moves aside, from any torques of the constrained system: they and those of the
-    /// kept actuators alone do the same work.
+    /// Actuator projection with parasitic motion, from any torques of the constrained system.
+    ///
+    /// These and the torques of the kept actuators alone do the same work.
     fn partition_aside(
         &self,
         kept: &[usize],
@@ -275,7 +276,7 @@ impl<'a> Dynamics<'a> {
         parameters: &DVector<f64>,
     ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
         let dof = self.mechanism.dof();
-        // The configuration is this state's, and with it the system and its inverse.
+        // The configuration is that of this state, so the system and its inverse are the same.
         let inputs = |acceleration: &DVector<f64>| {
             let state = State::with_joints(
                 self.mechanism,
