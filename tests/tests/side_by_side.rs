@@ -270,7 +270,7 @@ fn main() {
         compare!(dualv_lanes, dualv_straight, DualV),
         compare!(planar_4prr_lanes, planar_4prr_straight, Planar4Prr),
     ];
-    // For the others many states are unreachable; this one reaches everywhere.
+    // Of the others many states are out of reach; this one reaches everywhere.
     assert!(failed.iter().all(|failed| *failed >= 200), "{failed:?}");
     compare!(spherical_4rrr_lanes, spherical_4rrr_straight, Spherical4Rrr);
     println!("agree in {} lanes", <overact::lanes::Many as overact::lanes::Vector>::WIDTH);

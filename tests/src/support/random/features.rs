@@ -148,7 +148,7 @@ impl Shape {
         }
     }
 
-    /// The joints from the base to the last one.
+    /// Joints from the base to the last one.
     fn path(&self) -> Vec<usize> {
         let mut path = Vec::new();
         let mut at = self.members.len().checked_sub(1);
