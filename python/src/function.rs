@@ -23,7 +23,7 @@ const STRETCH: usize = 1 << 15;
 /// Number of samples that are evaluated individually if one of them has no value.
 const TRIED: usize = 64;
 
-/// A function of a robot: call it with arrays of one sample or of thousands.
+/// A function of a robot, callable with arrays of one or many samples.
 #[pyclass(module = "overact", frozen)]
 pub(crate) struct Function {
     form: Arc<Form>,
@@ -39,8 +39,8 @@ impl Function {
 impl Function {
     /// Evaluates the function.
     ///
-    /// Each input is an array whose last axis has the numbers of a sample; what stands before are samples. An
-    /// input of one axis serves all samples. Contiguous float64 is read where it lies.
+    /// The last axis of each input has the numbers of a sample; all axes before are samples. An
+    /// input of one axis is used for all samples. Contiguous float64 is read in place.
     #[pyo3(signature = (*arguments, out=None, start=None, invalid="raise", **named))]
     fn __call__<'py>(
         &self,
@@ -110,13 +110,13 @@ impl Function {
         self.form.function().name.clone()
     }
 
-    /// What it computes, with its equation.
+    /// Result of the function, with its equation.
     #[getter]
     fn summary(&self) -> &'static str {
         self.form.function().computes.summary()
     }
 
-    /// Its inputs: how many numbers of each a sample has.
+    /// Inputs in order, with their length in a sample.
     #[getter]
     fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let inputs = PyDict::new(py);
@@ -126,13 +126,13 @@ impl Function {
         Ok(inputs)
     }
 
-    /// The shape of its output at a sample.
+    /// Shape of the output at a sample.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.form.shape())
     }
 
-    /// Names of the parameters that its columns stand for; empty where they stand for none.
+    /// Names of the parameters of its columns; empty if it is not a regressor.
     #[getter]
     fn columns(&self) -> Vec<String> {
         let model = self.form.model().model();
@@ -148,7 +148,7 @@ impl Function {
         }
     }
 
-    /// What is called a signature: the function with its inputs and shapes.
+    /// Signature: the function with its inputs and shapes.
     #[getter]
     fn signature(&self) -> String {
         let argument = |one: &Argument| format!("{}: ({},)", one.name, one.length);
