@@ -21,16 +21,16 @@ pub enum Error {
     Home(overact::Error),
 }
 
-/// A value that makes no sense, and what would.
+/// An invalid value, with advice.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
     /// Path of the value, such as `runs[1].trajectory.terms[0].coordinate`.
     pub field: String,
-    /// What is wrong and what would be right.
+    /// Problem and advice.
     pub message: String,
 }
 
-/// A run that could not be finished.
+/// A run that failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunError {
     /// Name of the run.

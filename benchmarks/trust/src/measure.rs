@@ -1,4 +1,4 @@
-//! One draw: simulated, disturbed, identified, counted.
+//! Evaluation of one draw: simulation, noise, identification, counting.
 
 use crate::{Failure, Noise, Subject, draw};
 use overact_identification::{

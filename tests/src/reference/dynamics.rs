@@ -1,18 +1,20 @@
-//! Dynamics of the closed robot: the constrained system, case 1 and case 2.
+//! Dynamics of the closed robot: constrained system, platform projection and actuator projection.
 //!
-//! *Lagrange multipliers.* Each leg end passes a wrench w, in the rows of the ends, to the
-//! platform; motors act on the actuated joints, placed by E:
+//! *Lagrange multipliers.* Each leg end exerts a wrench w, in the rows of the ends, on the
+//! platform. Motors act on the actuated joints, selected by E:
 //!
 //! - legs: E τ - J_endsᵀ w = τ_t, platform: J_attachmentsᵀ w = τ_pr.
 //!
-//! This is (15) and (16) with every multiplier a physical wrench: no inverse of J_k, no A_p, no
-//! B_p. The system has more unknowns than equations for a redundant robot; any solution serves,
+//! This is (15) and (16) with physical wrenches as multipliers, without an inverse of J_k, A_p and
+//! B_p. For a redundant robot the system has more unknowns than equations. Any solution suffices,
 //! because Γ¹ = (J_p^inv)ᵀ τ is the same for all of them.
 //!
-//! *Case 1*, the closed form to compare with: Γ¹ = J_tkᵀ J_k^-T τ_t + Dᵀ τ_p (30).
+//! *Platform projection (case 1)*, in closed form for comparison: Γ¹ = J_tkᵀ J_k^-T τ_t + Dᵀ τ_p
+//! (30).
 //!
-//! *Case 2.* The stacked system (31)-(36) in its corrected form, with kept and projected actuators:
-//! rows of -B_pᵀ of the projected ones on top of (16) give λ; then τ_kept = -(B_pᵀ)_kept λ₂.
+//! *Actuator projection (case 2).* The stacked system (31)-(36) in its corrected form, with kept
+//! and projected actuators. Rows of -B_pᵀ of the projected ones on top of (16) give λ; then τ_kept
+//! = -(B_pᵀ)_kept λ₂.
 
 use super::Error;
 use super::closure::State;
@@ -38,20 +40,20 @@ pub struct Dynamics<'a> {
     pub state: &'a State,
     /// Its Jacobians in this state.
     pub jacobians: Jacobians,
-    /// The system of end wrenches and torques with its pseudo-inverse, once something needs it.
+    /// End-wrench system with its pseudo-inverse, computed on demand.
     system: OnceCell<[DMatrix<f64>; 2]>,
 }
 
 /// Actuator projection: matrices of the parameters and of the projected torques (36).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Partition {
-    /// IDM_red of case 2, r x n_st: the inputs of the kept actuators.
+    /// Regressor of the actuator projection, r x n_st.
     pub regressor: DMatrix<f64>,
     /// J_2ᵀ, r x (n - r): τ_kept = Γ² + J_2ᵀ τ_projected.
     pub projection: DMatrix<f64>,
     /// Condition number of the stacked matrix of (33).
     pub condition: f64,
-    /// The actuators that aren't kept, in order.
+    /// The actuators that are not kept, in order.
     pub projected: Vec<usize>,
 }
 
@@ -99,7 +101,7 @@ impl<'a> Dynamics<'a> {
             .into_owned())
     }
 
-    /// IDM_red of case 1, r x n_st, through Lagrange multipliers.
+    /// Regressor of the platform projection, r x n_st, through Lagrange multipliers.
     ///
     /// # Errors
     ///
@@ -109,7 +111,7 @@ impl<'a> Dynamics<'a> {
         Ok(self.jacobians.inverse.transpose() * torques)
     }
 
-    /// IDM_red of case 1 by the closed form (30), for comparison.
+    /// Regressor of the platform projection by the closed form (30), for comparison.
     ///
     /// # Errors
     ///
@@ -190,7 +192,7 @@ impl<'a> Dynamics<'a> {
         wide
     }
 
-    /// Case 2 for the kept actuators, counted from 0 (33)-(36).
+    /// Actuator projection for the kept actuators, counted from 0 (33)-(36).
     ///
     /// # Errors
     ///

@@ -43,7 +43,7 @@ pub fn inertia(rotation: &Matrix3<f64>, parameters: &[f64]) -> (f64, Vector3<f64
     )
 }
 
-/// Wrench that moves a body as given against gravity and inertia.
+/// Wrench that causes the motion of a body against gravity and inertia.
 #[must_use]
 pub fn body_wrench(body: &BodyMotion, parameters: &[f64], gravity: &Vector3<f64>) -> Wrench {
     let (mass, moment, inertia) = inertia(&body.frame.rotation, parameters);

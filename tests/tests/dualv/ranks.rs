@@ -62,8 +62,8 @@ fn check(what: &str, model: &RobotModel, expected: usize) -> Result<(), Failure>
 #[test]
 fn all_parameters_have_rank_57() -> Result<(), Failure> {
     let model = variant(["[\"all\"]"; 3])?;
-    // Of a body's ten inertial parameters, four have columns in the plane and the first body's only
-    // one; with rotor and friction 5 + 8 + 8 a leg, and the platform's four.
+    // Ten inertial parameters of a body have four columns in the plane, those of the first body
+    // one. With rotor and friction there are 5 + 8 + 8 for a leg, and the platform's four.
     assert_eq!(model.selection.standard.len(), 4 * (5 + 8 + 8) + 4);
     check("all parameters", &model, 57)
 }
