@@ -1,4 +1,4 @@
-"""Descriptions of robots that grow: n-RRR, n-UPS, nR."""
+"""Descriptions of robots with a variable number of legs or joints: n-RRR, n-UPS, nR."""
 
 HEAD = """name = "{name}"
 summary = "{summary}"

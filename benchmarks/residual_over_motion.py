@@ -32,7 +32,7 @@ def filtered(signal):
 
 
 def parameters(result, names, path):
-    """The base parameters as standard ones: what is regrouped into others is zero."""
+    """The base parameters as standard ones; regrouped ones are zero."""
     estimates = json.load(open(result))["estimates"]
     base = next(one for one in estimates if one["stage"] == "base" and one["estimator"] == "least-squares")
     values = {one["name"].removesuffix("R"): one["value"] for one in base["parameters"]}
@@ -43,7 +43,7 @@ def parameters(result, names, path):
 
 
 def residual(overact, robot, values, log):
-    """Filtered positions, velocities, accelerations and torques, and what the model does not explain of these."""
+    """Filtered positions, velocities, accelerations and torques, and the residual of the model."""
     columns = np.loadtxt(log, delimiter=",")
     q, v, torques = columns[:, :N], columns[:, N : 2 * N], columns[:, 2 * N :].copy()
     cable = np.polyval(CABLE, 0.6697 * q[:, 1] - 0.6697 * q[:, 2] + q[:, 3])

@@ -1,11 +1,12 @@
-"""The estimates of a fleet by `overact-fleet` and by pandas and NumPy, from the same factor files, one after the other.
+"""Compares the estimates of a fleet by `overact-fleet` with those by pandas and NumPy, from the same factor
+files.
 
     python fleet/compare.py FOLDER PROGRAM
 
-FOLDER has factor files, PROGRAM is `overact-fleet`. It is asked for the parameters of each robot; then every robot is
-fitted twice here: by QR of its stacked factors, and by normal equations, which are what sums of products in SQL (and
-aggregates as regr_slope, for one regressor) come to. Weights of lines are those of the first. Differences are told
-relative to the larger of a value and its deviation.
+FOLDER has factor files, PROGRAM is `overact-fleet`. It computes the parameters of each robot. Then every
+robot is fitted twice here: by QR of its stacked factors, and by normal equations. The latter correspond to
+sums of products in SQL (and, for one regressor, aggregates such as regr_slope). Row weights are those of
+the first. Differences are relative to the larger of a value and its standard deviation.
 """
 
 import io
@@ -26,7 +27,7 @@ QUERY = """
 
 
 def asked(program, folder):
-    """What the query gives, its seconds by the clock and of processors, and the largest memory in MB."""
+    """Result of the query, its wall clock and processor seconds, and its peak memory in MB."""
     start = time.perf_counter()
     command = [program, "sql", QUERY, "--factors", folder, "--csv"]
     text = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
@@ -37,7 +38,7 @@ def asked(program, folder):
 
 
 def decoded(record):
-    """Names of columns and R, of a record of a factor file (identification/src/factors/record.rs)."""
+    """Column names and R of a record of a factor file (identification/src/factors/record.rs)."""
     columns = int.from_bytes(record[54:56], "little")
     lengths = [int.from_bytes(record[a:b], "little") for a, b in ((64, 66), (66, 68), (68, 72))]
     names_at = 72 + lengths[0] + lengths[1]
@@ -50,7 +51,7 @@ def decoded(record):
 
 
 def independent(matrix, tolerance=1e-10):
-    """Columns in their order, without those that depend on the ones before them."""
+    """Columns in order, without those that depend on earlier ones."""
     scaled = matrix / np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
     kept = []
     for column in range(matrix.shape[1]):

@@ -1,8 +1,8 @@
-"""The DualV's regressor over many samples through Python, in the rows layout and with `out=`, beside the
-evaluator itself: `python benchmark.py [SAMPLES]`, with the package built for release installed.
+"""Times the DualV's regressor over many samples through Python, in the rows layout and with `out=`.
 
-The evaluator itself is the example `rows`, which prints the nanoseconds of a sample:
-`cargo build --release --example rows`, then `OVERACT_ROWS=target/release/examples/rows python benchmark.py`.
+`python benchmark.py [SAMPLES]`, with a release build of the package installed. The evaluator itself is the
+example `rows`, which prints the nanoseconds of a sample: `cargo build --release --example rows`, then
+`OVERACT_ROWS=target/release/examples/rows python benchmark.py`.
 """
 
 import os
@@ -20,7 +20,7 @@ ROUNDS = 7
 
 
 def seconds(work):
-    """The shortest time of several rounds; the others were disturbed."""
+    """Shortest time of several rounds; longer ones were disturbed."""
     times = []
     for _ in range(ROUNDS):
         begin = time.perf_counter()

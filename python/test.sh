@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds the wheel, installs it into a virtual environment of its own and runs its tests there. Without
-# Python or without a way to maturin and NumPy the tests are skipped.
+# Builds the wheel, installs it into a separate virtual environment and runs its tests there. Without
+# Python, maturin or NumPy the tests are skipped.
 #
-# OVERACT_WHEEL_PROFILE=release builds what users get; OVERACT_TESTS=full tests all robots and more states;
-# OVERACT_COMPILED_VALUES names the program of the compiled robots
-# (`cargo build -p overact-compiled --example values`), with which values are compared, too.
+# OVERACT_WHEEL_PROFILE=release builds the wheel for users; OVERACT_TESTS=full tests all robots and more states;
+# OVERACT_COMPILED_VALUES is the program of the compiled robots
+# (`cargo build -p overact-compiled --example values`), with which values are also compared.
 set -euo pipefail
 cd "$(dirname "$0")"
 skip() { echo "the Python package is not tested: $*"; exit 0; }
@@ -19,14 +19,14 @@ if ! [ -x "$venv/bin/python" ]; then
 fi
 pip() { "$venv/bin/python" -m pip --disable-pip-version-check --quiet "$@"; }
 pip install "maturin>=1.8,<2" "numpy>=1.23" "pytest>=7" || skip "maturin, NumPy or pytest can't be had"
-# Tests that need one of them say that they are skipped.
+# Tests that need a missing one are skipped with a message.
 pip install sympy pandas polars pyarrow || echo "without all of SymPy, pandas, Polars and PyArrow"
 wheels=$CARGO_TARGET_DIR/wheels
 rm -rf "$wheels"
 PATH=$venv/bin:$PATH maturin build --quiet --locked --profile "${OVERACT_WHEEL_PROFILE:-dev}" \
   --interpreter "$venv/bin/python" --out "$wheels"
 pip install --force-reinstall --no-deps "$wheels"/overact-*.whl
-# From elsewhere than here, so that what is imported is the wheel.
+# From another folder, so that the wheel is imported.
 root=$PWD
 cd "$CARGO_TARGET_DIR"
 exec "$venv/bin/python" -m pytest -q -p no:cacheprovider "$root/tests" "$@"

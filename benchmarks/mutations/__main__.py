@@ -26,15 +26,15 @@ from faults import LONGEST, MEMORY, Run, compiles, compiles_as_c
 DOCUMENT = wholes.ROOT / "docs" / "mutations.md"
 OVERACT = pathlib.Path(os.environ.get("OVERACT", wholes.ROOT / "target" / "debug" / "overact")).resolve()
 PYTHON, RLIB = os.environ.get("OVERACT_PYTHON"), os.environ.get("OVERACT_RLIB")
-# Robots whose logs and factors are damaged, too.
+# Robots whose logs and factors are also damaged.
 LOGGED = ["five_bar", "two_motor_axis"]
-# What is damaged, and how often of a hundred.
+# Kinds of damaged files, with their percentage.
 KINDS = {"description": 48, "log": 14, "stored log": 6, "states": 8, "parameters": 8, "factors": 6, "model": 10}
 EVERY = 5
 
 
 class Trial:
-    """Damaged files of one seed, and what became of them."""
+    """Damaged files of one seed, and the results."""
 
     def __init__(self, given: argparse.Namespace, folder: pathlib.Path):
         self.given, self.folder = given, folder
@@ -49,7 +49,7 @@ class Trial:
         self.longest = (0.0, "")
 
     def case(self) -> tuple[str, tasks.Case]:
-        """The next damaged file and what is done with it."""
+        """The next damaged file and the command for it."""
         draw, only = self.draw, self.given.only
         kind = "description" if only else draw.choices(list(KINDS), list(KINDS.values()))[0]
         robot, logged = self.robots[draw.choice(wholes.ROBOTS)], self.robots[draw.choice(LOGGED)]
@@ -84,7 +84,7 @@ class Trial:
             run.clear()
 
     def followed(self, name: str, run: Run) -> list[str]:
-        """What is wrong with a result when it is used."""
+        """Problems when a result is used."""
         if run.code != 0:
             return []
         if name == "import":
@@ -103,7 +103,7 @@ class Trial:
         return ["a generated module does not compile"] if complaint else []
 
     def tell(self, number: int, run: Run, faults: list[str]) -> None:
-        """Tells of faults, and keeps the files."""
+        """Reports faults and saves the files."""
         if not faults:
             return
         self.faults += faults

@@ -1,4 +1,4 @@
-"""Faults that a file may have: what is lost, doubled, moved or replaced, numbers that are none or of another size."""
+"""Damages files: text is lost, doubled, moved or replaced; numbers become invalid or change magnitude."""
 
 import random
 import re
@@ -6,7 +6,7 @@ import re
 NUMBERS = ["0", "-1", "1e400", "nan", "inf", "1e-320", "9" * 40, "true", '"1 m"', '"1 kg"', "[]", "{}", "1.5.2", "0x", '"-0 deg"']
 WORDS = ["revolute", "prismatic", "spatial", "point", "base", "leg", "é", "\u202e", "\x00", "'", '"""', "]]", "[[", "= =", "#", "\\u0000"]
 MARKS = ["<", "/>", "<!--", "&amp;", "&x;", "<body>", "</joint>", '="', "<![CDATA[", "(*", ",,", "{", "**"]
-#: Every text has one of these.
+#: Every text contains one of these.
 NUMBER, WORD = r"-?\d+(\.\d+)?(e-?\d+)?", r"[A-Za-z_]+"
 
 
@@ -18,9 +18,9 @@ def damaged(content: bytes, draw: random.Random, is_text: bool = True) -> bytes:
 
 
 def in_text(text: str, draw: random.Random) -> str:
-    """A text with one fault."""
+    """Applies one fault to a text."""
     lines = text.splitlines(keepends=True) or [""]
-    # Numbers of another size come through most often, and far into the commands.
+    # Numbers of another magnitude pass most checks and reach far into the commands.
     kind = draw.choice([0, 1, 2, 3, 4, 5, 6, 6, 6, 7, 8])
     if kind in (2, 6) and (numbers := list(re.finditer(NUMBER, text))):
         one = draw.choice(numbers)
@@ -48,7 +48,7 @@ def in_text(text: str, draw: random.Random) -> str:
 
 
 def in_bytes(content: bytes, draw: random.Random) -> bytes:
-    """A binary file with one fault; half of them where formats have their headers."""
+    """Applies one fault to a binary file, half of the time in its header."""
     near = min(len(content), 200)
     at = draw.choice([draw.randrange(near + 1), draw.randrange(len(content) + 1), len(content) - draw.randrange(near + 1)])
     width = draw.choice([1, 1, 2, 4, 8, 40])

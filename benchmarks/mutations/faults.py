@@ -1,4 +1,4 @@
-"""A command on files, and what of that is a fault."""
+"""Runs a command on files and detects faults."""
 
 import json
 import pathlib
@@ -8,8 +8,7 @@ import shutil
 import signal
 import subprocess
 
-# Longest time of a command (s of the processor, and of the clock, where other work shares the machine), and its memory
-# (bytes).
+# Time limits of a command (processor and wall clock, s) and memory limit (bytes).
 LONGEST, CLOCK, MEMORY = 120, 1200, 4 << 30
 KEPT = b"what stood here before\n"
 
@@ -33,7 +32,7 @@ class Run:
         return self.output.read_bytes() if self.output.exists() else b""
 
     def faults(self) -> list[str]:
-        """All that is wrong with how it went."""
+        """All faults of the run."""
         is_right = self.code == 0
         is_python = "-c" in self.words
         said = self.result + self.complaint
@@ -71,7 +70,7 @@ def limited() -> None:
 
 
 def run(words: list, folder: pathlib.Path) -> tuple[int | None, str, str]:
-    """Exit code, or none where the time is up, what it printed and what it complained of."""
+    """Exit code (None after a timeout), standard output and standard error."""
     try:
         done = subprocess.run(words, cwd=folder, capture_output=True, timeout=CLOCK, preexec_fn=limited, stdin=subprocess.DEVNULL)
         return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
@@ -88,7 +87,7 @@ def is_document(text: str) -> bool:
 
 
 def compiles(source: bytes, rlib: str, folder: pathlib.Path) -> str:
-    """What the compiler says against a generated module."""
+    """Messages of the compiler on a generated module."""
     (folder / "module.rs").write_bytes(b"#![no_std]\n" + source)
     externs = [f"--extern=overact={rlib}", f"-Ldependency={pathlib.Path(rlib).parent}"]
     words = ["rustc", "--edition=2024", "--crate-type=rlib", "--emit=metadata", *externs, "module.rs"]
@@ -97,7 +96,7 @@ def compiles(source: bytes, rlib: str, folder: pathlib.Path) -> str:
 
 
 def compiles_as_c(folder: pathlib.Path) -> str:
-    """What the compiler of C says against the files in a folder."""
+    """Messages of the C compiler on the files in a folder."""
     sources = sorted(folder.glob("*.c"))
     words = ["cc", "-std=c99", "-fsyntax-only", "-Wall", "-Werror", *sources]
     done = subprocess.run(words, cwd=folder, capture_output=True, text=True)

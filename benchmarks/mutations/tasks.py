@@ -1,4 +1,4 @@
-"""What is damaged, and which commands read it."""
+"""Damaged files and the commands that read them."""
 
 import dataclasses
 import random
@@ -6,7 +6,8 @@ import random
 from damage import damaged
 from wholes import Whole
 
-# In Python: everything that is read from a description, each function at home, and an identification where there is a log.
+# In Python: everything that is read from a description, each function at home, and an identification if there
+# is a log.
 PYTHON = """
 import sys, overact
 try:
@@ -35,11 +36,11 @@ OUT = ["-o", "kept"]
 
 @dataclasses.dataclass
 class Case:
-    """Files, one of which is damaged, and what is done with them."""
+    """Files, one of which is damaged, and the command for them."""
 
     files: dict[str, bytes]
     tasks: list[list[str]]
-    #: Whether Python reads the same, and what it is told.
+    #: Arguments of the equivalent Python program; None if there is none.
     python: list[str] | None = None
 
 
@@ -48,15 +49,15 @@ def changed(whole: Whole, name: str, draw: random.Random, is_text: bool = True) 
 
 
 def evaluated(whole: Whole, draw: random.Random, functions: list[str] | None = None) -> tuple[list[str], bytes]:
-    """The evaluation of a function that the whole robot has, and its states."""
+    """Evaluation of a function of the undamaged robot, with its states."""
     function = draw.choice(functions or list(whole.states))
     given = draw.choice([["--parameters", "parameters.toml"], []])
-    # Parameters that stand in a file are the same for all states.
+    # Parameters in a file are the same for all states.
     return ["evaluate", "robot.toml", function, "--states", "states.csv", *given, *draw.choice([OUT, ["--json"]])], whole.states[function]
 
 
 def description(whole: Whole, draw: random.Random, only: str | None) -> Case:
-    """A damaged description beside right files."""
+    """A damaged description with valid files."""
     files = changed(whole, "robot.toml", draw)
     evaluate, files["states.csv"] = evaluated(whole, draw)
     every = [
@@ -85,7 +86,7 @@ def description(whole: Whole, draw: random.Random, only: str | None) -> Case:
 
 
 def log(whole: Whole, draw: random.Random) -> Case:
-    """A damaged log, as text or as another library wrote it."""
+    """A damaged log, as text or in another library's format."""
     is_text = "factors.parquet" in whole.files
     options = draw.choice([["--report", "kept.html"], ["--json"], ["--tables", *OUT], ["--gains"], ["--calibrate", "--json"]])
     data = draw.choice(["--data", "--payload-data"]) if is_text else "--data"
@@ -98,13 +99,13 @@ def log(whole: Whole, draw: random.Random) -> Case:
 
 
 def states(whole: Whole, draw: random.Random) -> Case:
-    """Damaged states of a right robot."""
+    """Damaged states of a valid robot."""
     evaluate, content = evaluated(whole, draw)
     return Case({**whole.files, "states.csv": damaged(content, draw)}, [evaluate])
 
 
 def parameters(whole: Whole, draw: random.Random) -> Case:
-    """Damaged parameters of a right robot."""
+    """Damaged parameters of a valid robot."""
     given = ["--parameters", "parameters.toml"]
     dynamic = [one for one in whole.states if "inverse_dynamics" in one or "mass_matrix" in one]
     evaluate, content = evaluated(whole, draw, dynamic)

@@ -1,4 +1,4 @@
-"""Files that are right, and belong together: of each robot its log, states, parameters and factors."""
+"""Valid, matching files: the log, states, parameters and factors of each robot."""
 
 import dataclasses
 import json
@@ -6,15 +6,15 @@ import pathlib
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Small robots of each kind: what is damaged is the text, not the size.
+# Small robots of each type, because size does not matter for damaged text.
 ROBOTS = ["emps", "five_bar", "two_motor_axis", "three_leg_point", "planar_3prr", "four_bar", "scotch_yoke"]
-# How many lines logs have.
+# Number of lines of a log.
 LINES = 2500
 MODELS = ROOT / "interchange" / "tests" / "models"
-# Files of other programs, with what has to be said beside them.
+# Files of other programs, with the required options.
 FOREIGN = {"ankle.xml": [], "arm.urdf": [], "arm.par": ["--value", "L1=0.2,D3=0.5,L2=0.52,L3=0.25"]}
 WRITTEN = ROOT / "identification" / "tests" / "written"
-# One log of two drives in every binary format that the command line has without features, and what its columns are called.
+# One log of two drives in every binary format without a feature, with the names of its columns.
 STORED = {
     "same.npy": ("$1", ["$2", "$3"], ["$6", "$7"]),
     "same.npz": ("t", ["q(:,1)", "q(:,2)"], ["tau(:,1)", "tau(:,2)"]),
@@ -24,13 +24,13 @@ STORED = {
     "polars_gzip.parquet": None,
     "pyarrow_gzip_2.parquet": None,
 }
-# Inputs that are drawn about zero, for want of better: their size is that of the robot.
+# Inputs that are drawn about zero; their magnitude is that of the robot.
 SAMPLES = 3
 
 
 @dataclasses.dataclass
 class Whole:
-    """Files by their names, the states of each function, and options that belong to the files."""
+    """Files by name, states of each function, and required options."""
 
     files: dict[str, bytes]
     states: dict[str, bytes] = dataclasses.field(default_factory=dict)
@@ -38,7 +38,7 @@ class Whole:
 
 
 def said(overact: pathlib.Path, folder: pathlib.Path, *words: str) -> str:
-    """What a command that has to succeed says."""
+    """Output of a command that must succeed."""
     done = subprocess.run([overact, *words], cwd=folder, capture_output=True, text=True)
     if done.returncode:
         raise SystemExit(f"{' '.join(words)}: {done.stderr}")
@@ -50,9 +50,9 @@ def table(names: list[str], rows: list[list[float]]) -> bytes:
 
 
 def robot(overact: pathlib.Path, stem: str, folder: pathlib.Path, draw) -> Whole:
-    """A robot of the library with all that the commands read beside its description."""
+    """A robot of the library with all other files that commands read."""
     text = (ROOT / "robots" / f"{stem}.toml").read_bytes()
-    # A log has the columns of a virtual experiment, whatever a measured one has.
+    # The log has the columns of a virtual experiment, also if the description is for a measured one.
     (folder / "robot.toml").write_bytes(text)
     said(overact, folder, "simulate", "robot.toml", "-o", "log.csv", "--json")
     logs = sorted(folder.glob("log*.csv"))
@@ -76,7 +76,7 @@ def with_factors(overact: pathlib.Path, whole: Whole, folder: pathlib.Path) -> N
 
 
 def states_of(overact: pathlib.Path, folder: pathlib.Path, draw) -> dict[str, bytes]:
-    """For every function of the robot states near home at which it has a value."""
+    """States near home for every function, at which it has a value."""
     model = json.loads(said(overact, folder, "inspect", "robot.toml", "--effort", "none", "--json"))
     home = model["home_pose"] or model["home_joints"]
     known = {"pose": [[one + draw.uniform(-0.01, 0.01) for one in home] for _ in range(SAMPLES)]}
@@ -120,7 +120,7 @@ def foreign(overact: pathlib.Path, name: str, folder: pathlib.Path) -> Whole:
 
 
 def stored(name: str) -> Whole:
-    """A log that another library wrote, of the robot with two drives."""
+    """A log of a robot with two drives, written by another library."""
     time, positions, torques = STORED[name] or STORED["same.parquet"]
     text = (ROOT / "robots" / "two_motor_axis.toml").read_text()
     data = f"\n[data]\ntime = {json.dumps(time)}\npositions = {json.dumps(positions)}\ntorques = {json.dumps(torques)}\n"

@@ -1,5 +1,5 @@
-"""The same work as overact's, done with other tools: models, operation counts, times.
+"""The same tasks as overact's with other tools: models, operation counts, times.
 
-The derivation in this package shares nothing with the Rust crates but the TOML descriptions, so that the
-comparison of results is a check of both sides.
+The derivation in this package shares only the TOML descriptions with the Rust crates. Comparing results
+therefore checks both.
 """

@@ -17,7 +17,7 @@ from .works import WORKS, Work
 
 @dataclass
 class Result:
-    """One work: overact's function, the peers' models, and the times of all."""
+    """One task: overact's function, the peers' models, and the times of all."""
 
     work: Work
     function: Function
@@ -26,7 +26,7 @@ class Result:
 
 
 def measure(work, samples):
-    """Models of one work that agree."""
+    """Models of one task with equal results."""
     function = ours.function(work)
     sample = states(function, samples)
     expected = function.evaluate(sample)
@@ -34,7 +34,7 @@ def measure(work, samples):
 
 
 def time(result, program, core, rounds):
-    """Times overact's program and the peers' in turns, after a check that they give the same numbers."""
+    """Times overact's program and the peers' alternately, after checking that they give the same numbers."""
     function = result.function
     size = int(np.prod(function.shape))
     name = f"{function.robot}_{function.rust_name}"
@@ -97,7 +97,7 @@ def main():
         print(report.calls(pinocchio_peer.measure_all()))
         return
     if arguments.table:
-        # Each robot's as soon as they are there: all of them take long.
+        # Print each robot's results as soon as they are available, because all of them take long.
         for found in table.measured(arguments.only, arguments.core, arguments.rounds):
             print(table.table(found), flush=True)
             print(flush=True)

@@ -1,7 +1,7 @@
 """Scalars, vectors and matrices over any computer algebra: CasADi, SymPy, SymForce, or plain floats.
 
-A `Scalar` folds exact zeros and ones before the peer sees them, so that no peer's count suffers from
-products that a user would not have written.
+A `Scalar` folds exact zeros and ones before the peer sees them. No peer's count then includes products that a
+user would not have written.
 """
 
 import math
@@ -127,7 +127,7 @@ def identity(n):
 
 
 def inverse_by_elimination(m):
-    """Gauss-Jordan; the pivot is a number if there is one, else it stands where fewest entries do."""
+    """Gauss-Jordan elimination; the pivot is a number if possible, else in the row with the fewest entries."""
     n = len(m)
     work = [list(row) + unit for row, unit in zip(m, identity(n), strict=True)]
     rows, columns, pivots = set(range(n)), set(range(n)), {}
@@ -168,7 +168,7 @@ def determinant(m):
 
 
 def inverse_by_cofactors(m):
-    """The adjugate over the determinant: one division."""
+    """Adjugate divided by the determinant: one division."""
     n = len(m)
 
     def cofactor(i, j):
@@ -182,7 +182,7 @@ def inverse_by_cofactors(m):
 
 
 class Numbers:
-    """Plain floats: a derivation run on numbers is its own check."""
+    """Plain floats: a derivation with numbers checks itself."""
 
     name = "numbers"
 

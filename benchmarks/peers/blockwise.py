@@ -1,9 +1,9 @@
-"""The same identification as fast as NumPy does it: CasADi's C code for the regressor, and a decimation group by group.
+"""The same identification in a fast NumPy version: CasADi's C code for the regressor, and decimation by groups.
 
-The response of a low-pass run forwards and backwards is a sum over its poles of a causal and an anticausal part. Of
-a group of samples between two that are kept, products with the powers of the poles are all that is needed: one
-matrix product for all groups and columns, then a recursion over groups, which are 50 times fewer than samples. The
-ends are those of SciPy's `sosfiltfilt`.
+The response of a low-pass filter run forwards and backwards is a sum over its poles of a causal and an
+anticausal part. For a group of samples between two that are kept, only products with powers of the poles are
+needed. They are one matrix product for all groups and columns, then a recursion over groups, which are 50
+times fewer than samples. The boundary treatment is that of SciPy's `sosfiltfilt`.
 """
 
 import ctypes
@@ -29,7 +29,7 @@ void all(long samples, const double **inputs, const long *lengths, long count, d
 
 
 class Decimation:
-    """The low-pass of the decimation by its poles, one of each pair."""
+    """Low-pass filter of the decimation by its poles, one of each pair."""
 
     def __init__(self, factor):
         self.factor = factor
@@ -51,7 +51,7 @@ class Decimation:
         self.weights = np.concatenate([both.real, both.imag])
 
     def apply(self, rows):
-        """Kept ones of rows, samples x columns."""
+        """Decimated rows, samples x columns."""
         p, n = self.poles[:, None], self.factor
         padding = 3 * DECIMATION_ORDER
         first = (len(rows) - 1) % n
@@ -85,7 +85,7 @@ class Decimation:
         return whole[:, :count], whole[:, count:]
 
     def future(self, causal, end):
-        """The anticausal sums from the last kept sample on, of the rows from it to the end of the reflection."""
+        """Anticausal sums from the last kept sample on, over the remaining rows and the reflection."""
         p, share = self.poles[:, None], self.forward[:, None]
         state, behind, power = causal, 0.0, np.ones_like(p)
         for row in end:
@@ -125,7 +125,7 @@ class Blockwise(Pipeline):
         self.library.all(ctypes.c_long(samples), pointers, lengths, ctypes.c_long(len(inputs)), output, width)
         y = np.einsum("srk,ks->sr", found[:, :, self.offsets], self.torques)
         if self.width > count:
-            # Columns that only project the torques make room.
+            # Columns that only project the torques are not needed.
             found[:, :, count] = y
             return found[:, :, : count + 1]
         return np.concatenate([found, y[:, :, None]], axis=2)

@@ -63,7 +63,7 @@ class Casadi:
 
 
 def count(function):
-    """Operations of a function by the common rule."""
+    """Number of operations of a function by the common rule."""
     counted = Count()
     angles = {"sin": set(), "cos": set()}
     holds = {}
@@ -86,7 +86,7 @@ def count(function):
 
 
 def c_code(function, name="model"):
-    """CasADi's own C code, behind the signature that the timing loop calls."""
+    """CasADi's own C code with the signature of the timing loop."""
     generator = casadi.CodeGenerator("model.c", {"with_header": False})
     generator.add(function)
     call = f"void {name}(const double **inputs, double *output) {{\n"

@@ -1,4 +1,5 @@
-"""Robots with closed chains from joint angles: identification model and inverse dynamics beside CasADi's best form."""
+"""Robots with closed chains from joint angles: identification model and inverse dynamics compared with CasADi's
+best form."""
 
 import json
 
@@ -38,7 +39,7 @@ def function(document, robot, name):
 
 
 def closed(path, independent, poses):
-    """Poses that the legs of a platform that moves aside allow, by Newton's method on the dependent coordinates."""
+    """Closed poses of a platform with parasitic motion, by Newton's method on the dependent coordinates."""
     others = [at for at, name in enumerate(SIX) if name not in independent]
     for _ in range(12):
         text = json.dumps([{"pose": list(pose)} for pose in poses])
@@ -65,7 +66,7 @@ def move(pose, step):
 
 
 def closed_states(function, number, robot):
-    """States whose pose, joints and parameters belong together."""
+    """States with consistent pose, joints and parameters."""
     if robot.motion is None:
         return sample(function, number) if "parameters" in dict(function.inputs) else states(function, number)
     rng = np.random.default_rng(5)

@@ -1,9 +1,11 @@
-"""Sines and cosines of a leg's joints from the platform's pose: no angle is ever computed.
+"""Sines and cosines of a leg's joints from the platform's pose, without computing angles.
 
-Three kinds of legs, as their closure is usually written: two links in the platform's plane, where the law of
-cosines gives the second joint and the direction to the leg's end the first; an arm with a rod on a universal
-joint, the same in the arm's plane behind the rod's slope to it; a universal joint with a prismatic one, where the
-direction to the end is all.
+There are three types of legs:
+
+- Two links in the platform's plane: the law of cosines gives the second joint, the direction to the leg's end
+  the first.
+- An arm with a rod on a universal joint: the same in the arm's plane, after the rod's slope to it.
+- A universal joint with a prismatic one: only the direction to the end is needed.
 """
 
 import math
@@ -13,7 +15,7 @@ from .values import Linear
 
 
 def close(angles, algebra, platform, leg, pose, home):
-    """Tells `angles` the pairs of all sums of a leg's joints."""
+    """Passes the pairs of all sums of a leg's joints to `angles`."""
     kinds = [joint.kind[0] for joint in leg.joints]
     alphas = [round(math.degrees(joint.alpha), 9) for joint in leg.joints]
     if platform.robot.motion == "planar" and kinds == ["r"] * 3 and not any(alphas):
@@ -27,7 +29,7 @@ def close(angles, algebra, platform, leg, pose, home):
 
 
 def to_end(platform, leg, pose):
-    """The end of a leg in its base's frame, where the platform moves in space."""
+    """End of a leg in its base frame, for spatial platform motion."""
     if platform.robot.motion not in ("translation", "spatial"):
         raise NotImplementedError("the closure of a platform that does not move in space")
     end = add(pose[:3], apply(platform.rotation, vector(leg.end_at)))
@@ -59,7 +61,7 @@ def arm(angles, algebra, end, leg, home):
 
 
 def strut(angles, algebra, end, leg, home):
-    """A universal joint about z and x of its base turned by a right angle, and a prismatic joint."""
+    """A universal joint about z and x of its base rotated by a right angle, and a prismatic joint."""
     first, second, third = leg.joints
     quarter = math.pi / 2
     if any(abs(joint.theta.constant - quarter) > 1e-12 for joint in (first, second)) or first.d or second.d:
@@ -88,7 +90,7 @@ def plane(angles, algebra, platform, leg, pose, home):
     reciprocal = ONE / squares
     c1 = (end[0] * along + end[1] * across) * reciprocal
     s1 = (end[1] * along - end[0] * across) * reciprocal
-    # The second link ends where the leg does.
+    # The second link ends at the leg's end.
     c12, s12 = (end[0] - c1 * a) * (1.0 / b), (end[1] - s1 * a) * (1.0 / b)
     turn = math.atan2(leg.end_rotation[1][0], leg.end_rotation[0][0])
     whole = turned(angles.pair(Linear(0.0, {"phi": 1.0})), turn)
@@ -104,6 +106,6 @@ def plane(angles, algebra, platform, leg, pose, home):
 
 
 def turned(pair, angle):
-    """The pair of a sum with a constant."""
+    """Pair of a sum with a constant."""
     c, s = round(math.cos(angle), 15), round(math.sin(angle), 15)
     return pair[0] * c - pair[1] * s, pair[1] * c + pair[0] * s

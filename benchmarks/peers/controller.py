@@ -1,4 +1,4 @@
-"""Dynamics of given parameters, function by function: overact beside CasADi's best form of the same."""
+"""Dynamics of given parameters, function by function: overact compared with CasADi's best form."""
 
 import tomllib
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ FUNCTIONS = ["inverse_dynamics", "mass_matrix", "bias", "forward_dynamics"]
 
 @dataclass
 class Function(ours.Function):
-    """A function that takes parameters."""
+    """A function with parameters as inputs."""
 
     @property
     def rust_name(self):
@@ -28,7 +28,7 @@ class Function(ours.Function):
 
 @dataclass
 class Cell:
-    """One function of one robot on either side, and the times of both."""
+    """One function of one robot for both tools, and all times."""
 
     function: Function
     form: Form
@@ -60,7 +60,7 @@ def function(document, robot, name):
 
 
 def actuated(robot):
-    """Places of the actuated joints among the moving ones, leg by leg."""
+    """Indices of the actuated joints among the moving ones, leg by leg."""
     with open(ours.description(robot), "rb") as file:
         described = tomllib.load(file)
     places, start = [], 0
@@ -72,7 +72,7 @@ def actuated(robot):
 
 
 def sample(function, number, seed=1):
-    """States with parameters of bodies that resist: diagonal ones near 1, the others small."""
+    """States with parameters of bodies with inertia: diagonal ones near 1, the others small."""
     rng = np.random.default_rng(seed)
     made = states(function, number, seed)
     is_diagonal = [name.split("_")[0] in ("xx", "yy", "zz", "m", "ia", "fv") for name in function.columns]
@@ -92,7 +92,7 @@ def check(title, found, expected):
 
 
 def cells(robot, samples):
-    """All functions of a robot, proved to agree."""
+    """All functions of a robot, after checking their agreement."""
     document = ours.inspect(robot)
     own = load(ours.description(robot))
     driven = {"dof": document["dof"], "joints": actuated(robot)}
@@ -109,7 +109,7 @@ def cells(robot, samples):
 
 
 def time(cell, program, core, rounds):
-    """Times overact's program and CasADi's C code in turns."""
+    """Times overact's program and CasADi's C code alternately."""
     work = cell.function
     name = f"{work.robot}_{work.name}"
     path = timing.BUILD / "states" / f"{name}.bin"

@@ -1,5 +1,8 @@
-"""Operations by one rule for all: a sum of n terms counts n - 1, a product of n factors n - 1, a product with a sign
-is one, a square 1; square roots, angles of which sine or cosine is taken, arc tangents, signs and negations stand apart."""
+"""Operation counts by one rule for all.
+
+A sum of n terms counts n - 1, a product of n factors n - 1, a product with a sign one, a square 1. Square
+roots, sine-cosine pairs, arc tangents, signs and negations are counted separately.
+"""
 
 from dataclasses import dataclass
 
@@ -16,7 +19,7 @@ class Count:
     arc_tangents: int = 0
     signs: int = 0
     negations: int = 0
-    # Operations of legs that run side by side, where they are done in the place of the straight program's.
+    # Operations of legs in SIMD lanes, in place of the straight program's.
     side_by_side: int = 0
 
     @property
@@ -30,10 +33,10 @@ class Count:
 
     @classmethod
     def from_json(cls, function):
-        """Counts of overact's own function, as `overact inspect --json` prints them."""
+        """Counts of overact's own function, as printed by `overact inspect --json`."""
         keys = ["additions", "multiplications", "divisions", "square_roots", "trigonometric_pairs"]
         counts = {key: function[key] for key in [*keys, "arc_tangents", "signs"]}
-        # What runs by default: other lanes than two take the processor's flags.
+        # The default: other numbers of lanes than two require processor flags.
         beside = function.get("side_by_side")
         if beside and beside["lanes"] <= 2:
             counts["side_by_side"] = beside["once"] + beside["legs"] * beside["each"]

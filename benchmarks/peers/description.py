@@ -24,7 +24,7 @@ def turn(axis, angle):
 
 
 def orientation(angles):
-    """Rz(rz) Ry(ry) Rx(rx), without the dust of right angles."""
+    """Rz(rz) Ry(ry) Rx(rx), without rounding errors of right angles."""
     rx, ry, rz = angles
     return np.vectorize(settle)(turn(2, rz) @ turn(1, ry) @ turn(0, rx))
 
@@ -51,7 +51,7 @@ class Joint:
 
 @dataclass
 class Leg:
-    """A leg in its place."""
+    """A placed leg."""
 
     name: str
     base_at: np.ndarray
@@ -60,7 +60,7 @@ class Leg:
     end_type: str | None = None
     end_at: np.ndarray | None = None
     end_rotation: np.ndarray | None = None
-    #: Joints of the first leg whose bodies it starts from and ends on, of a chain of a skeleton.
+    #: For a chain of a skeleton: joints of the first leg whose bodies it starts and ends on.
     base_body: int | None = None
     end_body: int | None = None
     variables: list[int] = field(default_factory=list)
@@ -76,7 +76,7 @@ class Robot:
     axis: str
     platform_parameters: list[str]
     legs: list[Leg]
-    #: Names of the independent coordinates of a platform that moves aside.
+    #: Names of the independent coordinates of a platform with parasitic motion.
     independent: list[str] | None = None
 
 

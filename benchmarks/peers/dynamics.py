@@ -1,9 +1,9 @@
-"""Dynamics of given parameters as a user of a peer would write them: inverse dynamics, mass matrix, bias and
-forward dynamics.
+"""Dynamics of given parameters as users of a peer would write them.
 
-Along a leg: the recursion of Newton and Euler for torques, composite bodies for mass matrices; or the same by
-way of the bodies' partial velocities. Across legs: projection by reduced Jacobians. Systems are solved by L D Lᵀ
-where they are symmetric, by elimination where not. `best` takes the form with the fewest operations.
+The functions are inverse dynamics, mass matrix, bias and forward dynamics. Along a leg: the recursive
+Newton-Euler algorithm for torques, composite bodies for mass matrices, or partial velocities of the bodies.
+Across legs: projection by reduced Jacobians. Systems are solved by L D Lᵀ if symmetric, else by elimination.
+`best` takes the form with the fewest operations.
 """
 
 import itertools
@@ -34,7 +34,7 @@ class Body:
         return made
 
     def wrench(self, motion):
-        """Force and moment about the origin that the motion takes."""
+        """Force and moment about the origin that cause the motion."""
         force = add(scale(motion.acceleration, self.m), apply(spin_matrix(motion.omega, motion.alpha), self.s))
         moment = add(apply(self.i, motion.alpha), cross(motion.omega, apply(self.i, motion.omega)))
         return force, add(moment, cross(self.s, motion.acceleration))
@@ -45,7 +45,7 @@ class Body:
         return linear, add(apply(self.i, spin), cross(self.s, move))
 
     def seen(self, rotation, p):
-        """The same body in the frame in which its own has these axes and this origin."""
+        """The same body in a frame whose axes and origin are given in its own."""
         s = apply(rotation, self.s)
         i = product(product(rotation, self.i), transpose(rotation))
         i = [[i[min(a, b)][max(a, b)] for b in range(3)] for a in range(3)]
@@ -66,7 +66,7 @@ class Body:
 
 
 class Values:
-    """Values of parameters by name; zero where a robot has none of that name."""
+    """Parameter values by name; zero if a robot does not have the parameter."""
 
     def __init__(self, names, scalars):
         self.known = dict(zip(names, scalars, strict=True))
@@ -76,7 +76,7 @@ class Values:
 
 
 def leg_torques(model, values, suffix, rates, accelerations, algebra, gravity=True):
-    """Torques of a leg's moving joints by the recursion of Newton and Euler."""
+    """Torques of a leg's moving joints by the recursive Newton-Euler algorithm."""
     base = scale(model.gravity, -1.0) if gravity else vector([0] * 3)
     motions = model.forward(rates, accelerations, base)
     force, moment = vector([0] * 3), vector([0] * 3)
@@ -94,7 +94,7 @@ def leg_torques(model, values, suffix, rates, accelerations, algebra, gravity=Tr
 
 
 def joint_torque(value, rate, acceleration, algebra):
-    """What a rotor and friction take."""
+    """Torque of rotor inertia and friction."""
     dry = value("fs")
     sign = ZERO if dry.is_zero else algebra.sign(rate) * dry
     return value("ia") * acceleration + value("fv") * rate + sign + value("off")
@@ -125,7 +125,7 @@ def leg_masses(model, values, suffix):
 
 
 def quadratic(masses, jacobian):
-    """Jᵀ M J, whose upper triangle is computed."""
+    """Upper triangle of Jᵀ M J."""
     pushed = product(masses, jacobian)
     columns, back = transpose(pushed), transpose(jacobian)
     size = len(back)
@@ -136,7 +136,7 @@ def quadratic(masses, jacobian):
 
 
 def solve_symmetric(matrix, vector_):
-    """L D Lᵀ."""
+    """Solves a system by L D Lᵀ."""
     n = len(vector_)
     rows, x = [list(row) for row in matrix], list(vector_)
     inverses = []
@@ -153,7 +153,7 @@ def solve_symmetric(matrix, vector_):
 
 
 class Serial:
-    """A chain without closure."""
+    """A chain without loops."""
 
     def __init__(self, robot, algebra, inputs, names, form, homes, actuated):
         (leg,) = robot.legs
@@ -271,7 +271,7 @@ class Parallel:
         return [row for leg in self.legs for row in leg[4]]
 
     def inverse_dynamics(self):
-        """The torques of least norm."""
+        """Least-norm torques."""
         jacobian = self.inverse_jacobian()
         if len(jacobian) == len(jacobian[0]):
             return apply(transpose(INVERSES[self.form.inverse](jacobian)), self.torques())

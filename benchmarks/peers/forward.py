@@ -1,5 +1,7 @@
-"""Forward kinematics of parallel robots as a user of CasADi would write it: steps of Gauss and Newton, of which each
-is one function with shared subexpressions, behind a loop in C."""
+"""Forward kinematics of parallel robots as users of CasADi would write it.
+
+Each Gauss-Newton step is one function with shared subexpressions, in a loop in C.
+"""
 
 import json
 import math
@@ -18,13 +20,13 @@ from .search import PAIR, forms
 from .states import pose
 from .timing import TEMPLATES
 
-#: How far the pose moves from one sample to the next (m, rad), and what the encoders err by.
+#: Motion of the pose between two samples (m, rad), and noise of the encoders.
 MOVE, NOISE = 1e-3, 1e-5
 
 
 @dataclass
 class Function(ours.Function):
-    """overact's forward kinematics, which iterates and so is no function of `evaluate`."""
+    """overact's forward kinematics, which iterates and is therefore not a function of `evaluate`."""
 
     @property
     def rust_name(self):
@@ -48,7 +50,7 @@ class Forward(Parallel):
                 self.positions.append(self.angles.variables[joint.name])
             else:
                 cosine, sine = self.angles.closed[(joint.name,)]
-                # The arc tangent's branch at home.
+                # Branch of the arc tangent at home.
                 turn = 2.0 * math.pi * round(self.homes[start + k] / (2.0 * math.pi))
                 self.positions.append(self.algebra.arc_tangent(sine, cosine) + turn)
         return found
@@ -63,7 +65,7 @@ class Forward(Parallel):
 
 
 def solve(matrix, given):
-    """Elimination without exchange of pivots."""
+    """Elimination without pivoting."""
     rows, x = [list(row) for row in matrix], list(given)
     size, inverses = len(x), []
     for k in range(size):
@@ -78,7 +80,7 @@ def solve(matrix, given):
 
 
 def function(robot):
-    """overact's forward kinematics; operations are those of a step, where it iterates."""
+    """overact's forward kinematics; the count is that of one step if it iterates."""
     document = ours.inspect(robot)
     sizes = document["actuators"], len(document["home_pose"])
     steps = [i for f in document["functions"] for i in f["iterations"] if i["function"] == "pose_from_actuators"]
@@ -97,7 +99,7 @@ def function(robot):
 
 
 def sample(work, number, seed=1):
-    """Encoders of random poses with a little noise, and poses a sample's motion away to start from."""
+    """Encoder positions of random poses with noise, and start poses at the distance of one sample."""
     rng = np.random.default_rng(seed)
     poses = [pose(work.document, rng) for _ in range(number)]
     text = json.dumps([{"pose": list(x)} for x in poses])
@@ -114,7 +116,7 @@ def sample(work, number, seed=1):
 
 
 def best(work):
-    """CasADi's step with the fewest operations after `cse`: its form, its count, and C code with and without."""
+    """CasADi's step with the fewest operations after `cse`: form, count, and C code with and without `cse`."""
     document, robot = work.document, load(work.path)
     driven = {"dof": document["dof"], "joints": actuated(work.robot)}
     inputs = [("pose", len(document["home_pose"])), ("actuators", document["actuators"])]
@@ -133,7 +135,7 @@ def best(work):
 
 
 def code(function, document):
-    """The loop around a step."""
+    """C code of the loop around a step."""
     quaternion = "qw" in document["pose"]
     text = casadi_peer.c_code(function, "newton_step") + (TEMPLATES / "forward.c").read_text()
     for key, value in {

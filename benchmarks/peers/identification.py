@@ -1,10 +1,11 @@
 """Throughput of an identification: filters, regressor, decimation, R factor, in NumPy and SciPy as in overact.
 
-Both get the same log of the DualV: poses and torques at 5 kHz. Positions pass a zero-phase Butterworth low-pass,
-velocities and accelerations are central differences; the base columns and the projected torques are computed at
-every sample, decimated in parallel by a zero-phase Chebyshev low-pass, and each line's equations become an R
-factor. NumPy's regressor is CasADi's best model after `cse`, one NumPy operation for all samples of a block at a
-time; SciPy's filters are the cascades of second-order sections that overact has, too.
+Both get the same log of the DualV: poses and torques at 5 kHz. Positions pass a zero-phase Butterworth
+low-pass filter; velocities and accelerations are central differences. The base columns and the projected
+torques are computed at every sample and decimated in parallel by a zero-phase Chebyshev low-pass filter. The
+equations of each row become an R factor. NumPy's regressor is CasADi's best model after `cse`, with one NumPy
+operation for all samples of a block at a time. SciPy's filters are cascades of second-order sections like
+overact's.
 """
 
 import os
@@ -24,11 +25,11 @@ from .timing import BUILD
 from .works import Work
 
 STAGES = ["filters", "regressor", "decimation", "factor"]
-#: Hz, order, Hz, factor: those of the DualV's description.
+#: Hz, order, Hz, factor: settings of the DualV's description.
 FREQUENCY, ORDER, CUTOFF, DECIMATION = 5000.0, 4, 100.0, 50
 RIPPLE, DECIMATION_ORDER = 0.05, 8
 SAMPLES = 50_000
-#: Samples of a block of NumPy's regressor: the fastest of the powers of two.
+#: Samples per block of NumPy's regressor: the fastest power of two.
 BLOCK = 2048
 #: Largest difference of RᵀR, relative to the norms of the columns.
 AGREEMENT = 1e-9
@@ -47,7 +48,7 @@ UNARY = {
 
 
 def vectorised(function):
-    """A CasADi function as one of NumPy: a list of input arrays, and an array for each output."""
+    """A CasADi function as a NumPy function: a list of input arrays, and an array for each output."""
     lines = ["def regressor(inputs, output):"]
     for k in range(function.n_instructions()):
         kind = function.instruction_id(k)
@@ -74,7 +75,7 @@ class Pipeline:
         self.robot = load(function.path)
         self.home = np.array(function.document["home_joints"])
         self.pose, self.torques = log[:, :3].T.copy(), log[:, 3:].T.copy()
-        # The column of an actuated joint's offset is its row of the inverse Jacobian.
+        # The offset column of an actuated joint is its row of the inverse Jacobian.
         offsets = [f"off_1_{leg.name}" for leg in self.robot.legs]
         self.names = list(function.columns)
         everything = self.names + [name for name in offsets if name not in self.names]
@@ -94,7 +95,7 @@ class Pipeline:
         return pose, twist, np.gradient(twist, axis=1) * FREQUENCY
 
     def joints(self, pose):
-        """Of legs with two links in a plane, by the law of cosines."""
+        """Joints of legs with two links in a plane, by the law of cosines."""
         x, y, phi = pose
         c, s = np.cos(phi), np.sin(phi)
         found = []
@@ -136,7 +137,7 @@ class Pipeline:
         return smooth[:, :, (lines.shape[2] - 1) % DECIMATION :: DECIMATION]
 
     def run(self):
-        """Nanoseconds of the processor per sample in each stage and in all, and the R factors."""
+        """Processor nanoseconds per sample in each stage and in total, and the R factors."""
         times = [time.process_time()]
         motion = self.filtered()
         times.append(time.process_time())
@@ -166,7 +167,7 @@ def log(function):
 
 
 def own(function, path, core, result):
-    """overact's nanoseconds of the processor per sample, and its R factors."""
+    """overact's processor nanoseconds per sample, and its R factors."""
     settings = [FREQUENCY, ORDER, CUTOFF, DECIMATION, *function.columns]
     command = ["taskset", "-c", str(core), ours.ROOT / "target/release/overact-throughput", function.path, path]
     command += [",".join(map(str, settings)), "3", result]
@@ -179,7 +180,7 @@ def own(function, path, core, result):
 
 
 def check(found, expected):
-    """R factors are alike but for the signs of their rows."""
+    """Checks that the R factors are equal up to the signs of their rows."""
     for mine, other in zip(found, expected, strict=True):
         norms = np.linalg.norm(other, axis=0)
         norms[norms == 0.0] = 1.0
@@ -189,7 +190,7 @@ def check(found, expected):
 
 
 def measure(core, peers, rounds=7):
-    """Shortest times in turns of overact and of the peers' stages."""
+    """Shortest times of overact and of the peers' stages, run alternately."""
     function = ours.function(Work("DualV, base columns", "dualv", "base"))
     values = log(function)
     path = BUILD / "states" / "identification.bin"
@@ -209,7 +210,7 @@ def measure(core, peers, rounds=7):
 
 
 def table(mine, theirs):
-    """The peers' stages, and the whole of all; overact's stages take turns block by block."""
+    """Table of the peers' stages and all totals; overact's stages alternate block by block."""
     rows = []
     for number, stage in enumerate(STAGES):
         rows.append([stage, "", *(f"{times[number]:.0f}" for times in theirs), ""])

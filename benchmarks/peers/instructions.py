@@ -1,14 +1,17 @@
-"""Instructions and misses of the instruction cache per call, counted by callgrind: they do not depend on what else the
-machine does. Only of default builds, for valgrind does not know every instruction of a native one."""
+"""Instructions and misses of the instruction cache per call, counted by callgrind.
+
+They do not depend on other work of the machine. Only for default builds, because valgrind does not know every
+instruction of a native one.
+"""
 
 import re
 import subprocess
 
 from . import timing
 
-#: Turns through all states that are compared: what they differ by is the functions' own.
+#: Numbers of passes through all states; the difference of two runs belongs to the functions.
 FEW, MANY = 1, 5
-#: 32 kB in 8 ways of lines of 64 bytes, as most cores have.
+#: 32 kB in 8 ways with lines of 64 bytes, as in most cores.
 CACHE = ["--cache-sim=yes", "--I1=32768,8,64", "--D1=32768,8,64", "--LL=8388608,16,64"]
 
 

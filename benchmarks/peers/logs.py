@@ -1,7 +1,8 @@
-"""`overact identify` on whole logs of the DualV: time of the processor, bytes read, memory; reading beside polars.
+"""`overact identify` on whole logs of the DualV: processor time, bytes read, memory; reading compared with
+polars.
 
-The logs are the description's own experiment, four runs of 50000 samples, and one of ten minutes that repeats the
-first of them with times that go on. Everything runs with one thread.
+The logs are the description's own experiment, four runs of 50000 samples, and one of ten minutes. The latter
+repeats the first run with continuous time. Everything runs with one thread.
 """
 
 import os
@@ -15,7 +16,7 @@ from . import ours, report
 from .timing import BUILD
 
 RUNS = {"--data": ["unloaded_1", "unloaded_2"], "--payload-data": ["loaded_1", "loaded_2"]}
-#: Times that the first run is repeated: ten minutes.
+#: Number of repetitions of the first run: ten minutes.
 REPEATED = 60
 #: Hz.
 FREQUENCY = 5000
@@ -30,7 +31,7 @@ print(time.process_time() - start)
 
 
 def logs(folder):
-    """Makes the logs: the four runs, and the long one."""
+    """Writes the logs: the four runs, and the long one."""
     folder.mkdir(parents=True, exist_ok=True)
     runs = {option: [folder / f"{name}.csv" for name in names] for option, names in RUNS.items()}
     long = folder / "long.csv"
@@ -49,7 +50,7 @@ def logs(folder):
 
 
 def without_instruments(folder):
-    """The description without an estimate by instruments, which goes through a second motion."""
+    """The description without an estimate by instrumental variables, which needs a second motion."""
     text = ours.description("dualv").read_text()
     path = folder / "dualv.toml"
     path.write_text(text.replace("[identification]\n", '[identification]\ninstruments = "none"\n', 1))
@@ -57,13 +58,13 @@ def without_instruments(folder):
 
 
 def measured(command):
-    """Seconds of the processor, bytes read, and the most memory (MB) of a program, which must succeed."""
+    """Processor seconds, bytes read, and peak memory (MB) of a program, which must succeed."""
     process = subprocess.Popen(
         list(map(str, command)), env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
     memory = 0
-    # What the system tells at the end has this process in it, from which that one has come. A program that has ended has
-    # no memory any more.
+    # The system's final figures include the parent process, and a terminated program has no memory
+    # information.
     while not os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG):
         status = Path(f"/proc/{process.pid}/status").read_text()
         memory = max([memory, *map(int, re.findall(r"VmHWM:\s*(\d+)", status))])
@@ -79,7 +80,7 @@ def measured(command):
 
 
 def identified(description, runs, rounds):
-    """The table's cells: nanoseconds per sample, bytes read by bytes of the logs, MB."""
+    """Cells of the table: nanoseconds per sample, bytes read relative to the logs, MB."""
     files = [path for paths in runs.values() for path in paths]
     samples = sum(sum(1 for _ in open(path, "rb")) - 1 for path in files)
     bytes_ = sum(path.stat().st_size for path in files)
@@ -92,7 +93,7 @@ def identified(description, runs, rounds):
 
 
 def printed(command):
-    """The seconds that a program prints."""
+    """Seconds that a program prints."""
     done = subprocess.run(list(map(str, command)), env=ENVIRONMENT, capture_output=True, text=True, check=True)
     return float(done.stdout)
 

@@ -1,9 +1,10 @@
-"""Robots whose loops close on a tree of joints, and platforms that move aside, as a user of a peer would write them
-from joint angles: the recursion of Newton and Euler on the whole tree, projected by the reduced Jacobian.
+"""Robots with loops on a tree of joints, and platforms with parasitic motion, as users of a peer would write
+them.
 
-A chain between two bodies is solved from their relative motion, written in one of its own frames; a platform that
-moves aside is a free body whose dependent velocities follow from the rows that its legs leave over. `best` takes the
-form with the fewest operations.
+From joint angles, the recursive Newton-Euler algorithm runs on the whole tree and is projected by the reduced
+Jacobian. A chain between two bodies is solved from their relative motion in one of its frames. A platform
+with parasitic motion is a free body; its dependent velocities follow from the remaining rows of its legs.
+`best` takes the form with the fewest operations.
 """
 
 from dataclasses import dataclass, field
@@ -35,7 +36,7 @@ NONE = vector([0, 0, 0])
 
 @dataclass
 class Part:
-    """A leg of the tree in a derivation: its model, its joints' rates per independent one, and its motion."""
+    """A leg of the tree in a derivation: its model, its joint rates per independent rate, and its motion."""
 
     model: LegModel
     rows: list = field(default_factory=list)
@@ -111,8 +112,11 @@ class Tree:
         part.motions = self.forward(part, carrier)
 
     def relative(self, part, first, last, at):
-        """Of a point of body `last` seen from body `first` (-1 is the base), in that body's axes: velocity per joint
-        rate, acceleration, and those axes. The base's are those of the base frame."""
+        """Motion of a point of body `last` relative to body `first` (-1 is the base).
+
+        Velocity per joint rate, acceleration, and axes, in the axes of `first`; those of the base are the
+        base frame's.
+        """
         model = part.model
         columns, to_end = {}, apply(model.chain.rotation(first + 1, last + 1), at)
         for j in range(last, first, -1):
@@ -132,7 +136,7 @@ class Tree:
         return columns, acceleration, axes
 
     def forward(self, part, carrier):
-        """Motions of a leg's bodies, whose base stands in a body or on the ground."""
+        """Motions of a leg's bodies; its base is on a body or on the ground."""
         model, leg = part.model, part.model.leg
         if carrier is None:
             omega = alpha = NONE
@@ -151,7 +155,7 @@ class Tree:
     # A platform.
 
     def free_platform(self):
-        """The platform with its independent velocities; of one that moves aside the others are found later."""
+        """The platform with its independent velocities; with parasitic motion, the others are computed later."""
         names = ["x", "y", "z", "rx", "ry", "rz"]
         own = self.robot.independent or names
         self.own = [names.index(name) for name in own]
@@ -233,14 +237,14 @@ class Tree:
         )
 
     def on_platform(self, force, moment):
-        """A wrench in the platform's axes on the independent coordinates."""
+        """Projects a wrench in the platform's axes on the independent coordinates."""
         force, moment = apply(self.platform.rotation, force), apply(self.platform.rotation, moment)
         return apply(transpose(self.jacobian), force + moment)
 
     # Forces.
 
     def handed(self, part, j, force, moment, torques):
-        """Joint torques that hold a wrench on body j, and what the bodies that carry the leg have to hold."""
+        """Joint torques that balance a wrench on body j, and the reactions on the bodies that carry the leg."""
         model = part.model
         own = torques.setdefault(id(part), {})
         for k in range(j, -1, -1):
@@ -257,7 +261,7 @@ class Tree:
             self.handed(self.parts[0], model.leg.base_body, force, moment, torques)
 
     def projected(self, torques):
-        """Torques of the moving joints on the independent coordinates."""
+        """Projects torques of the moving joints on the independent coordinates."""
         total = [ZERO] * self.dof
         for part in self.parts:
             own = torques.get(id(part), {})
@@ -342,7 +346,7 @@ def step(model, j, part, omega, alpha, acceleration):
 
 
 def forms(robot):
-    """All forms that differ."""
+    """All distinct forms."""
     for frame in range(1 + max(len(leg.joints) for leg in robot.legs)):
         for merged in (False, True):
             for inverse in ("elimination", "cofactors"):

@@ -1,11 +1,16 @@
-"""Identification models from first principles, in the forms in which a user of a peer would write them.
+"""Identification models from first principles, in the forms in which users of a peer would write them.
 
-Leg by leg: velocities of the leg's end give joint rates by the inverse K of the leg's Jacobian, the
-Newton-Euler recursion gives every body's motion in its own frame, the wrench of one unit of a parameter
-gives its column. The forms differ in the frame in which K is formed, in how it is inverted, in how a
-column is projected (joint torques by the backward recursion, or the body's partial velocities), in
-whether it is projected on the platform in one step or by way of the leg's end, and in whether parallel
-axes are merged. None is the best for all robots; `search.py` takes the best for each.
+For each leg, velocities of the leg's end give joint rates by the inverse K of the leg's Jacobian. The
+Newton-Euler recursion gives every body's motion in its own frame. The wrench of one unit of a parameter gives
+its column. The forms differ in
+
+- the frame in which K is computed,
+- the method of inversion,
+- the projection of a column (joint torques by the backward recursion, or the body's partial velocities),
+- the projection on the platform, in one step or by way of the leg's end,
+- whether parallel axes are merged.
+
+None is the best for all robots; `search.py` takes the best for each.
 """
 
 import math
@@ -56,11 +61,11 @@ class Angles:
         self.algebra = algebra
         self.variables = variables
         self.known = {}
-        #: Pairs of sums of joints that a closure gives, by the joints' names.
+        #: Pairs of joint sums from a closure, by joint names.
         self.closed = {}
 
     def pair(self, angle):
-        """Cosine and sine of a `Linear`; quarter turns cost nothing."""
+        """Cosine and sine of a `Linear`; quarter turns need no operations."""
         terms = tuple(sorted((n, f) for n, f in angle.terms.items() if f != 0.0))
         if not terms:
             c, s = math.cos(angle.constant), math.sin(angle.constant)
@@ -112,7 +117,7 @@ class Chain:
 
     @staticmethod
     def turns(joint):
-        """Turns from the antecedent: about z and x in alternation."""
+        """Rotations from the antecedent, about z and x alternately."""
         return [("z", Linear(joint.gamma)), ("x", Linear(joint.alpha)), ("z", joint.theta)]
 
     def rotation(self, first, last):
@@ -149,7 +154,7 @@ class Chain:
 
 @dataclass
 class Motion:
-    """Of a body in its own frame: angular velocity, angular acceleration, acceleration of the origin."""
+    """Motion of a body in its own frame: angular velocity, angular acceleration, acceleration of the origin."""
 
     omega: list
     alpha: list
@@ -173,7 +178,7 @@ def spin_matrix(omega, alpha):
 
 
 def body_wrench(symbol, motion):
-    """Force and moment about the origin that one unit of an inertial parameter takes, in the body's frame."""
+    """Force and moment about the origin for one unit of an inertial parameter, in the body's frame."""
     zero = vector([0, 0, 0])
     if symbol == "m":
         return motion.acceleration, zero
@@ -185,7 +190,7 @@ def body_wrench(symbol, motion):
     i, j = "xyz".index(symbol[0]), "xyz".index(symbol[1])
     tensor = [[ZERO] * 3 for _ in range(3)]
     tensor[i][j] = tensor[j][i] = ONE
-    # omega x (I omega), with I of a single entry, and its mirror image.
+    # omega x (I omega), for I with a single entry and its mirror image.
     momentum = apply(tensor, motion.omega)
     return zero, add(apply(tensor, motion.alpha), cross(motion.omega, momentum))
 
@@ -262,7 +267,7 @@ class LegModel:
         return result
 
     def torques(self, j, force, moment):
-        """Joint torques that hold a wrench on body j: the recursion towards the base."""
+        """Joint torques that balance a wrench on body j: the recursion towards the base."""
         found = {}
         for k in reversed(range(j + 1)):
             kind = self.leg.joints[k].kind

@@ -1,4 +1,4 @@
-"""overact's side: what its command line says of a robot, and its own results."""
+"""overact's side: output of its command line, and its own results."""
 
 import json
 import os
@@ -13,20 +13,20 @@ from .count import Count
 
 ROOT = Path(__file__).resolve().parents[2]
 
-#: The command line: this repository's, or another build of it.
+#: Command line: that of this repository, or another build.
 BINARY = os.environ.get("OVERACT", ROOT / "target" / "release" / "overact")
 
-#: Where descriptions lie: the library, and robots that only tests use.
+#: Folders of descriptions: the library, and robots for tests.
 FOLDERS = [ROOT / "robots", ROOT / "tests" / "fixtures"]
 
 
 def description(robot):
-    """The file that describes a robot."""
+    """Description of a robot."""
     return next(folder / f"{robot}.toml" for folder in FOLDERS if (folder / f"{robot}.toml").exists())
 
 
 def overact(*arguments, stdin=None):
-    """The JSON document that a command of the release build prints."""
+    """JSON document of a command of the release build."""
     done = subprocess.run(
         [BINARY, *map(str, arguments), "--json"], input=stdin, capture_output=True, text=True
     )
@@ -72,7 +72,7 @@ class Function:
 
 @cache
 def inspect(robot):
-    """What the command line says of a robot; kept, for its functions take minutes to derive."""
+    """Output of `inspect` for a robot, cached because its functions take minutes to derive."""
     path, kept = description(robot), ROOT / "target" / "benchmarks" / "inspected" / f"{robot}.json"
     made_of = [str(Path(BINARY).stat().st_mtime_ns), path.read_text()]
     if kept.exists():
@@ -86,7 +86,7 @@ def inspect(robot):
 
 
 def function(work):
-    """The function that does a work."""
+    """Function of a task."""
     document = inspect(work.robot)
     for entry in document["functions"]:
         key = (entry["name"], entry["columns"], entry["from"])

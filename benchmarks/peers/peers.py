@@ -1,4 +1,4 @@
-"""The peers' models of one work: counts, and C code where it is timed."""
+"""The peers' models of one task: counts, and C code for timing."""
 
 from dataclasses import dataclass
 
@@ -38,13 +38,16 @@ def check(title, found, expected):
         raise RuntimeError(f"{title}: results differ from overact's by {error:.1e}")
 
 
-#: Makers of expression trees, besides CasADi.
+#: Libraries of expression trees besides CasADi.
 TREES = (sympy_trees, symforce_trees, symplex_trees)
 
 
 def models(work, function, robot, sample, expected, candidates=3, trees=TREES):
-    """The peers' models, all proved to agree: CasADi's in its best forms, with and without `cse`, those of
-    SymPy, SymForce and symplex, whose `cse` is alike, in the best of these."""
+    """The peers' models, after checking their agreement.
+
+    CasADi's in its best forms, with and without `cse`; those of SymPy, SymForce and symplex, whose `cse` is
+    similar, in the best of these.
+    """
     found = []
     homes = function.document["home_joints"]
     forms = best(robot, function.inputs, function.columns, homes)[:candidates]
@@ -68,7 +71,7 @@ def models(work, function, robot, sample, expected, candidates=3, trees=TREES):
 
 
 def run(function, title, code, sample):
-    """What C code gives for states."""
+    """Output of C code for some states."""
     name = f"{function.robot}_{function.rust_name}_{title.partition(',')[0].lower()}"
     path = timing.BUILD / "states" / f"{name}.bin"
     timing.write_states(path, sample)

@@ -1,7 +1,7 @@
-"""Pinocchio's joint torque regressor of serial robots: agreement, and its time.
+"""Pinocchio's joint torque regressor of serial robots: agreement and time.
 
-It has all ten inertial columns of every body, in the same order of axes as here, and no friction. It is called
-from Python, as its users call it; the time of a call that does nothing is measured beside it.
+It has all ten inertial columns of every body, in the same order of axes, and no friction. It is called from
+Python, like its users do. The time of an empty call is also measured.
 """
 
 import time
@@ -56,7 +56,7 @@ def shortest(call, arguments, batches=200):
 
 
 def measure(robot, name):
-    """Nanoseconds of a regressor, and of a call without work, once the columns agree with overact's."""
+    """Nanoseconds of a regressor and of an empty call, after checking agreement with overact's columns."""
     function = ours.function(Work(name, name))
     sample = states(function, 50)
     model = model_of(robot)
@@ -74,7 +74,7 @@ def measure(robot, name):
 
 
 def measure_all():
-    """The serial robots among the works: name, nanoseconds of a regressor and of a call."""
+    """Serial robots among the tasks: name, nanoseconds of a regressor and of an empty call."""
     robots = dict.fromkeys(work.robot for work in WORKS)
     described = {name: load(ours.description(name)) for name in robots}
     serial = {name: robot for name, robot in described.items() if robot.motion is None}

@@ -4,7 +4,7 @@ from .algebra import ONE, add, apply, cross, dot, matrix, scale, sub, transpose,
 from .model import Motion, about_z, body_wrench, spin
 from .values import Linear
 
-#: Directions of the translations and of the rotations that each motion has, besides an axis.
+#: Directions of the translations and rotations of each motion, for motions without an axis.
 SPACE = "xyz"
 
 
@@ -13,7 +13,7 @@ def unit(axis):
 
 
 class Platform:
-    """Position, orientation, twist and acceleration in the base frame, from the independent ones."""
+    """Position, orientation, twist and acceleration in the base frame, from the independent coordinates."""
 
     def __init__(self, robot, algebra, angles, inputs):
         self.robot = robot
@@ -55,7 +55,8 @@ class Platform:
         return linear, angular
 
     def end(self, leg):
-        """Of a leg's end, in the base frame: lever, partial twists, acceleration and angular acceleration."""
+        """Quantities of a leg's end in the base frame: lever, partial twists, acceleration and angular
+        acceleration."""
         lever = apply(self.rotation, vector(leg.end_at))
         partials = [(add(v, cross(w, lever)), w) for v, w in self.moves]
         velocity = add(self.velocity, cross(self.omega, lever))

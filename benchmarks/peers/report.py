@@ -14,7 +14,7 @@ def table(header, rows):
 
 
 def counts(results):
-    """Operations of every work, for each tool in its best form."""
+    """Operations of every task, for each tool in its best form."""
     tools = list(dict.fromkeys(model.peer for result in results for model in result.models))
     rows = []
     for result in results:

@@ -19,13 +19,15 @@ INVERSES = {"elimination": inverse_by_elimination, "cofactors": inverse_by_cofac
 
 
 def symbols(algebra, inputs):
-    """The inputs' scalars: `inputs` are names and lengths in the order of the function's arguments."""
+    """Scalars of the inputs; `inputs` are names and lengths in the order of the function's arguments."""
     return {name: [algebra.symbol(f"{name}[{i}]") for i in range(length)] for name, length in inputs}
 
 
 def columns(robot, algebra, inputs, names, form, homes=()):
-    """The model's columns `names`, each a list of `dof` scalars. `homes` are the joints at home, which tell
-    the working modes where the joints are no inputs."""
+    """The model's columns `names`, each a list of `dof` scalars.
+
+    `homes` are the joints at home, which determine the working modes if the joints are not inputs.
+    """
     values = symbols(algebra, inputs)
     wanted = set(names)
     found = serial(robot, algebra, values, wanted, form) if robot.motion is None else {}
@@ -43,7 +45,7 @@ def own_name(wanted, *suffix):
 
 
 def serial(robot, algebra, values, wanted, form):
-    """Joint torques of a chain without closure."""
+    """Joint torques of a chain without loops."""
     (leg,) = robot.legs
     variables = {joint.name: values["joints"][j] for j, joint in enumerate(leg.joints)}
     angles = Angles(algebra, variables)
@@ -104,7 +106,7 @@ def leg_columns(robot, algebra, angles, platform, leg, wanted, form):
 
 
 def values_of(platform):
-    """The twist's independent coordinates."""
+    """Independent coordinates of the twist."""
     return [
         dot(v, platform.velocity) if any(not x.is_zero for x in v) else dot(w, platform.omega)
         for v, w in platform.moves
@@ -112,14 +114,14 @@ def values_of(platform):
 
 
 def rotation_to(model, platform, leg, frame):
-    """Axes of a leg's frame in the base frame; that of a rigid end is known from the platform."""
+    """Axes of a leg's frame in the base frame; those of a rigid end are known from the platform."""
     if frame == model.n and leg.end_type == "rigid":
         return product(platform.rotation, matrix(leg.end_rotation))
     return product(matrix(leg.base_rotation), model.chain.rotation(0, frame))
 
 
 def independent_rows(jacobian, leg):
-    """Rows of the end's velocity (and angular velocity) in which the leg moves."""
+    """Rows of the end's velocity (and angular velocity) in which the leg can move."""
     count = 6 if leg.end_type == "rigid" else 3
     rows = [i for i in range(count) if any(not column[i].is_zero for column in jacobian)]
     if len(rows) != len(jacobian):

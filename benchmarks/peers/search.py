@@ -1,4 +1,4 @@
-"""The best of a peer's forms for a robot: the one with the fewest operations after `cse`."""
+"""Search for a peer's best form for a robot: the fewest operations after `cse`."""
 
 import itertools
 
@@ -8,7 +8,7 @@ from .robot import columns
 
 
 def forms(robot):
-    """All forms that differ for a robot."""
+    """All distinct forms for a robot."""
     if robot.motion is None:
         for merged, kind in itertools.product([False, True], ["partial", "recursion"]):
             yield Form(merged=merged, columns=kind)
@@ -20,20 +20,20 @@ def forms(robot):
         yield Form(frame, merged, inverse, kind, staged)
 
 
-#: Operations that one pair of sine and cosine takes the time of, to rank forms.
+#: Weight of one sine-cosine pair in operations, to rank forms.
 PAIR = 15
 
 
 def best(robot, inputs, names, homes=()):
-    """The form with the fewest operations of CasADi's function after `cse`, then the others by
-    operations and pairs of sine and cosine."""
+    """The form with the fewest operations of CasADi's function after `cse`, then the others by operations and
+    sine-cosine pairs."""
     found = []
     for index, form in enumerate(forms(robot)):
         algebra = Casadi()
         try:
             derived = columns(robot, algebra, inputs, names, form, homes)
         except NotImplementedError:
-            # The closure is not square in this frame: another one serves.
+            # The closure is not square in this frame; another one is used.
             continue
         counted = count(algebra.function("model", inputs, derived, cse=True))
         found.append((counted, index, form))

@@ -1,4 +1,4 @@
-"""States for comparison and timing: poses around home with the joints that belong to them."""
+"""States for comparison and timing: poses around home with matching joints."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""symplex: a program of its own builds a model from its operations, shares them, and gives trees back."""
+"""symplex: a separate program optimises a model's operations and returns trees."""
 
 import json
 import subprocess
@@ -12,7 +12,7 @@ from .tree_peer import Trees
 
 @cache
 def program():
-    """The program, compiled. It is a workspace of its own, so that only a run that needs it compiles symplex."""
+    """The compiled program. It is its own workspace, so that only runs that need it compile symplex."""
     target = ROOT / "target" / "benchmarks" / "symplex"
     manifest = ROOT / "benchmarks" / "symplex" / "Cargo.toml"
     command = ["cargo", "build", "--quiet", "--release", "--locked", "--manifest-path", manifest]
@@ -21,8 +21,10 @@ def program():
 
 
 class Operand:
-    """A symbol, a number, or the name of the line that computes it. An operation adds a line, unless there is
-    one for it already."""
+    """A symbol, a number, or the name of the line that computes it.
+
+    An operation adds a line, unless there already is one for it.
+    """
 
     def __init__(self, lines, name):
         self.lines, self.name = lines, name
@@ -64,10 +66,10 @@ class Operand:
 
 
 class Module:
-    """What `Trees` asks of a module with SymPy's names."""
+    """Functions that `Trees` needs of a module with SymPy's names."""
 
     def __init__(self):
-        #: The names of lines, by their operations.
+        #: Names of lines, by their operations.
         self.lines = {}
 
     def Symbol(self, name):
@@ -89,7 +91,7 @@ class Module:
         return x.operation("sign", x)
 
     def cse(self, entries, symbols):
-        """Shared expressions, under symplex's names, and the entries, as trees of SymPy."""
+        """Shared expressions, with symplex's names, and the entries, as SymPy trees."""
         lines = [f"{name} {line}" for line, name in self.lines.items()]
         text = "\n".join([*lines, *(f"output {entry}" for entry in entries)])
         done = subprocess.run([program()], input=text, capture_output=True, text=True)
@@ -101,7 +103,7 @@ class Module:
 
 
 def tree(node):
-    """The tree that symplex writes, in SymPy's classes and as it stands: nothing is evaluated."""
+    """The tree that symplex writes, in SymPy's classes without evaluation."""
     match node:
         case {"type": "Num", "numer": above, "denom": below}:
             return sympy.Rational(int(above), int(below))

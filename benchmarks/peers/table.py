@@ -1,10 +1,10 @@
-"""One table of all that is timed: regressors, dynamics and forward kinematics of seven robots, overact beside its
-fastest peer at equal flags.
+"""One table of all timings: regressors, dynamics and forward kinematics of seven robots, with overact's fastest
+peer.
 
-Peers: CasADi in the form in which it needs the fewest operations, with and without `cse`, and for regressors
-SymForce, each compiled by GCC and by Clang. `default` is -O3 beside cargo's release profile, `native` is either for
-this processor. What -ffast-math and the C library's vector sines give on top stands beside; it has no counterpart
-in Rust.
+The flags of both are equivalent. The peers are CasADi in the form with the fewest operations, with and
+without `cse`, and for regressors SymForce. Each is compiled by GCC and by Clang. `default` is -O3 or cargo's
+release profile, `native` is for this processor. The gain from -ffast-math and the C library's vector sines is
+listed separately, because Rust has no equivalent.
 """
 
 import hashlib
@@ -43,7 +43,7 @@ FAST = [
     Build("gcc fast", "gcc", ("-O3", "-march=native", "-ffast-math")),
     Build("clang fast", "clang", ("-O3", "-march=native", "-ffast-math", "-fveclib=libmvec", "-lmvec")),
 ]
-#: What the peers' functions are derived by.
+#: Modules that derive the peers' functions.
 DERIVING = ["algebra", "casadi_peer", "closure", "description", "dynamics", "model", "platform", "robot", "search"]
 DERIVING += ["tree_peer", "values"]
 
@@ -59,16 +59,17 @@ class Peer:
 
 @dataclass
 class Cell:
-    """A function of a robot on either side."""
+    """A function of a robot for both tools."""
 
     title: str
     function: ours.Function
     peers: list[Peer]
     #: Draws a number of states with a seed.
     sample: object
-    #: Nanoseconds of (build, title) for overact, whose title is empty, and for every peer.
+    #: Function that draws a number of states with a seed.
     times: dict = field(default_factory=dict)
-    #: Instructions, misses and bytes of overact's function and of the peer that is fastest in default builds.
+    #: Instructions, misses and bytes of overact's function, and of the peer that is fastest in default
+    #: builds.
     instructions: list = field(default_factory=list)
 
     @property
@@ -76,13 +77,13 @@ class Cell:
         return f"{self.function.robot}_{self.function.rust_name}"
 
     def fastest(self, builds):
-        """The peer's shortest time in some builds, and whose it is."""
+        """The peer's shortest time in some builds, and its name."""
         of = [(time, f"{title}, {build}") for (build, title), time in self.times.items() if title]
         return min(entry for entry in of if entry[1].rpartition(", ")[2] in [b.title for b in builds])
 
 
 def kept(name, made_of, make):
-    """Peers that take minutes to derive, kept until the description or what derives them changes."""
+    """Peers that take minutes to derive, cached until the description or the deriving modules change."""
     sources = [(Path(__file__).parent / f"{source}.py").read_bytes() for source in DERIVING]
     key = hashlib.sha256(b"\0".join([made_of, *sources])).hexdigest()
     path = timing.BUILD / "derived" / f"{name}.json"
@@ -165,7 +166,7 @@ def cells(robot):
 
 
 def time(cell, own, core, rounds):
-    """Times both builds of overact and all builds of the peers in turns, after a check that they agree."""
+    """Times both builds of overact and all builds of the peers alternately, after checking their agreement."""
     path = timing.BUILD / "states" / f"{cell.name}.bin"
     given = cell.sample(timing.STATES, 2)
     timing.write_states(path, given)
@@ -183,7 +184,7 @@ def time(cell, own, core, rounds):
     times = timing.compare([program for _, program in programs], path, core, rounds)
     cell.times = dict(zip((key for key, _ in programs), times, strict=True))
     fastest = min((k for k in cell.times if k[1] and k[0] in [b.title for b in DEFAULT]), key=cell.times.get)
-    # Valgrind does not know all instructions that are found when a program runs.
+    # Valgrind does not know all instructions of run-time detection.
     cell.instructions = [instructions.per_call(p, path) for p in (own[2], dict(programs)[fastest])]
 
 
@@ -201,12 +202,12 @@ def line(robot, cell):
 
 
 def counts(robot, cell):
-    """Time without vectors that are found when it runs, and beside the fastest peer's, instructions and misses of the
-    instruction cache of that build, and whose the peer's are."""
+    """Time without run-time vectors, instructions and misses of the instruction cache, with the fastest peer's
+    and its name."""
     (own, missed), (peer, peers_missed) = cell.instructions
     ratio = f"{own / peer:.2f}"
     names = [cell.fastest(builds)[1] for builds in (DEFAULT, NATIVE, FAST)]
-    # A difference of two runs: a little below zero where there is none.
+    # A difference of two runs may be slightly below zero.
     misses = [f"{round(number, 1) + 0.0:.1f}" for number in (missed, peers_missed)]
     plain = cell.times[("plain", "")]
     beside = f"{plain / cell.fastest(DEFAULT)[0]:.2f}"
@@ -214,7 +215,7 @@ def counts(robot, cell):
 
 
 def measured(only, core, rounds):
-    """The cells of one robot after the other, with their times."""
+    """Cells of each robot with their times."""
     for robot in ROBOTS:
         if only and only not in robot:
             continue
@@ -230,7 +231,7 @@ def measured(only, core, rounds):
 
 
 def table(found):
-    """The cells as Markdown: operations and times, then what does not depend on other work."""
+    """The cells as Markdown: operations and times, then figures that do not depend on other work."""
     header = ["function", "operations", "peer", "ratio", "default, ns", "peer", "ratio", "native, ns", "peer", "ratio"]
     times = report.table([*header, "peer, -ffast-math", "ratio"], [line(robot, cell) for robot, cell in found])
     header = ["function", "no dispatch, ns", "ratio", "instructions", "peer", "ratio", "misses", "peer"]

@@ -1,8 +1,8 @@
 """Times of compiled functions, all in one run and on one core.
 
-Every function becomes a program of its own, with the same loop in its language: it reads the same states,
-calls the function for one after the other, and prints the shortest time of many batches. The programs
-take turns, so that whatever else the machine does falls on all of them.
+Every function becomes a program with the same loop in its language. It reads the same states, calls the
+function for each, and prints the shortest time of many batches. The programs alternate, so that other work of
+the machine affects all of them.
 """
 
 import os
@@ -18,13 +18,13 @@ from .states import states
 
 BUILD = ROOT / "target" / "benchmarks"
 TEMPLATES = Path(__file__).parent / "templates"
-#: States that a program runs through, and batches that it times.
+#: Number of states in a program, and of timed batches.
 STATES, BATCHES = 256, 200
 
 
 @dataclass(frozen=True)
 class Build:
-    """How a peer's C code is compiled."""
+    """Compiler and flags of a peer's C code."""
 
     title: str
     compiler: str
@@ -35,7 +35,7 @@ class Build:
         return "".join(c if c.isalnum() else "_" for c in self.title)
 
 
-#: The build of the table of works.
+#: Build of the table of tasks.
 NATIVE = Build("cc -march=native", os.environ.get("CC", "cc"), ("-O3", "-march=native"))
 
 
@@ -57,7 +57,7 @@ class Program:
 
 
 def write(path, text):
-    """Writes a file unless it holds the text already, so that nothing is compiled twice."""
+    """Writes a file unless it already contains the text, to avoid recompilation."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists() or path.read_text() != text:
         path.write_text(text)
@@ -80,13 +80,14 @@ def c_program(title, name, source, inputs, outputs, build=NATIVE):
     binary = folder / "model"
     sources = [folder / "main.c", folder / "model.c"]
     if not binary.exists() or any(s.stat().st_mtime > binary.stat().st_mtime for s in sources):
-        # Two translation units: the loop can't be merged with what it times.
+        # Two translation units: the loop cannot be merged with the timed function.
         subprocess.run([build.compiler, *build.flags, "-o", binary, *sources, "-lm"], check=True)
     return Program(title, binary)
 
 
-#: How overact's functions are built: for any processor of the kind, with vectors that are found when they run or without
-#: these, or for this processor. Each has the features of the runtime and a folder of its own.
+#: Builds of overact's functions: for any processor with or without run-time vectors, or for this processor.
+#
+#: Each has the features of the runtime and its own folder.
 ANY, ANY_PLAIN, THIS = ("dispatch", "target"), ("std", "target-plain"), ("std", "target-native")
 
 
@@ -129,14 +130,14 @@ def rust_programs(functions, template="main.rs", dependencies=(), build=ANY):
 
 
 def rust_main(function, template):
-    """The program that times one of overact's functions."""
+    """Program that times one of overact's functions."""
     starts = np.cumsum([0] + [length for _, length in function.inputs])
     spans = [f"values[{a}..{b}].try_into()?" for a, b in zip(starts, starts[1:], strict=False)]
     text = (TEMPLATES / template).read_text()
     call = f"{function.robot}::{function.document['robot']}::{function.rust_name}"
     arguments = [f"&s.{i}" for i in range(len(function.inputs))]
     written = "()"
-    # The peers write into what is handed in, too.
+    # The peers also write into the caller's array.
     if function.rust_name.startswith("idm_red"):
         rows, columns = function.shape
         call, written = f"{call}_into", f"[[0.0_f64; {columns}]; {rows}]"
@@ -168,14 +169,14 @@ def blocks(function, core=0, rounds=2000):
 
 
 def outputs(program, path, core, shape):
-    """What a compiled program gives for its states."""
+    """Output of a compiled program for its states."""
     dump = path.with_suffix(".out")
     program.run(path, core, 1, dump)
     return np.fromfile(dump).reshape(-1, *shape)
 
 
 def compare(programs, states, core=0, rounds=15):
-    """Nanoseconds per call of each program: the shortest of all rounds, the programs taking turns."""
+    """Nanoseconds per call of each program: the shortest of all rounds, the programs alternating."""
     best = [float("inf")] * len(programs)
     for _ in range(rounds):
         for index, program in enumerate(programs):

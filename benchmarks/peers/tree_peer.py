@@ -30,7 +30,7 @@ class Trees:
         self.inputs = {}
 
     def symbol(self, name):
-        """An input; its place in the arguments is in its name."""
+        """An input; its index in the arguments is in its name."""
         array, _, index = name.rstrip("]").partition("[")
         symbol = self.module.Symbol(f"{array}_{index}")
         self.inputs[str(symbol)] = (array, int(index))
@@ -49,7 +49,7 @@ class Trees:
         return Scalar(self.module.sign(x.value))
 
     def function(self, inputs, columns):
-        """Operations, and C code with rows x columns as the output, row by row."""
+        """Operations, and C code with row-major rows x columns as the output."""
         rows = len(columns[0])
         entries = [self.module.sympify(column[row].value) for row in range(rows) for column in columns]
         symbols = (self.module.Symbol(f"shared{k}") for k in numbers())
@@ -72,7 +72,7 @@ def symforce_trees():
 
 
 class Writer:
-    """Expressions as C, and their operations."""
+    """Writes expressions as C and counts their operations."""
 
     def __init__(self, names):
         self.names = names

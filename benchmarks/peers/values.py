@@ -94,7 +94,7 @@ def with_units(match):
 
 
 def evaluate(value, names):
-    """The number (or `Linear` expression) that a key of a description holds."""
+    """Number (or `Linear` expression) in a key of a description."""
     if not isinstance(value, str):
         return float(value)
     text = QUANTITY.sub(with_units, value).replace("^", "**")

@@ -1,11 +1,11 @@
-"""The works that are measured: a robot, a function, its columns."""
+"""Tasks that are measured: a robot, a function, its columns."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Work:
-    """One line of the table. `quoted` are numbers of others that are not measured here."""
+    """One row of the table; `quoted` are published numbers of others that are not measured here."""
 
     title: str
     robot: str

@@ -13,7 +13,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// All functions with the effort asked for: what is generated to be kept is worth a search.
+    /// Request for all functions with this effort, since generated code is kept.
     pub(crate) fn request(&self) -> Request<'static> {
         Request {
             effort: self.effort.as_deref().and_then(Effort::named),

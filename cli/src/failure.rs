@@ -1,4 +1,4 @@
-//! Why a command has no result, as text for people or as JSON for machines.
+//! Failures of commands, as text or JSON.
 
 use overact_codegen::diagnostic::Code;
 use overact_codegen::diagnostic::InternalError;
@@ -7,25 +7,31 @@ use std::io::{self, IsTerminal, Write};
 
 pub use overact_robot::Problem;
 
-/// More codes than these are not offered at once.
+/// Largest number of codes for which `overact explain` is suggested.
 const EXPLAINED: usize = 4;
 
-/// Why a command has no result.
+/// Failure of a command.
 #[derive(Debug)]
 pub enum Failure {
-    /// The arguments do not go together.
+    /// Incompatible arguments.
     Usage(String),
-    /// Something that the arguments name is wrong.
+    /// Invalid input.
     Input(Error),
-    /// The result is there, but is not to be used, and that was asked to count as a failure.
+    /// A result with the verdict not to use it, with an option that makes this a failure.
     Refused(String),
-    /// Something is wrong with this program.
+    /// An internal error of the program.
     Internal(InternalError),
 }
 
 impl Failure {
-    /// The exit code: 1 for bad input, 2 for arguments that do not go together, 3 for a result
-    /// that is not to be used, 4 for an error of this program.
+    /// Exit code.
+    ///
+    /// | code | meaning |
+    /// |---|---|
+    /// | 1 | invalid input |
+    /// | 2 | incompatible arguments |
+    /// | 3 | result with the verdict not to use it |
+    /// | 4 | internal error |
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -48,7 +54,7 @@ impl Failure {
         }
     }
 
-    /// All problems as text, with a terminal's colours or without.
+    /// All problems as text, with or without terminal colours.
     #[must_use]
     pub fn render(&self, styled: bool) -> String {
         match self {
@@ -60,7 +66,7 @@ impl Failure {
         }
     }
 
-    /// Where more is told of the problems: the command that explains their codes.
+    /// Hint on the command that explains the codes.
     fn more(&self) -> String {
         let mut codes: Vec<Code> = self.problems().iter().map(|one| one.code).collect();
         codes.sort_unstable();
@@ -69,8 +75,7 @@ impl Failure {
         format!("cause and cure: overact explain {}", names.join(" "))
     }
 
-    /// Writes all problems to stderr: coloured on a terminal that wants colours, plain in a pipe, as
-    /// one document with `json`.
+    /// Writes all problems to stderr: coloured on a terminal, plain in a pipe, or as JSON.
     pub fn report(&self, json: bool) {
         let text = if json {
             serde_json::json!({ "errors": self.problems() }).to_string()
@@ -79,7 +84,7 @@ impl Failure {
             let text = self.render(colours && io::stderr().is_terminal());
             format!("{text}\n\n{}", self.more())
         };
-        // There is nobody left to tell that stderr is closed.
+        // A closed stderr is ignored.
         let _ = writeln!(io::stderr(), "{text}");
     }
 }
@@ -96,14 +101,14 @@ impl From<Problem> for Failure {
     }
 }
 
-/// Problems that were found together; at least one.
+/// Problems found together; at least one.
 impl From<Vec<Problem>> for Failure {
     fn from(problems: Vec<Problem>) -> Self {
         Self::Input(Error::Problems(problems))
     }
 }
 
-/// What went wrong with several files; at least one.
+/// Errors of several files; at least one.
 impl From<Vec<Error>> for Failure {
     fn from(errors: Vec<Error>) -> Self {
         Self::Input(Error::Several(errors))

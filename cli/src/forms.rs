@@ -1,4 +1,4 @@
-//! The values of the options `--from` and `--columns`: in which form a function is meant.
+//! Values of the options `--from` and `--columns`, which select the form of a function.
 
 use clap::ValueEnum;
 use overact::Columns;

@@ -1,4 +1,4 @@
-//! The options `--functions`, `--from` and `--columns`: what is generated.
+//! Options `--functions`, `--from` and `--columns`, which select the generated functions.
 
 use crate::failure::{Failure, Problem};
 use crate::forms::{ColumnsOf, Source};
@@ -22,10 +22,10 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// The choice, where there is one.
+    /// Selection, if there is one.
     ///
     /// # Errors
-    /// Every name that no robot's function has.
+    /// All unknown function names.
     pub(crate) fn choice(&self) -> Result<Option<Choice>, Failure> {
         let mut choice = match self.functions.is_empty() {
             true => Choice::all(),
@@ -49,7 +49,7 @@ impl Arguments {
         })
     }
 
-    /// The options as they stand on the command line.
+    /// Options as on the command line.
     pub(crate) fn words(&self) -> String {
         let from: Vec<&str> = self
             .from

@@ -1,5 +1,6 @@
-//! A command whose defects are told as such: a panic becomes an internal error with its place, and no
-//! output is left, because results are written at the end and all at once.
+//! Converts panics of a command to internal errors with location.
+//!
+//! No partial output remains, because results are written at the end and all at once.
 
 use crate::{commands::Command, failure::Failure};
 use overact_codegen::diagnostic::InternalError;
@@ -18,7 +19,7 @@ pub(crate) fn run(command: &Command, as_json: bool) -> Result<(), Failure> {
     })
 }
 
-/// Runs what may panic. The first panic, wherever its thread, is the one that is told.
+/// Runs a function that may panic; the first panic of any thread is reported.
 fn guarded(
     stage: &str,
     descriptions: &str,
@@ -42,7 +43,7 @@ fn guarded(
     })
 }
 
-/// What a panic says, and where it is.
+/// Message and location of a panic.
 fn described(info: &PanicHookInfo<'_>) -> String {
     let payload = info.payload();
     let text = payload.downcast_ref::<&str>().copied();
@@ -77,7 +78,7 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part} in {text}");
         }
-        // Of several threads the first one counts.
+        // The first panic of several threads is reported.
         let threads = || {
             std::thread::scope(|scope| {
                 let _ = scope.spawn(|| panic!("in a thread")).join();

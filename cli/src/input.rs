@@ -1,4 +1,4 @@
-//! Inputs: descriptions with a bar while they are derived, and standard input where a path is `-`.
+//! Inputs: descriptions with a progress bar, and standard input for the path `-`.
 
 use crate::{
     failure::{Failure, Problem},
@@ -18,10 +18,10 @@ pub(crate) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// A description with what is asked for, and a bar while its functions are derived.
+/// Compiles a description for a request, with a progress bar.
 ///
 /// # Errors
-/// A file that can't be read, or everything that is wrong with the description.
+/// A file that cannot be read, or all errors of the description.
 pub(crate) fn compiled(
     path: &Path,
     request: &Request<'_>,
@@ -39,7 +39,7 @@ pub(crate) fn compiled(
     CompiledFile::read(path, &request)
 }
 
-/// A description as a running robot.
+/// Robot of a description.
 ///
 /// # Errors
 /// As [`compiled`].
@@ -47,7 +47,7 @@ pub(crate) fn robot(path: &Path, as_json: bool) -> Result<Robot, Error> {
     compiled(path, &Robot::request(), as_json).map(Robot::new)
 }
 
-/// A log from standard input in a file of its own: logs are gone through more than once.
+/// Log from standard input in a temporary file, because logs are read more than once.
 #[derive(Debug)]
 pub(crate) struct Spool(NamedTempFile);
 
@@ -55,7 +55,7 @@ impl Spool {
     /// Reads standard input to its end.
     ///
     /// # Errors
-    /// A folder for temporary files that can't be written, or an input that breaks off.
+    /// A temporary folder that cannot be written, or an interrupted input.
     pub(crate) fn read() -> Result<Self, Failure> {
         let spooled = || {
             let mut builder = tempfile::Builder::new();
@@ -70,7 +70,7 @@ impl Spool {
         })
     }
 
-    /// The file.
+    /// Path of the file.
     pub(crate) fn path(&self) -> PathBuf {
         self.0.path().to_owned()
     }

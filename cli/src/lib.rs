@@ -1,20 +1,20 @@
-//! The command line of `overact`: arguments in, results out. What a command does is done by the
-//! libraries below it, [`overact_robot`] first.
+//! Command line of `overact`: parses arguments, calls the libraries and writes results.
 //!
-//! One file per subcommand in `commands`. What they share:
+//! Most of the work is done by [`overact_robot`]. There is one file per subcommand in `commands`.
+//! They share:
 //!
-//! - [`failure`]: what went wrong, as text for people or as JSON for machines, with the exit code;
-//! - `output`: results go to stdout or, whole or not at all, to a file;
-//! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
-//! - `guarded`: a defect of the program is told as such;
-//! - `effort`: how hard the generator searches;
-//! - `forms`: in which form a function is meant;
-//! - `functions`: which functions are generated;
-//! - `input`: descriptions with a bar, standard input;
-//! - `names`: names of results in names of files;
-//! - `note`: what a description says that may not be meant;
-//! - [`report`]: an identification as a page, a document or a flat table;
-//! - `signals`: what is left when a signal ends the process: nothing;
+//! - [`failure`]: failures as text or JSON, with exit codes;
+//! - `output`: results to stdout or, completely or not at all, to files;
+//! - `progress`: progress bars on a terminal;
+//! - `guarded`: panics as internal errors;
+//! - `effort`: effort of the generator's search;
+//! - `forms`: forms of a function;
+//! - `functions`: selection of generated functions;
+//! - `input`: descriptions with a progress bar, standard input;
+//! - `names`: names of results as file names;
+//! - `note`: notes on unintended contents of a description;
+//! - [`report`]: an identification as a page, JSON or a flat table;
+//! - `signals`: removal of temporary files if a signal ends the process;
 //! - `states`: states of a robot from JSON or CSV.
 
 mod commands;
@@ -40,21 +40,22 @@ use std::{
     process::ExitCode,
 };
 
-/// What is printed where no command is given is the help.
+/// Without a command, the help is printed.
 const NO_COMMAND: ErrorKind = ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 
 /// Runs the command that the process was started with.
 #[must_use]
 pub fn run() -> ExitCode {
     signals::watch();
-    // The thread that waits for parallel work takes part in it: else each piece is handed to another thread, which
-    // has to be woken, while this one sleeps. Where there is a pool already, there is nothing to be done.
+    // Let the waiting thread take part in parallel work; otherwise each task wakes another thread.
+    // An existing pool is kept.
     let pool = rayon::ThreadPoolBuilder::new().use_current_thread();
     let _ = pool.build_global();
     ExitCode::from(run_with(std::env::args_os().collect()))
 }
 
-/// Runs the command of these arguments, the first of which is the program's name; returns the exit code.
+/// Runs the command of these arguments, the first of which is the program's name; returns the exit
+/// code.
 #[must_use]
 pub fn run_with(arguments: Vec<OsString>) -> u8 {
     let wants_json = arguments.iter().any(|argument| argument == "--json");
@@ -73,7 +74,7 @@ pub fn run_with(arguments: Vec<OsString>) -> u8 {
     }
 }
 
-/// Help and the version go to stdout; what is wrong with the arguments is told as everything else is.
+/// Prints help and version on stdout, and argument errors like all other errors.
 fn misused(error: &clap::Error, wants_json: bool) -> u8 {
     if error.use_stderr() && !wants_json && error.kind() != NO_COMMAND {
         let colours = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
@@ -86,7 +87,7 @@ fn misused(error: &clap::Error, wants_json: bool) -> u8 {
         return u8::try_from(error.exit_code()).unwrap_or(2);
     }
     if !(error.use_stderr() && wants_json) {
-        // There is nobody left to tell that the output is closed.
+        // A closed output is ignored.
         let _ = error.print();
         return u8::try_from(error.exit_code()).unwrap_or(2);
     }

@@ -1,4 +1,4 @@
-//! The command `overact`; everything is in the library.
+//! The command `overact`; see the library.
 
 fn main() -> std::process::ExitCode {
     overact_cli::run()

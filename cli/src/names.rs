@@ -1,6 +1,6 @@
-//! Names of results in names of files.
+//! Names of results as file names.
 
-/// A name as part of a file's name: letters, digits, `-` and `_`; all else becomes `_`.
+/// Name as part of a file name: letters, digits, `-` and `_`; others become `_`.
 pub(crate) fn file_stem(name: &str) -> String {
     let keep = |c: char| {
         if c.is_alphanumeric() || c == '-' {

@@ -1,4 +1,4 @@
-//! Results: to stdout, or to files that are written whole or not at all and destroy nothing.
+//! Output to stdout, or to files that are written completely or not at all.
 
 mod files;
 
@@ -17,16 +17,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The file that a result goes to; `-` is stdout, as no file is.
+/// File for a result; `None` for stdout (`-`).
 pub(crate) fn file(path: Option<&PathBuf>) -> Option<&Path> {
     let path = path.map(PathBuf::as_path);
     path.filter(|path| !is_stream(path))
 }
 
-/// Writes a text to stdout. A reader that has gone away (`| head`) is not an error.
+/// Writes a text to stdout; a closed pipe (`| head`) is not an error.
 ///
 /// # Errors
-/// A stdout that takes no more, for instance a full disk behind it.
+/// A stdout that cannot be written, for instance a full disk.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     let newline = if text.ends_with('\n') || text.is_empty() {
@@ -43,7 +43,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a text to a file, or to stdout where there is none.
+/// Writes a text to a file, or to stdout if there is none.
 ///
 /// # Errors
 /// As [`print()`] and [`write()`].
@@ -51,7 +51,7 @@ pub(crate) fn emit(text: &str, file: Option<&Path>) -> Result<(), Failure> {
     emit_with(text, file, Vec::new())
 }
 
-/// [`emit`] together with other files, so that none is there without the others.
+/// [`emit`] together with other files; all are written, or none.
 ///
 /// # Errors
 /// As [`print()`] and [`write()`].
@@ -72,18 +72,18 @@ pub(crate) fn emit_with(
     }
 }
 
-/// Makes the folder of several files, if it is not there.
+/// Creates the folder for several files, if it does not exist.
 ///
 /// # Errors
-/// A place where there can be none.
+/// A folder that cannot be created.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     made(folder).map_err(Failure::from)
 }
 
-/// Makes the folders that files go to; that of a single file mostly exists.
+/// Creates the folders of files; that of a single file usually exists.
 ///
 /// # Errors
-/// A folder that can't be made.
+/// A folder that cannot be created.
 pub(crate) fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> {
     let folders = files.iter().filter_map(|(file, _)| file.parent());
     let mut folders = folders.filter(|folder| !folder.as_os_str().is_empty());
@@ -97,10 +97,10 @@ fn made(folder: &Path) -> Result<(), Problem> {
     })
 }
 
-/// A document for machines.
+/// JSON document.
 ///
 /// # Errors
-/// Never for the documents of this program: their keys are texts.
+/// Never for the documents of this program: their keys are strings.
 pub(crate) fn json(document: &impl Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(document).map_err(|error| {
         Problem::new(

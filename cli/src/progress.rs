@@ -4,14 +4,14 @@ use crate::note::is_quiet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 
-/// Steps of a whole bar.
+/// Steps of a full bar.
 const STEPS: u64 = 1000;
 
-/// A bar, or nothing where nobody looks.
+/// A progress bar, or nothing.
 pub(crate) struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// A bar for the work `what`.
+    /// Creates a bar for the work `what`.
     pub(crate) fn new(what: &str, json: bool) -> Self {
         if json || is_quiet() || !io::stderr().is_terminal() {
             return Self(None);
@@ -25,10 +25,10 @@ impl Progress {
         Self(Some(bar))
     }
 
-    /// Shows which fraction of the work is done, and what is being done.
+    /// Shows the completed fraction and the current work.
     pub(crate) fn at(&self, fraction: f64, message: &str) {
         if let Some(bar) = &self.0 {
-            // A cast from a float saturates.
+            // The cast saturates.
             bar.set_position((fraction * STEPS as f64) as u64);
             bar.set_message(message.to_owned());
         }

@@ -1,5 +1,4 @@
-//! Reports of an identification as files: what the extension of each file asks for, and published
-//! results to show beside the own ones.
+//! Report files of an identification by extension, and published results for comparison.
 
 use crate::{
     failure::{Failure, Problem},
@@ -29,7 +28,7 @@ pub(crate) struct Arguments {
     published: Option<PathBuf>,
 }
 
-/// What a file is.
+/// Format of a report file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {
     Html,
@@ -37,14 +36,14 @@ enum Format {
     Csv,
 }
 
-/// Reports that are asked for, all checked before the long work begins.
+/// Requested reports, checked before the long work begins.
 #[derive(Debug)]
 pub(crate) struct Asked {
     files: Vec<(PathBuf, Format)>,
     published: Option<PathBuf>,
 }
 
-/// Reports with what they are compared with.
+/// Requested reports with the published results.
 #[derive(Debug)]
 pub(crate) struct Reports {
     files: Vec<(PathBuf, Format)>,
@@ -52,10 +51,10 @@ pub(crate) struct Reports {
 }
 
 impl Arguments {
-    /// What the arguments ask for on a description.
+    /// Checks the requested reports for a description.
     ///
     /// # Errors
-    /// A file of an unknown kind.
+    /// A file with an unknown extension.
     pub(crate) fn check(&self, description: &Path) -> Result<Asked, Failure> {
         let with_format = |path: &PathBuf| Ok((path.clone(), format(path)?));
         let files = self.reports.iter().map(with_format);
@@ -67,20 +66,20 @@ impl Arguments {
 }
 
 impl Asked {
-    /// Files that will be read.
+    /// Files to read.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         self.published.iter().map(PathBuf::as_path).collect()
     }
 
-    /// Files that will be written.
+    /// Files to write.
     pub(crate) fn outputs(&self) -> Vec<&Path> {
         self.files.iter().map(|(path, _)| path.as_path()).collect()
     }
 
-    /// Reads what the reports are compared with.
+    /// Reads the published results.
     ///
     /// # Errors
-    /// Published results that can't be read.
+    /// Published results that cannot be read.
     pub(crate) fn read(self) -> Result<Reports, Failure> {
         Ok(Reports {
             files: self.files,
@@ -90,22 +89,22 @@ impl Asked {
 }
 
 impl Reports {
-    /// Published results of the robot, where there are some.
+    /// Published results of the robot, if there are any.
     pub(crate) const fn published(&self) -> Option<&Published> {
         self.published.as_ref()
     }
 
-    /// Where the page goes, where one is asked for.
+    /// Path of the page, if one is requested.
     pub(crate) fn page(&self) -> Option<&Path> {
         let mut files = self.files.iter();
         let page = files.find(|(_, format)| *format == Format::Html);
         page.map(|(path, _)| path.as_path())
     }
 
-    /// The files with their contents.
+    /// Files with their contents.
     ///
     /// # Errors
-    /// A result that is no JSON, which does not happen.
+    /// A result that is not valid JSON, which does not happen.
     pub(crate) fn written(
         self,
         robot: &Robot,
@@ -125,15 +124,15 @@ impl Reports {
     }
 }
 
-/// The document of a report: all numbers and plotted series.
+/// JSON document of a report: all numbers and figures.
 ///
 /// # Errors
-/// A result that is no JSON, which does not happen.
+/// A result that is not valid JSON, which does not happen.
 pub fn document(result: &Identification) -> Result<String, Failure> {
     Ok(overact_report::document_with_figures(result)?)
 }
 
-/// What the extension asks for.
+/// Format of an extension.
 fn format(path: &Path) -> Result<Format, Failure> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {
@@ -147,10 +146,10 @@ fn format(path: &Path) -> Result<Format, Failure> {
     }
 }
 
-/// The page, with its numbers as files within it.
+/// HTML page with its numbers as attached files.
 ///
 /// # Errors
-/// A result that is no JSON, which does not happen.
+/// A result that is not valid JSON, which does not happen.
 pub fn html(
     robot: &Robot,
     info: &Info<'_>,
@@ -168,7 +167,7 @@ pub fn html(
     Ok(whole_page(result, &about, &file_stem(&result.robot))?)
 }
 
-/// The file of published results that lies beside a description.
+/// Default file of published results for a description.
 #[must_use]
 pub fn beside(description: &Path) -> Option<PathBuf> {
     let folder = description.parent()?.join("published");
@@ -179,7 +178,7 @@ pub fn beside(description: &Path) -> Option<PathBuf> {
 /// Reads published results.
 ///
 /// # Errors
-/// A file that can't be read, unknown keys, lists of different lengths.
+/// A file that cannot be read, unknown keys, or lists of different lengths.
 pub fn published(path: &Path) -> Result<Published, Failure> {
     let file = path.display().to_string();
     let text = fs::read_to_string(path).map_err(|error| {

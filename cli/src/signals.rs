@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: files that wait for their name are removed before the process ends by the signal.
+//! On Ctrl-C and SIGTERM, removes temporary files before the process ends.
 
 use std::{
     collections::BTreeSet,
@@ -8,15 +8,17 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// Temporary files of results that are not complete yet. Whoever holds the lock makes, renames or removes one, so
-/// that a signal comes before or after that and never between.
+/// Temporary files of incomplete results.
+///
+/// Files are created, renamed and removed under this lock, so that a signal never interrupts these
+/// steps.
 static WAITING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn waiting() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     WAITING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes a temporary file that does not outlive a signal.
+/// Creates a temporary file that is removed on a signal.
 ///
 /// # Errors
 /// As `make`.
@@ -29,29 +31,30 @@ pub(crate) fn guarded(
     Ok(file)
 }
 
-/// Gives a temporary file its name.
+/// Renames a temporary file to its final path.
 ///
 /// # Errors
-/// A folder that can't be written any more.
+/// A folder that can no longer be written.
 pub(crate) fn persist(file: NamedTempFile, target: &Path) -> io::Result<()> {
     let mut waiting = waiting();
     waiting.remove(file.path());
     file.persist(target).map(drop).map_err(|error| error.error)
 }
 
-/// Removes what waits for its name; the lock is never given back, so that nothing new is made.
+/// Removes all temporary files; the lock is kept forever so that no new ones are created.
 #[cfg(unix)]
 fn remove_all() {
     let waiting = waiting();
     for path in waiting.iter() {
-        // It may have been removed by who made it.
+        // Its owner may have removed it.
         let _ = std::fs::remove_file(path);
     }
     std::mem::forget(waiting);
 }
 
-/// From now on Ctrl-C and SIGTERM remove temporary files first. A process that cannot be told of signals goes on
-/// without: it is ended by them as any other.
+/// Starts to remove temporary files on Ctrl-C and SIGTERM.
+///
+/// If no handler can be installed, signals end the process as usual.
 #[cfg(unix)]
 pub(crate) fn watch() {
     use signal_hook::{
@@ -65,12 +68,12 @@ pub(crate) fn watch() {
     std::thread::spawn(move || {
         for signal in &mut signals {
             remove_all();
-            // The shell sees a process that the signal ended.
+            // The shell then sees that a signal ended the process.
             let _ = emulate_default_handler(signal);
         }
     });
 }
 
-/// Elsewhere the system removes nothing and asks nobody.
+/// Other systems have no such signals.
 #[cfg(not(unix))]
 pub(crate) const fn watch() {}

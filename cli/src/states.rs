@@ -1,5 +1,7 @@
-//! States of a robot from JSON (an array of objects keyed by input name) or CSV (a column
-//! `pose[0]` for each number).
+//! States of a robot from JSON or CSV.
+//!
+//! JSON files have an array of objects keyed by input name; CSV files have a column `pose[0]` for
+//! each number.
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::diagnostic::{Code, did_you_mean};
@@ -16,7 +18,7 @@ use std::{
     path::Path,
 };
 
-/// States as they stand in a file.
+/// States of a file.
 #[derive(Debug)]
 pub(crate) struct States {
     file: String,
@@ -24,28 +26,28 @@ pub(crate) struct States {
     states: Vec<State>,
 }
 
-/// How a file holds states.
+/// Format of a file of states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {
     Json,
     Csv,
 }
 
-/// One state: quantities by name. Those that nobody asks for may be anything.
+/// One state: quantities by name; unused ones may have any value.
 #[derive(Debug, Default)]
 struct State {
     line: Option<usize>,
     quantities: BTreeMap<String, Quantity>,
 }
 
-/// The numbers of a quantity, or why there are none.
+/// Numbers of a quantity, or why they are invalid.
 type Quantity = Result<Vec<f64>, String>;
 
 impl States {
-    /// Reads states from a file, or from stdin where the path is `-`.
+    /// Reads states from a file, or from stdin if the path is `-`.
     ///
     /// # Errors
-    /// A file that can't be read, or that is neither JSON nor CSV with a header.
+    /// A file that cannot be read, or that is neither JSON nor CSV with a header.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let file = path.display().to_string();
         let text = if file == "-" {
@@ -96,14 +98,14 @@ impl States {
         self.states.len()
     }
 
-    /// Whether the first state holds a quantity.
+    /// Whether the first state contains a quantity.
     pub(crate) fn hold(&self, name: &str) -> bool {
         self.states
             .first()
             .is_some_and(|state| state.quantities.contains_key(name))
     }
 
-    /// How a file of this format holds a quantity.
+    /// Notation of a quantity in this format.
     pub(crate) fn form(&self, name: &str, length: usize) -> String {
         match (self.format, length) {
             (Format::Csv, 2..) => format!("`{name}[0]` to `{name}[{}]`", length - 1),
@@ -113,7 +115,7 @@ impl States {
         }
     }
 
-    /// Names of what a state holds, as the file writes them.
+    /// Names of a state's contents, as in the file.
     pub(crate) fn found(&self, at: usize) -> Vec<&str> {
         let quantities = self.states.get(at).map(|state| state.quantities.keys());
         quantities
@@ -123,8 +125,9 @@ impl States {
             .collect()
     }
 
-    /// What the states of a JSON file hold and no function takes, in a sentence; none where that is nothing. Tables
-    /// have other columns often.
+    /// Sentence on contents of a JSON file that no function uses, if any.
+    ///
+    /// CSV tables often have other columns, so they are not checked.
     pub(crate) fn unknown(&self, known: &[&str]) -> Option<String> {
         let states = self.states.iter().filter(|_| self.format == Format::Json);
         let names = states.flat_map(|state| state.quantities.keys());
@@ -145,10 +148,10 @@ impl States {
         ))
     }
 
-    /// The numbers of a quantity in a state; `None` where the state does not hold it.
+    /// Numbers of a quantity in a state; `None` if it is absent.
     ///
     /// # Errors
-    /// Something that is not `length` finite numbers.
+    /// Anything other than `length` finite numbers.
     pub(crate) fn get(
         &self,
         at: usize,
@@ -190,7 +193,7 @@ impl States {
 }
 
 fn from_json(text: &str) -> Result<Vec<State>, Problem> {
-    // One object is one state.
+    // A single object is one state.
     let states = if text.trim_start().starts_with('[') {
         serde_json::from_str::<Vec<State>>(text)
     } else {
@@ -208,7 +211,7 @@ fn from_json(text: &str) -> Result<Vec<State>, Problem> {
     })
 }
 
-/// Of two values under one name none is taken: whoever wrote them meant one of them.
+/// Rejects two values under one name, because either could be intended.
 impl<'de> Deserialize<'de> for State {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(Quantities)
@@ -288,7 +291,7 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
         for ((name, index), cell) in header.iter().zip(&record) {
             cells.entry(name).or_default().push((*index, cell));
         }
-        // A quantity whose cells are all empty is not given in this state.
+        // A quantity with only empty cells is absent from this state.
         cells.retain(|_, cells| cells.iter().any(|(_, cell)| !cell.is_empty()));
         let quantities = cells
             .into_iter()
@@ -301,7 +304,7 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
     Ok(states)
 }
 
-/// What stands between the names of the header: `,`, `;` or a tab.
+/// Separator of the header: `,`, `;` or a tab.
 fn separator(text: &str) -> u8 {
     let mut lines = text.lines();
     let header = lines.find(|line| !line.trim().is_empty() && !line.starts_with('#'));
@@ -309,12 +312,12 @@ fn separator(text: &str) -> u8 {
     b";\t".iter().find(holds).copied().unwrap_or(b',')
 }
 
-/// The line of a record: the reader's position is before comments and empty lines that precede it.
+/// Line of a record; the reader's position is before preceding comments and empty lines.
 fn first_line(text: &str, position: &csv::Position) -> usize {
     let start = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(start..).unwrap_or_default();
     let is_skipped = |line: &&str| line.trim().is_empty() || line.starts_with('#');
-    // Lines are far fewer than 2^64.
+    // The number of lines is far below 2^64.
     position.line() as usize + rest.lines().take_while(is_skipped).count()
 }
 
@@ -327,7 +330,7 @@ fn cell_name(column: &str) -> (String, usize) {
     indexed.unwrap_or_else(|| (column.to_owned(), 0))
 }
 
-/// The cells of a quantity in the order of their indices, which count from 0 without a gap.
+/// Numbers of a quantity by index, which must count from 0 without gaps.
 fn from_cells(mut cells: Vec<(usize, &str)>) -> Quantity {
     cells.sort_by_key(|(index, _)| *index);
     let one = |(expected, (index, cell)): (usize, (usize, &str))| {

@@ -1,10 +1,10 @@
-//! One name for an actuator: what one command prints, every other place takes.
+//! Actuator names are the same in all commands and files.
 
 mod common;
 
 use common::{Bench, names};
 
-/// A robot some of whose legs have two motors, one has one.
+/// A robot in which some legs have two motors and one has one.
 fn bench(kept: &str) -> Bench {
     Bench::with("planar-3rrr", |text| {
         let text = text.replace("d = \"l_1\"", "d = \"l_1\"\nactuated = true");
@@ -40,7 +40,7 @@ fn what_is_printed_is_what_is_taken() {
         ];
         bench.good(&[&function[..], &["--kept", kept]].concat())
     };
-    // The other spelling, which older descriptions have, means the same.
+    // The older spelling of descriptions has the same meaning.
     assert_eq!(
         evaluate("leg1_1,leg2_1,leg3_2"),
         evaluate("leg1.1,leg2.1,leg3.2")

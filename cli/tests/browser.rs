@@ -1,11 +1,11 @@
-//! The report in a browser: every figure is there, with something in it, at desktop and phone width, in
-//! light and dark, no table runs over the edge, neither there nor on paper, and texts stand out from what
-//! is behind them.
+//! The report in a browser: figures, layout and contrast at desktop and phone width, in light, dark
+//! and print.
 //!
-//! The browser is `OVERACT_CHROMIUM`, or a Chromium or Chrome of the PATH; without one the tests are
-//! skipped with a message. The report stands in a frame of the wanted width, because a window can't be as
-//! narrow as a phone. Paper is looked at twice: as a frame of its width under the rules for print, and as a
-//! PDF, whose text `pdftotext` reads where it is installed.
+//! Every figure must be visible with contents, and no table may overflow. The browser is
+//! `OVERACT_CHROMIUM`, or a Chromium or Chrome in the PATH; without one the tests are skipped with
+//! a message. The report is shown in a frame of the required width, because a window cannot be as
+//! narrow as a phone. Print is tested as a frame with the print rules, and as a PDF, whose text
+//! `pdftotext` reads if installed.
 
 mod common;
 
@@ -17,7 +17,7 @@ use std::{
     process::{Command, Output},
 };
 
-/// The figures that the report of a redundant, virtual robot has, each with words of its plots or of its
+/// Figures of the report of an overactuated virtual robot, each with words of its plots or
 /// description.
 const FIGURES: [(&str, &[&str]); 13] = [
     ("figure-robot", &[]),
@@ -35,7 +35,7 @@ const FIGURES: [(&str, &[&str]); 13] = [
     ("tracking", &["computed torque"]),
 ];
 
-/// Asks the laid-out page, and tells the window around it.
+/// Measures the rendered page and reports to the enclosing window.
 const PROBE: &str = r#"<script>
 addEventListener('load', () => {
   const rgb = text => { const m = text.match(/[\d.]+/g).map(Number); return m.length < 4 || m[3] > 0 ? m : null; };
@@ -62,8 +62,10 @@ addEventListener('load', () => {
 });
 </script></body>"#;
 
-/// A browser, or `None` with a message. The default tier does without: a browser takes more processor time
-/// than all else that the command's tests do.
+/// A browser, or `None` with a message.
+///
+/// The default tier omits it: a browser takes more processor time than all other tests of the
+/// command.
 fn browser() -> Option<PathBuf> {
     if !overact_tier::is_full() {
         println!("skipped: the full tier looks at the report in a browser");
@@ -114,8 +116,9 @@ fn browse(browser: &Path, bench: &Bench, file: &str, tasks: &[String]) -> Output
         .expect("the browser")
 }
 
-/// The browser's view of a page, at a width and in a colour scheme: what the probe tells. With
-/// `OVERACT_SCREENSHOTS`, the view is kept in that folder.
+/// The browser's view of a page at a width and in a colour scheme, as reported by the probe.
+///
+/// With `OVERACT_SCREENSHOTS`, the view is saved in that folder.
 fn view(browser: &Path, bench: &Bench, page: &str, width: u32, dark: bool) -> Value {
     bench.write("probed.html", &page.replace("</body>", PROBE));
     let frame = format!(
@@ -158,7 +161,7 @@ fn view(browser: &Path, bench: &Bench, page: &str, width: u32, dark: bool) -> Va
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error} in `{text}`"))
 }
 
-/// A bench with the report of a short virtual experiment of the DualV, beside published results.
+/// A bench with the report of a short virtual experiment of the DualV and published results.
 fn reported() -> (Bench, String) {
     let bench = Bench::new();
     let text = fs::read_to_string(robot("dualv.toml")).expect("the description");
@@ -181,8 +184,7 @@ fn reported() -> (Bench, String) {
     (bench, page)
 }
 
-/// Nothing is wider than the page, no table is cut, and texts and lines can be told from what is behind
-/// them.
+/// Nothing is wider than the page, no table is clipped, and texts and lines have contrast.
 fn assert_fits(place: &str, seen: &Value) {
     let overflow = number(&seen["overflow"]);
     assert!(overflow <= 0.0, "{place}: {overflow} px: {}", seen["wide"]);
@@ -253,7 +255,7 @@ fn paper_shows_every_column_and_what_is_closed_on_the_screen() {
     ] {
         assert!(text.contains(title), "`{title}` is not in {text}");
     }
-    // All base parameters, which stand in what is closed on the screen, with both of their intervals.
+    // All base parameters, which are collapsed on the screen, with both of their intervals.
     let document: Value = serde_json::from_str(&bench.read("report.json")).expect("a document");
     let mut estimates = list(&document["estimates"]).iter();
     let base = estimates.find(|one| one["model"] == "actuators" && one["stage"] == "base");
@@ -268,7 +270,7 @@ fn paper_shows_every_column_and_what_is_closed_on_the_screen() {
     }
 }
 
-/// A figure has a size, plots within the page, something drawn in each, and its words.
+/// A figure has a size, non-empty plots within the page, and its words.
 fn assert_figure(place: &str, figure: &Value, words: &[&str], width: f64) {
     assert!(number(&figure["width"]) > 200.0, "{place}");
     assert!(number(&figure["height"]) > 60.0, "{place}");

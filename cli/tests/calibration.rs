@@ -1,4 +1,5 @@
-//! A robot whose encoder is off, from the command line: calibrated once, right ever after.
+//! Calibration from the command line: a robot with an encoder offset is calibrated once and then
+//! correct.
 
 mod common;
 
@@ -7,7 +8,7 @@ use overact_tier::is_full;
 use serde_json::Value;
 use std::fs;
 
-/// What the encoder of leg 3 shows too much, degrees.
+/// Offset of leg 3's encoder, degrees.
 const OFFSET: f64 = 0.2;
 
 /// Logs of the runs of the DualV.
@@ -20,7 +21,7 @@ const LOGS: [&str; 6] = [
     "log_trajectory_2.csv",
 ];
 
-/// A log in which the encoder of leg 3 shows too much.
+/// A log with the offset of leg 3's encoder.
 fn shifted(log: &str) -> String {
     let mut lines = log.lines();
     let header = lines.next().expect("a header");
@@ -41,7 +42,7 @@ fn shifted(log: &str) -> String {
     text
 }
 
-/// What `identify` says of the logs with a description.
+/// Output of `identify` for the logs with a description.
 fn identified(bench: &Bench, description: &str, more: &[&str]) -> Value {
     let [a, b, c, d, e, f] = LOGS;
     let runs = [
@@ -61,7 +62,7 @@ fn identified(bench: &Bench, description: &str, more: &[&str]) -> Value {
     bench.json(&[&runs, more].concat())
 }
 
-/// The checks of the closure that failed.
+/// Number of failed checks of the closure.
 fn open_loops(document: &Value) -> usize {
     let checks = list(&document["checks"]).iter();
     let closure = checks.filter(|check| check["kind"] == "closure");
@@ -128,8 +129,10 @@ fn an_encoder_that_is_off_is_calibrated_once_and_for_all() {
     assert_eq!(cases, 2);
 }
 
-/// Every identification that an option asks for, and the search for exciting runs, end with a result or an error of
-/// the input: all robots of the library in the full tier, those without a platform in every tier.
+/// Every optional identification and the search for exciting runs end with a result or an input
+/// error.
+///
+/// The full tier tests all robots of the library, every tier those without a platform.
 #[test]
 fn no_robot_of_the_library_ends_in_a_defect() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");

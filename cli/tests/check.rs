@@ -1,12 +1,12 @@
-//! `check` finds what simulation and identification would refuse, each at its line and in the words of
-//! the description, and takes chains of many joints.
+//! `check` reports what simulation and identification would reject, with lines and keys, and
+//! accepts long chains.
 
 mod common;
 
 use common::Bench;
 use std::{fmt::Write, time::Instant};
 
-/// A template with changes to its lines; each must have an effect.
+/// A template with changed lines; each change must have an effect.
 fn changed(template: &str, changes: &[(&str, &str)]) -> Bench {
     Bench::with(template, |text| {
         changes.iter().fold(text.to_owned(), |text, (from, to)| {
@@ -16,7 +16,7 @@ fn changed(template: &str, changes: &[(&str, &str)]) -> Bench {
     })
 }
 
-/// The line of a text, counted from 1.
+/// Line number of a text, counted from 1.
 fn line(bench: &Bench, part: &str) -> usize {
     let text = bench.read("my.toml");
     let before = text.split(part).next().expect("a part");
@@ -24,7 +24,7 @@ fn line(bench: &Bench, part: &str) -> usize {
     before.matches('\n').count() + 1
 }
 
-/// `check` and `simulate` must say the same of a description.
+/// `check` and `simulate` must give the same error for a description.
 fn said(bench: &Bench) -> String {
     let said = bench.bad(&["check", "my.toml"]);
     let run = [
@@ -112,7 +112,7 @@ fn chains_of_many_joints_are_checked_in_seconds_up_to_a_stated_limit() {
     bench.write("my.toml", &chain(80));
     let start = Instant::now();
     assert!(bench.good(&["check", "my.toml"]).contains("80 joints"));
-    // It takes less than a second of one core; deriving its model takes many minutes.
+    // This takes less than a second of one core; deriving its model takes many minutes.
     assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
     bench.write("my.toml", &chain(201));
     let said = bench.bad(&["check", "my.toml"]);

@@ -60,7 +60,7 @@ fn check_tells_sizes_or_every_error() {
         text.contains("can't be read") && text.contains("none.toml"),
         "{text}"
     );
-    // Good files are still told of, and the code speaks of the bad one.
+    // Valid files are still reported; the exit code is that of the invalid one.
     let both = bench.run(&["check", &dualv, "two.toml"]);
     assert_eq!(
         (both.code, both.out),
@@ -68,7 +68,7 @@ fn check_tells_sizes_or_every_error() {
     );
 }
 
-/// A second motor in every leg is redundancy, but was it meant?
+/// A second motor in every leg is redundancy that may be unintended.
 #[test]
 fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
     let bench = Bench::with("planar-3rrr", |text| {
@@ -82,7 +82,7 @@ fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
     assert!(checked.err.starts_with(note), "{}", checked.err);
     let document = bench.json(&["check", "my.toml"]);
     let note = document["robots"][0]["note"].as_str().expect("a note");
-    // What it proposes settles it.
+    // Its proposal resolves the note.
     let (_, proposal) = note.split_once("write ").expect("a proposal");
     let (key, _) = proposal.split_once(" in [platform]").expect("a table");
     let text = bench.read("my.toml");
@@ -254,7 +254,7 @@ fn check_function(function: &Value) {
     assert_eq!(function["iterations"], serde_json::json!([]));
 }
 
-/// Forward kinematics is part of what is evaluated from actuators: by iteration, or in closed form.
+/// Forward kinematics is part of functions of the actuators: by iteration, or in closed form.
 fn check_calls(document: &Value) {
     let functions = document["functions"].as_array().expect("functions");
     let named = |name: &str| {

@@ -1,11 +1,11 @@
-//! Standard parameters that a robot can have: written by `identify`, read by `simulate` and `evaluate`.
+//! Physically consistent parameters: written by `identify`, read by `simulate` and `evaluate`.
 
 mod common;
 
 use common::{Bench, number};
 use serde_json::{Value, json};
 
-/// A shortened five-bar, identified.
+/// Identification of a shortened five-bar robot.
 fn bench() -> (Bench, Value) {
     let bench = Bench::with("point-2rr", |text| {
         let short = text.replacen("duration = \"10 s\"", "duration = \"2 s\"", 1);
@@ -37,7 +37,7 @@ fn parameters_go_from_identification_to_control_and_simulation() {
             .any(|symbol| name.starts_with(symbol));
         assert!(!is_positive || number(&one["value"]) > 0.0, "{one}");
     }
-    // The file gives the torques that its numbers give as an input.
+    // The file gives the same torques as its numbers as inputs.
     let pose: Vec<f64> = vec![0.05, 0.3];
     let state = json!({ "pose": pose, "twist": [0.1, 0.2], "acceleration": [1.0, -2.0] });
     bench.write("states.json", &json!([state]).to_string());
@@ -51,7 +51,7 @@ fn parameters_go_from_identification_to_control_and_simulation() {
     explicit["parameters"] = json!(values);
     bench.write("explicit.json", &json!([explicit]).to_string());
     assert_eq!(read, ask(&["explicit.json"]));
-    // A robot with them moves.
+    // A robot with these parameters can be simulated.
     let run = [
         "simulate",
         "my.toml",
@@ -88,7 +88,8 @@ fn a_file_of_parameters_that_does_not_fit_is_refused() {
     assert!(
         told(&format!("{text}nonsense = 1\n")).contains("the robot has no parameter `nonsense`")
     );
-    // Estimates may be what no body has: a warning at its line, and the command goes on as far as it can.
+    // Inconsistent estimates cause a warning with line, and the command continues as far as
+    // possible.
     let place = text.lines().position(|line| line.starts_with("fv_"));
     let place = place.expect("viscous friction");
     let symbol = |line: &str| line.split('=').next().unwrap_or_default().to_owned();

@@ -1,4 +1,5 @@
-//! What drawings show. That those of `docs/robots` are fresh and sound is seen in `library.rs`.
+//! Contents of drawings; `library.rs` tests that those in `docs/robots` are up to date and
+//! well-formed.
 
 mod common;
 
@@ -6,7 +7,7 @@ use common::{Bench, robot};
 use overact_tier::is_full;
 use std::collections::BTreeMap;
 
-/// What a drawing has to show, counted in the text.
+/// Elements that a drawing must show, counted in the text.
 #[test]
 fn a_drawing_shows_legs_joints_and_platform() {
     let bench = Bench::new();

@@ -1,6 +1,8 @@
-//! The paper's robot from the command line: logs of the virtual experiment, the nine parameters of
-//! Table 2 from them in both cases, Tables 2 to 4 beside the published ones; and what is said where a
-//! trajectory crosses a singularity of the kept actuators.
+//! The paper's robot from the command line.
+//!
+//! Tests cover logs of the virtual experiment, the nine parameters of Table 2 in both projections,
+//! and Tables 2 to 4 with published values. They also cover a trajectory that crosses a singularity
+//! of the kept actuators.
 
 mod common;
 
@@ -9,7 +11,7 @@ use overact_tier::by_tier;
 use serde_json::Value;
 use std::fs;
 
-/// The description with runs of a duration, changed by `edit`.
+/// Description with runs of a duration, changed by `edit`.
 fn described(duration: &str, edit: impl Fn(String) -> String) -> Bench {
     let text = fs::read_to_string(robot("dualv.toml")).expect("the description");
     let text = text.replace("10 s", duration);
@@ -18,13 +20,13 @@ fn described(duration: &str, edit: impl Fn(String) -> String) -> Bench {
     bench
 }
 
-/// The description with half as many samples and as many equations.
+/// Description with half the sampling frequency and as many equations.
 fn sampled_half_as_often(text: &str) -> String {
     text.replace("\"5 kHz\"", "\"2.5 kHz\"")
         .replace("decimation = 50", "decimation = 25")
 }
 
-/// The essential estimates of both cases.
+/// Essential estimates of both projections.
 fn essential(document: &Value) -> Vec<&Value> {
     let estimates = list(&document["estimates"]).iter();
     estimates
@@ -83,7 +85,7 @@ fn logs_give_the_nine_parameters_of_table_2_and_the_papers_tables() {
     for verdict in list(&document["verdicts"]) {
         assert_eq!(verdict["grade"], "use", "{verdict}");
     }
-    // Table 3 has the torques of eq. (26), too, which differ from those of least norm.
+    // Table 3 also contains the torques of eq. (26), which differ from the least-norm ones.
     for one in list(&document["cross_validation"]) {
         for entry in list(&one["table"]) {
             let (least, closure) = (&entry["least_norm_percent"], &entry["closure_percent"]);
@@ -116,8 +118,8 @@ fn assert_tables(text: &str) {
     }
 }
 
-/// Runs through (-0.10, 0.16) m, -6.06 degrees, where rows 1 to 3 of J_p^inv are dependent though the
-/// robot is regular there.
+/// Runs through (-0.10, 0.16) m, -6.06 degrees, where rows 1 to 3 of J_p^inv are dependent though
+/// the robot is regular.
 fn crossing(text: String) -> String {
     let (before, _) = text.split_once("[[experiment.run]]").expect("runs");
     let run = |name: &str, payload: bool, turn: f64| {
@@ -165,8 +167,7 @@ fn a_crossed_singularity_of_the_kept_actuators_is_told() {
         reasons.contains("crosses a singularity of the kept actuators"),
         "{reasons}"
     );
-    // Its error is the smaller one all the same, though its parameters are wrong, and the report says what
-    // to make of that.
+    // Its error is the smaller one although its parameters are wrong; the report must explain that.
     let cases = essential(&document);
     let error = |case: usize| number(&cases[case]["relative_error_percent"]);
     assert!(error(1) < error(0), "{} {}", error(0), error(1));

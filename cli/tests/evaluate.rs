@@ -16,7 +16,7 @@ fn bench() -> Bench {
     bench
 }
 
-/// The values of a function at all states, flat.
+/// Flat values of a function at all states.
 fn values(bench: &Bench, arguments: &[&str]) -> Vec<Vec<f64>> {
     let dualv = robot("dualv.toml");
     let name = arguments[0];
@@ -73,7 +73,7 @@ fn all_sources_of_motion_agree() {
     bench.write("actuators.json", &Value::from(states).to_string());
     let actuators = values(&bench, &["idm_red_platform", "--states", "actuators.json"]);
     assert!(far(&pose, &actuators) < 1e-10);
-    // A function of the pose finds it from the actuators.
+    // A function of the pose computes it from the actuators.
     let jacobian = values(&bench, &["inverse_jacobian", "--states", "actuators.json"]);
     assert!(far(&ask("inverse_jacobian"), &jacobian) < 1e-11);
 }
@@ -261,7 +261,7 @@ fn quaternions_of_any_length_are_one_rotation() {
 #[test]
 fn what_would_be_no_number_is_refused() {
     let bench = Bench::new();
-    // The rods lie in the plane of their joints, where the first angle of a joint is not determined.
+    // The rods are in the plane of their joints, where the first angle of a joint is undetermined.
     bench.write("flat.json", r#"[{ "pose": [0, 0, 0, 1, 0, 0, 0] }]"#);
     let hexapod = robot("hexapod.toml");
     let said = bench.bad(&["evaluate", &hexapod, "joints", "--states", "flat.json"]);

@@ -1,4 +1,4 @@
-//! `overact excite` as its users run it.
+//! `overact excite` on the command line.
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! `factor`, `merge` and `identify --factors`: what logs give, and what is refused.
+//! `factor`, `merge` and `identify --factors`: results equal those from logs, and invalid input is
+//! rejected.
 
 mod common;
 
@@ -6,7 +7,7 @@ use common::{Bench, number, robot};
 use serde_json::Value;
 use std::fs;
 
-/// A five-bar with two short runs as logs.
+/// A five-bar robot with two short runs as logs.
 fn five_bar() -> Bench {
     let bench = Bench::new();
     let text = fs::read_to_string(robot("five_bar.toml")).expect("a robot of the library");
@@ -31,7 +32,7 @@ fn log(seed: &str) -> String {
     format!("log_{seed}.csv")
 }
 
-/// Makes a factor file of each run.
+/// Creates a factor file for each run.
 fn factored(bench: &Bench, more: &[&str]) {
     for seed in ["1", "2"] {
         let (log, file) = (log(seed), format!("{seed}.parquet"));
@@ -50,7 +51,7 @@ fn factored(bench: &Bench, more: &[&str]) {
     }
 }
 
-/// The estimates by least squares of a document: for each name of a number its values, in order.
+/// Least-squares estimates of a document: values with a key, in order.
 fn values(document: &Value, key: &str) -> Vec<f64> {
     let estimates = document["estimates"].as_array().expect("estimates");
     let own = estimates
@@ -87,7 +88,7 @@ fn factor_files_give_what_one_pass_over_the_logs_gives() {
         assert_same(&values(&logs, key), &values(&merged, key), 1e-12);
     }
     assert_eq!(merged["deviations"], "parts");
-    // Of another estimator, but of the same size.
+    // From another estimator, but of the same size.
     let own = values(&logs, "correlated_standard_deviation");
     let parts = values(&merged, "correlated_standard_deviation");
     let ratios = own.iter().zip(&parts).map(|(own, parts)| parts / own);
@@ -226,7 +227,7 @@ fn what_factors_can_not_give_is_refused_and_not_left_out_in_silence() {
     assert!(!bench.path("report.html").exists());
 }
 
-/// Values by the name of the parameter, each with its deviation.
+/// Values and standard deviations by parameter name.
 fn by_name(document: &Value) -> Vec<(String, f64, f64)> {
     let estimates = document["estimates"].as_array().expect("estimates");
     let squares = |one: &&Value| {
@@ -291,7 +292,7 @@ fn runs_with_payload_are_factored_and_tell_the_payload() {
             "{name} {value} and {other} {factored}"
         );
     }
-    // What is called unloaded and is not is another payload's estimate, so the word counts.
+    // A loaded run labelled as unloaded would change the estimate, so the label matters.
     bench.good(&["factor", "my.toml", "log_loaded.csv", "-o", "wrong.parquet"]);
     let wrong = bench.json(&[
         "identify",

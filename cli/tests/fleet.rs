@@ -1,11 +1,11 @@
-//! `simulate --fleet`: logs and factor files of many robots, and what is refused.
+//! `simulate --fleet`: logs and factor files of many robots, and rejected arguments.
 
 mod common;
 
 use common::{Bench, robot};
 use std::fs;
 
-/// A five-bar with short runs at 200 Hz.
+/// A five-bar robot with short runs at 200 Hz.
 fn five_bar() -> Bench {
     let bench = Bench::new();
     let text = fs::read_to_string(robot("five_bar.toml")).expect("a robot of the library");
@@ -47,7 +47,7 @@ fn logs_and_factors_are_of_the_same_runs() {
     };
     assert!(of("R00000") > 20 && of("R00000") == of("R00002"));
 
-    // A log and the factor of the same robot and day have one content.
+    // A log and the factor of the same robot and day are equivalent.
     let log = "logs/serial=R00001/day=2026-03-03/fast.parquet";
     bench.good(&["factor", "my.toml", log, "-o", "own.parquet"]);
     let files = ["factors/day=2026-03-03/robots-00000.parquet", "own.parquet"];

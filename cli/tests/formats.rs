@@ -1,5 +1,6 @@
-//! The same log in every format gives the same estimates through `overact identify`; formats that are not built
-//! in are named with their feature.
+//! The same log in every format gives the same estimates in `overact identify`.
+//!
+//! Formats that are not built in are reported with their feature.
 
 mod common;
 
@@ -7,7 +8,7 @@ use common::{Bench, list, number};
 use serde_json::Value;
 use std::path::Path;
 
-/// A drive that moves as the log's second joint under the torque of its first one.
+/// A drive that moves like the log's second joint under the torque of its first.
 const DRIVE: &str = r#"
 name = "Drive"
 gravity = [0, 0, "-9.81 m/s^2"]
@@ -32,7 +33,7 @@ decimation = 1
 /// Samples of the log, at 100 Hz.
 const COUNT: u32 = 200;
 
-/// Time, position and torque columns as they are called in a file.
+/// Names of the time, position and torque columns in a file.
 type Columns = [&'static str; 3];
 
 const MATRICES: Columns = ["t", "q(:,2)", "tau(:,1)"];
@@ -46,7 +47,7 @@ const ALWAYS: [(&str, Columns); 4] = [
     ("same.parquet", FLAT),
 ];
 
-/// Files that are read with a feature.
+/// Files that require a feature.
 const FEATURES: [(&str, Columns, &str); 7] = [
     ("same.h5", ["run/t", "run/q(:,2)", "run/tau(:,1)"], "hdf5"),
     ("same.h5", ["run.t", "run.q(:,2)", "run.tau(:,1)"], "hdf5"),
@@ -59,13 +60,13 @@ const FEATURES: [(&str, Columns, &str); 7] = [
 
 const STATES: Columns = ["time", "position.elbow", "effort.shoulder"];
 
-/// A file that the usual libraries wrote.
+/// A file written by the usual libraries.
 fn written(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../identification/tests/written");
     folder.join(name).display().to_string()
 }
 
-/// A bench with the drive, whose log has such columns.
+/// A bench with the drive, for a log with these columns.
 fn bench([time, position, torque]: Columns) -> Bench {
     let bench = Bench::new();
     let data = format!(
@@ -75,7 +76,7 @@ fn bench([time, position, torque]: Columns) -> Bench {
     bench
 }
 
-/// The base parameters' names, values and deviations.
+/// Names, values and standard deviations of the base parameters.
 fn estimates(document: &Value) -> Vec<(String, [f64; 2])> {
     let base = list(&document["estimates"]);
     let base = base.iter().find(|one| one["stage"] == "base");
@@ -104,7 +105,7 @@ fn identified(log: &str, columns: Columns) -> Vec<(String, [f64; 2])> {
     estimates(&bench(columns).json(&["identify", "drive.toml", "--data", log]))
 }
 
-/// The files that this build reads.
+/// Files that this build reads.
 fn readable() -> impl Iterator<Item = (&'static str, Columns)> {
     let with = FEATURES
         .into_iter()

@@ -1,4 +1,4 @@
-//! `generate --lang c` and `generate --functions`: what is written, what is refused, and that nothing is lost.
+//! `generate --lang c` and `generate --functions`: output, rejected arguments, and no lost files.
 
 mod common;
 
@@ -9,7 +9,7 @@ fn quick<'a>(more: &[&'a str]) -> Vec<&'a str> {
     [&["generate", "my.toml", "--effort", "none"], more].concat()
 }
 
-/// A bench with a short serial robot that is called `name`.
+/// A bench with a short serial robot named `name`.
 fn bench(name: &str) -> Bench {
     Bench::with("serial-2r", |text| {
         let (first, rest) = text.split_once("\nname = ").expect("a name");
@@ -18,7 +18,7 @@ fn bench(name: &str) -> Bench {
     })
 }
 
-/// Compiles `NAME.c` with every warning as an error, where there is a compiler.
+/// Compiles `NAME.c` with warnings as errors, if there is a compiler.
 fn compiles(folder: &Path, name: &str) {
     for compiler in ["gcc", "clang"] {
         let words = [
@@ -80,7 +80,7 @@ fn c_is_written_compared_and_compiles() {
     assert_eq!(document["robots"][0]["files"][0]["source"], header);
 }
 
-/// A robot, legs, joints and constants that are called as what C has.
+/// Robot, legs, joints and constants with names of C's keywords and functions.
 #[test]
 fn names_that_c_has_are_no_names_of_values() {
     let text = r#"
@@ -152,7 +152,7 @@ fn c_never_replaces_what_it_reads_and_needs_a_folder() {
     bench.write("file", "");
     let said = bench.bad(&quick(&["--lang", "c", "-o", "file"]));
     assert!(said.contains("file"), "{said}");
-    // Two robots whose names differ in capitals alone have one prefix.
+    // Two robots whose names differ in case only have the same prefix.
     let other = text.replace("name = \"Arm\"", "name = \"ARm\"");
     bench.write("other.toml", &other);
     let both = [
@@ -264,7 +264,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
         "standard",
     ]));
     assert!(said.contains("ask for `bias`"), "{said}");
-    // Options that make no sense are errors of usage.
+    // Meaningless options are usage errors.
     for (options, words) in [
         (
             &["--lang", "c", "--crate", "my::facade", "-o", "c"][..],
@@ -316,7 +316,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     assert!(said.contains("leave out `columns`"), "{said}");
 }
 
-/// The programs of documents compile and say what they shall.
+/// Programs in the documents compile and print the shown output.
 #[test]
 fn the_programs_of_the_documents_run() {
     let shown = |text: &str| {
@@ -341,7 +341,7 @@ fn the_programs_of_the_documents_run() {
     }
 }
 
-/// What a program in C says that uses the robot of a description; nothing where there is no compiler.
+/// Output of a C program that uses a robot; `None` without a compiler.
 fn compiled_and_run(name: &str, program: &str) -> Option<String> {
     let bench = Bench::new();
     let file = robot(&format!("{name}.toml"));
@@ -363,7 +363,7 @@ fn compiled_and_run(name: &str, program: &str) -> Option<String> {
     Some(String::from_utf8_lossy(&said.stdout).into_owned())
 }
 
-/// The example of a C++ controller generates, builds and passes its own check.
+/// The C++ controller example generates, builds and passes its own check.
 #[test]
 fn the_example_of_a_controller_builds_and_passes() {
     let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok();

@@ -65,7 +65,7 @@ fn simulated_logs_give_what_the_virtual_experiment_gives() {
     let value =
         |document: &Value, i: usize| number(&document["estimates"][0]["parameters"][i]["value"]);
     for i in 0..13 {
-        // The log's sampling frequency is that of its times, which are rounded.
+        // The sampling frequency of a log follows from its rounded times.
         let (a, b) = (value(&measured, i), value(&made, i));
         assert!((a - b).abs() <= 1e-9 * b.abs(), "{a} {b}");
     }
@@ -98,7 +98,7 @@ fn the_document_has_its_keys() {
     let all = |model| ["base", "recommended", "essential"].map(|stage| (model, stage));
     let weighted = [all("platform"), all("actuators")].concat();
     assert_eq!(models[..6], weighted);
-    // Ordinary least squares stand behind the weighted ones.
+    // Ordinary least squares follow the weighted ones.
     assert_eq!(models[6..], [("platform", "base"), ("actuators", "base")]);
     for (place, one) in estimates.iter().enumerate() {
         let is_weighted = place < 6;
@@ -260,7 +260,7 @@ fn bad_experiments_are_told_of() {
     );
 }
 
-/// In the full tier. Either tier has the same digits from the library, and the same log from a robot.
+/// Full tier only; every tier tests the same digits through the library, and logs of a robot.
 #[test]
 fn emps_has_the_published_digits() {
     if !is_full() {
@@ -283,7 +283,8 @@ fn emps_has_the_published_digits() {
         &pulses,
     ];
     let document = bench.json(&arguments);
-    // Base parameters only, by least squares and by instruments from the simulated robot.
+    // Base parameters only, by least squares and by instrumental variables from the simulated
+    // robot.
     let estimates = document["estimates"].as_array().expect("a list");
     let how: Vec<&Value> = estimates.iter().map(|one| &one["estimator"]).collect();
     assert_eq!(how, ["least-squares", "instrumental-variables"]);

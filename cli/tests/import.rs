@@ -1,4 +1,4 @@
-//! What `overact import` writes passes its check, with values that no body has, too.
+//! The output of `overact import` passes `check`, also with inconsistent inertias.
 
 mod common;
 
@@ -11,7 +11,7 @@ fn model(name: &str) -> String {
     fs::read_to_string(folder.join(name)).expect("a model")
 }
 
-/// The description of a file.
+/// Description of an imported file.
 fn imported(name: &str, text: &str, options: &[&str]) -> (Bench, String) {
     let bench = Bench::new();
     bench.write(name, text);
@@ -23,8 +23,8 @@ fn imported(name: &str, text: &str, options: &[&str]) -> (Bench, String) {
 
 #[test]
 fn moments_that_no_body_has_are_no_prior() {
-    // A rod of 2 kg whose centre is 0.15 m from the frame's origin has more than 0.02 kg m² about it, a crank of 1 kg
-    // at 0.1 m more than 0.003 kg m².
+    // A rod of 2 kg with its centre 0.15 m from the frame's origin has more than 0.02 kg m² about
+    // it, a crank of 1 kg at 0.1 m more than 0.003 kg m².
     let lengths = ["--value", "L1=0.2,D3=0.5,L2=0.52,L3=0.25"];
     let table = model("arm.par");
     let (_, text) = imported("arm.par", &table, &lengths);
@@ -37,7 +37,7 @@ fn moments_that_no_body_has_are_no_prior() {
     assert!(robot.contains("xx_j3_link3 = 0.01"), "{text}");
     assert!(!prior.contains("xx_j3_link3"), "{text}");
     assert!(prior.contains("m_j3_link3 = 2.0"), "{text}");
-    // With moments that it can have they are a prior.
+    // Consistent moments become a prior.
     let (_, text) = imported(
         "arm.par",
         &table.replace("MX = {0.1,MX2,0.3}", "MX = {0.05,MX2,0.1}"),
@@ -69,7 +69,8 @@ fn masses_in_a_point_and_plates_are_no_prior() {
     assert!(prior.contains("xx_yaw"), "{text}");
 }
 
-/// A head on six arms with a rod each, MJCF: the head hangs on the first rod, and the other rods are tied to it.
+/// A head on six arms with a rod each in MJCF: the head is carried by the first rod, and the other
+/// rods are tied to it.
 fn head_on_rods() -> String {
     let places: Vec<[[f64; 3]; 3]> = (0..6_u8)
         .map(|leg| {
@@ -117,8 +118,9 @@ fn head_on_rods() -> String {
     )
 }
 
-/// The skeleton goes through a rod, which spins in the file and does not in the description: the motion that was
-/// found to keep the limits has to be the description's.
+/// The skeleton contains a rod, which spins in the file and not in the description.
+///
+/// Joint limits must hold for the description's motion.
 #[test]
 fn runs_of_a_head_on_rods_keep_the_limits_of_its_motors() {
     let (bench, text) = imported("head.xml", &head_on_rods(), &[]);
@@ -126,7 +128,7 @@ fn runs_of_a_head_on_rods_keep_the_limits_of_its_motors() {
         text.contains("\"neck_3\""),
         "the head is in the skeleton: {text}"
     );
-    // A period or more of each run.
+    // At least one period of each run.
     let duration = text.lines().find(|line| line.starts_with("duration = "));
     let short = text.replace(duration.expect("a duration"), "duration = \"4 s\"");
     bench.write("short.toml", &short);
@@ -150,7 +152,8 @@ fn runs_of_a_head_on_rods_keep_the_limits_of_its_motors() {
     }
 }
 
-/// The torques of an imported robot at states, by the inputs of its inverse dynamics; the masses are the file's.
+/// Torques of an imported robot at states, by the inputs of its inverse dynamics; masses are the
+/// file's.
 fn torques(name: &str, text: &str, options: &[&str], inputs: [&str; 3]) -> Vec<f64> {
     let (bench, toml) = imported(name, text, options);
     let (_, values) = toml.split_once("[experiment.parameters]").expect("values");
@@ -174,7 +177,7 @@ fn torques(name: &str, text: &str, options: &[&str], inputs: [&str; 3]) -> Vec<f
         let own = ["evaluate", "my.toml", function, "--states", "states.json"];
         bench.json(&[&own[..], more].concat())
     };
-    // What the file says nothing of is zero.
+    // Parameters that the file does not give are zero.
     let document = asked("idm_red_platform", &[]);
     let names = document["parameters"].as_array().expect("names").iter();
     let names = names.map(|name| name.as_str().expect("a name"));
@@ -217,14 +220,14 @@ fn an_arm_of_sdformat_takes_the_torques_of_that_of_urdf() {
     let urdf = torques("arm.urdf", &model("arm.urdf"), &[], inputs);
     let sdf = model("arm.sdf");
     are_same(&urdf, &torques("arm.sdf", &sdf, &[], inputs));
-    // A slide's axis may stand anywhere: other frames, the same robot.
+    // A slide's axis may be anywhere: other frames, the same robot.
     let slide = "<joint name=\"reach\" type=\"prismatic\">";
     assert!(sdf.contains(slide));
     let elsewhere = sdf.replace(slide, &format!("{slide}<pose relative_to=\"__model__\"/>"));
     are_same(&urdf, &torques("arm.sdf", &elsewhere, &[], inputs));
 }
 
-/// The five-bar of `five_bar.sdf`, cut at its tip.
+/// The five-bar robot of `five_bar.sdf`, cut at its tip.
 fn cut_five_bar() -> String {
     let link = |name: &str, mass: f64, [xx, yy]: [f64; 2]| {
         format!(
@@ -268,8 +271,10 @@ fn a_loop_of_joints_takes_the_torques_of_one_that_is_cut() {
     are_same(&urdf, &sdf);
 }
 
-/// A loop in space whose joints a rule finds for the lengths of the file: for lengths that are a little other, which
-/// the columns of errors in lengths are told from, Newton's method has to.
+/// A spatial loop with closed-form joints for the lengths of the file.
+///
+/// For slightly changed lengths, from which the columns of length errors are computed, Newton's
+/// method is needed.
 #[test]
 fn an_imported_loop_in_space_is_identified() {
     let names = ["5bar_linkage_iso6d", "5bar_linkage_iso3d"];
@@ -313,7 +318,7 @@ fn a_description_that_check_refuses_is_not_written() {
     assert_eq!(bench.files(), ["long.urdf"]);
 }
 
-/// A hinge of MJCF with attributes that the import does not use.
+/// An MJCF hinge with attributes that import does not use.
 const COMPENSATED: &str = "<mujoco model='arm'><compiler angle='radian'/><option timestep='0.001' density='1'/>\n\
     <worldbody><body name='a' gravcomp='1'><joint name='j' axis='0 1 0'/>\n\
     <inertial pos='0.1 0 0' mass='1' diaginertia='0.01 0.02 0.02'/><strange/><strange/></body></worldbody>\n\

@@ -1,7 +1,7 @@
-//! Every command on every robot of `robots/`, found by listing the folder.
+//! Every command on every robot of `robots/`.
 //!
-//! Values are compared with what is known without the generator: powers of friction, the linearity of
-//! the model in the accelerations, and the true parameters of the virtual experiments.
+//! Values are compared with generator-independent facts: power of friction, linearity in the
+//! accelerations, and true parameters of the virtual experiments.
 
 mod common;
 
@@ -77,7 +77,7 @@ fn drawing_of(name: &str) -> PathBuf {
     drawings().join(format!("{name}.svg"))
 }
 
-/// Base parameters are some of the standard ones, and regroup only such.
+/// Base parameters are standard parameters, and regroup only such.
 fn assert_regroupings(name: &str, document: &Value) {
     let parameters = names(&document["parameters"]);
     let base = list(&document["base_parameters"]);
@@ -102,8 +102,7 @@ fn assert_regroupings(name: &str, document: &Value) {
     }
 }
 
-/// The drawing is the one of `docs/robots`, and sound: every element is closed in its order, and
-/// numbers are numbers.
+/// The drawing equals that in `docs/robots` and is well-formed.
 fn assert_drawing(name: &str, svg: &str) {
     let kept = fs::read_to_string(drawing_of(name)).unwrap_or_default();
     assert!(
@@ -131,8 +130,8 @@ fn assert_drawing(name: &str, svg: &str) {
     assert!(open.is_empty(), "{name}: {open:?}");
 }
 
-/// The identification model at the home pose is linear in the accelerations, and the power that
-/// friction takes is that of the joint rates.
+/// At home, the identification model is linear in the accelerations, and friction has the right
+/// power.
 fn assert_evaluation(name: &str, bench: &Bench, inspected: &Value) {
     let home: Vec<f64> = list(&inspected["home_pose"]).iter().map(number).collect();
     let dof = list(&inspected["coordinates"]).len();
@@ -166,7 +165,7 @@ fn assert_evaluation(name: &str, bench: &Bench, inspected: &Value) {
     let values = |result: &Value| -> Vec<f64> {
         let values = list(&result["idm_red_platform"]);
         assert_eq!(values.len(), dof * parameters.len(), "{name}");
-        // A number that is not finite would stand as null.
+        // A number that is not finite would be null.
         values.iter().map(number).collect()
     };
     let models: Vec<Vec<f64>> = list(&document["results"]).iter().map(values).collect();
@@ -182,8 +181,8 @@ fn assert_evaluation(name: &str, bench: &Bench, inspected: &Value) {
     assert_friction(name, &parameters, none, &rates);
 }
 
-/// Per unit of its parameter, viscous friction takes the power of the joint rate's square, Coulomb
-/// friction that of its magnitude, an offset that of the rate itself.
+/// Power of friction per unit parameter: rate squared (viscous), magnitude of the rate (Coulomb),
+/// rate (offset).
 fn assert_friction(name: &str, parameters: &[&str], model: &[f64], rates: &[f64]) {
     let power = |parameter: &str| -> Option<f64> {
         let column = parameters.iter().position(|p| *p == parameter)?;
@@ -207,7 +206,7 @@ fn assert_friction(name: &str, parameters: &[&str], model: &[f64], rates: &[f64]
     assert!(moving > 0, "{name}: no joint moves");
 }
 
-/// Several modules at once; that they are those of `generated/` is seen in `overact-tests`.
+/// Several modules at once; `overact-tests` compares them with `generated/`.
 #[test]
 fn modules_are_generated() {
     let bench = Bench::new();
@@ -240,8 +239,9 @@ fn modules_are_generated() {
     }
 }
 
-/// The description with runs of `duration`, and base parameters only: of what is elsewhere seen in
-/// small robots, the elimination takes longest in large ones.
+/// Description with runs of `duration`, and base parameters only.
+///
+/// Elimination is slow for large robots and tested with small ones.
 fn shortened(name: &str, duration: &str) -> String {
     let text = fs::read_to_string(file(name)).expect("a robot");
     let line = |line: &str| match line.split(" = ").next() {
@@ -253,12 +253,15 @@ fn shortened(name: &str, duration: &str) -> String {
     text.lines().map(line).collect()
 }
 
-/// Small robots in the default tier: derivations and runs are what takes time here, and the text of modules.
-/// A tree of one joint and one of six, a closed loop, a robot with a guided slider and a redundant one.
+/// Small robots of the default tier, for which derivation, runs and modules are fast.
+///
+/// They are a tree of one joint and one of six, a closed loop, a robot with a guided slider and a
+/// redundant one.
 const SMALL: [&str; 5] = ["emps", "five_bar", "rx90", "scotch_yoke", "three_leg_point"];
 
-/// Those and every second robot in the full tier, all at night. That all are generated and compiled is seen in
-/// `overact-tests`, in any tier.
+/// Those and every second robot in the full tier, all in the nightly tier.
+///
+/// `overact-tests` generates and compiles all of them in any tier.
 fn robots_of_the_tier() -> Vec<String> {
     let of_many = of_many(robots()).into_iter();
     let others = of_many.filter(|name| !SMALL.contains(&name.as_str()));
@@ -308,15 +311,15 @@ fn numbers(line: &str) -> Vec<f64> {
     cells.collect::<Result<_, _>>().expect("numbers")
 }
 
-/// The true base parameters come back within three of the deviations that allow for correlated
-/// residuals: at least 95 % of them, of each robot and model.
+/// At least 95 % of the base parameters are within three honest standard deviations, for each robot
+/// and model.
 #[test]
 fn all_are_identified() {
     let bench = Bench::new();
     let (mut all, mut within) = (0, 0);
     for name in robots_of_the_tier() {
         let text = shortened(&name, by_tier(["1 s", "2 s"]));
-        // What published work did with a measured log does not suit a short virtual run.
+        // Settings of published work for a measured log do not suit a short virtual run.
         if ["standstill_velocity", "filter_torques", "filter_equations"]
             .iter()
             .any(|key| text.contains(key))
@@ -353,15 +356,16 @@ fn all_are_identified() {
     assert!(20 * within >= 19 * all, "{within} of {all}");
 }
 
-/// Parameters that a robot can have, as `identify --parameters` writes them, are read by `evaluate`, whose torques
-/// are those of the numbers themselves, by `simulate` and by `generate`.
+/// `evaluate`, `simulate` and `generate` read the consistent parameters of `identify --parameters`.
+///
+/// `evaluate` gives the same torques as for these numbers as inputs.
 #[test]
 fn all_read_their_own_parameters() {
     let bench = Bench::new();
     let all = robots_of_the_tier();
-    // Every fourth one of all: this is most of the time that the library takes here.
+    // Every fourth robot, because this takes most of the library's test time.
     for name in all.into_iter().step_by(4).take(by_tier([1, usize::MAX])) {
-        // Less than most of a period is too little for six joints that stand still in turn.
+        // Most of a period is necessary for six joints that rest in turn.
         bench.write("my.toml", &shortened(&name, "4 s"));
         let identified = bench.json(&["identify", "my.toml", "--parameters", "parameters.toml"]);
         let consistent = &identified["consistent"][0];
@@ -372,7 +376,7 @@ fn all_read_their_own_parameters() {
         let found = list(&consistent["parameters"]);
         let value = |wanted: &&str| -> f64 {
             let own = found.iter().find(|one| one["name"] == **wanted);
-            // A payload that no run carries is none.
+            // A payload that no run carries does not exist.
             if own.is_none() && wanted.ends_with("_payload") {
                 return 0.0;
             }
@@ -398,7 +402,7 @@ fn all_read_their_own_parameters() {
         let read = ask(&["states.json", "--parameters", "parameters.toml"]);
         let torques = list(&read[0]["inverse_dynamics"]);
         assert!(torques.iter().any(|torque| number(torque) != 0.0), "{name}");
-        // Texts of numbers are read by two readers, which may round the last digit otherwise.
+        // Two parsers may round the last digit differently.
         let told = ask(&["explicit.json"]);
         let told = list(&told[0]["inverse_dynamics"]).iter().map(number);
         let largest = told
@@ -423,8 +427,10 @@ fn all_read_their_own_parameters() {
     }
 }
 
-/// How many parameters lie within three honest deviations of the truth. Some are determined well, and
-/// those are near it in any case, so that wide deviations can't make up for bad values.
+/// Number of parameters within three honest standard deviations of the truth.
+///
+/// Some must be well determined and near the truth, so that wide intervals cannot compensate for
+/// bad values.
 fn honest(name: &str, parameters: &[Value]) -> usize {
     let (mut within, mut determined) = (0, 0);
     for parameter in parameters {

@@ -1,4 +1,5 @@
-//! How the command line behaves towards shells, people and other programs: streams, signals, quiet, codes.
+//! Behaviour of the command line towards shells and programs: streams, signals, quiet mode, exit
+//! codes.
 
 mod common;
 
@@ -24,7 +25,7 @@ fn piped(bench: &Bench, arguments: &[&str], input: &[u8]) -> Output {
         .spawn()
         .expect("the program");
     let mut stdin = child.stdin.take().expect("a pipe");
-    // A program that refuses its arguments reads nothing.
+    // A program that rejects its arguments does not read its input.
     let _ = stdin.write_all(input);
     drop(stdin);
     child.wait_with_output().expect("its output")
@@ -57,7 +58,7 @@ fn a_dash_is_standard_input_and_output() {
     let template = bench.good(&["new", "serial-2r", "-"]);
     bench.good(&["new", "serial-2r", "my.toml"]);
     assert_eq!(template, bench.read("my.toml"));
-    // A log by a pipe gives the estimates of the same log in a file.
+    // A piped log gives the estimates of the same log in a file.
     let run = ["simulate", "my.toml", "--run", "identification", "-o"];
     let to_stdout = bench.good(&[&run[..], &["-"]].concat());
     bench.good(&[&run[..], &["log.csv"]].concat());
@@ -125,7 +126,7 @@ fn every_error_has_a_code_that_is_explained() {
         "{}",
         unknown.err
     );
-    // Of the arguments, too, for people and for programs; nothing goes to standard output.
+    // Also for argument errors, as text and JSON; nothing goes to standard output.
     for wrong in [
         &["frobnicate"][..],
         &["check"],
@@ -189,7 +190,7 @@ fn shells_and_man_are_served() {
     assert!(none.contains("error[OA602]"), "{none}");
 }
 
-/// A pipe that nobody reads keeps the command waiting between its temporary files and their names.
+/// An unread pipe keeps the command waiting between temporary files and their final names.
 #[cfg(unix)]
 #[test]
 fn a_signal_leaves_no_temporary_file() {

@@ -1,5 +1,6 @@
-//! No command replaces what it reads, writes two results to one file or replaces a read-only file;
-//! it says so before any work, and everything stays as it was.
+//! No command overwrites its input, writes two results to one file or replaces a read-only file.
+//!
+//! It reports this before any work, and all files stay unchanged.
 
 mod common;
 
@@ -16,7 +17,7 @@ fn bench() -> Bench {
     bench
 }
 
-/// The command must be refused as arguments that do not go together, and touch nothing.
+/// The command must be rejected as incompatible arguments and change nothing.
 fn refused(bench: &Bench, arguments: &[&str], words: &str) {
     let contents = || -> Vec<(String, Vec<u8>)> {
         let read = |name: String| {

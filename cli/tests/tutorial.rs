@@ -1,9 +1,8 @@
-//! The tutorials, and the page of answers that are not to be trusted: blocks make the robot, commands print what
-//! is shown.
+//! Runs the tutorials and the page on rejected results, and compares the output of commands.
 //!
-//! Blocks of TOML are appended to `rrr.toml` in their order; a block of XML is `ankle.xml`. The commands of a console block run in a
-//! shell in the same folder; a line `…` stands for any lines, and numbers may differ in their last
-//! digits from one machine to another.
+//! TOML blocks are appended to `rrr.toml` in order; an XML block is `ankle.xml`. Commands of a
+//! console block run in a shell in the same folder. A line `…` matches any lines, and numbers may
+//! differ in their last digits between machines.
 #![cfg(unix)]
 
 mod common;
@@ -43,7 +42,7 @@ fn blocks(text: &str) -> Vec<Block<'_>> {
     blocks
 }
 
-/// What a shell prints for a command, errors included.
+/// Output of a command in a shell, including errors.
 fn run(bench: &Bench, command: &str) -> String {
     let program = Path::new(env!("CARGO_BIN_EXE_overact"));
     let folder = program.parent().expect("a folder");
@@ -57,7 +56,7 @@ fn run(bench: &Bench, command: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// Whether a printed line is the shown one: word by word, numbers to two digits.
+/// Whether a printed line equals the shown one: word by word, numbers to two digits.
 fn is_same(shown: &str, printed: &str) -> bool {
     fn words(line: &str) -> Vec<&str> {
         let words = line.split(|c: char| c.is_whitespace() || c == ',');
@@ -71,7 +70,7 @@ fn is_same(shown: &str, printed: &str) -> bool {
     shown.len() == printed.len() && shown.iter().zip(&printed).all(near)
 }
 
-/// Whether the shown lines are the printed ones, where `…` stands for any.
+/// Whether the printed lines match the shown ones, in which `…` matches any lines.
 fn matches(shown: &[&str], printed: &[&str]) -> bool {
     match (shown, printed) {
         ([], rest) => rest.is_empty(),
@@ -85,7 +84,7 @@ fn matches(shown: &[&str], printed: &[&str]) -> bool {
     }
 }
 
-/// Does what the blocks of a document say; returns how many commands there were.
+/// Runs the blocks of a document; returns the number of commands.
 fn follow(bench: &Bench, text: &str) -> usize {
     let mut robot = String::new();
     let mut commands = 0;
@@ -124,7 +123,7 @@ fn answers_that_are_not_to_be_trusted_are_those_that_are_shown() {
 
 #[test]
 fn the_tutorial_does_what_it_says() {
-    // Its robot, like the one that comes with the tool, is derived and identified several times over.
+    // Its robot is derived and identified several times.
     if !overact_tier::is_full() {
         return;
     }
@@ -137,7 +136,7 @@ fn the_tutorial_does_what_it_says() {
         drawing == bench.read("rrr.svg"),
         "renew docs/tutorial.svg with what the tutorial's `inspect` draws"
     );
-    // Beyond what is shown: the whole robot generates.
+    // Not shown: the whole robot generates.
     bench.good(&["generate", "--effort", "none", "rrr.toml", "-o", "all.rs"]);
     assert!(bench.read("all.rs").contains("pub struct Rrr"));
 }

@@ -1,5 +1,5 @@
-// The solver's torques obey the equations of motion: projected on the platform they are M a + h, eq. (30), for
-// masses, bias and Jacobian that come from functions of their own. A pose out of reach is told and changes nothing.
+// Checks that the solver's torques obey the equations of motion: projected on the platform they are M a + h, eq. (30).
+// Mass matrix, bias and Jacobian come from separate functions. An unreachable pose must be reported and change nothing.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -29,7 +29,7 @@ int main() {
   require(solver.configure(parameters, home), "the solver takes the parameters");
   require(!solver.configure({1.0}, home), "one parameter is too few");
 
-  // The robot stands a little off home.
+  // The robot is near home.
   const double pose[DUALV_POSE] = {home[0] + 0.02, home[1] - 0.01, home[2] + 0.1};
   double actuators[DUALV_ACTUATORS];
   require(dualv_actuator_positions(pose, actuators) == DUALV_OK, "the pose is within reach");

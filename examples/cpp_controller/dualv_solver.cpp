@@ -34,7 +34,7 @@ bool DualvSolver::update(const State &state, std::vector<double> &torques) {
   if (!fits) {
     return false;
   }
-  // The pose of the sample before is near this one; where there is an error it stays.
+  // The previous pose is near this one; after an error it is kept.
   std::array<double, DUALV_POSE> pose{};
   error_ = dualv_pose_from_actuators(state.actuators.data(), pose_.data(), pose.data());
   if (error_ == DUALV_OK) {

@@ -1,4 +1,4 @@
-// The DualV behind the interface: a thin cover of the generated C.
+// The DualV behind the interface: a thin wrapper of the generated C.
 #pragma once
 
 #include <array>

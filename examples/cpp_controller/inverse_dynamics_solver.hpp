@@ -1,5 +1,5 @@
-// The interface of a plugin for inverse dynamics, as controllers in ROS 2 load it (pluginlib): nothing of it is
-// known of the robot, and `update` allocates nothing, so that it may run in a real-time loop.
+// Interface of an inverse dynamics plugin, as loaded by ROS 2 controllers (pluginlib). It is independent of the
+// robot, and `update` does not allocate, so that it can run in a real-time loop.
 #pragma once
 
 #include <cstddef>
@@ -8,19 +8,19 @@
 
 namespace inverse_dynamics {
 
-// What a robot measures and what is wanted of it.
+// Measured motion and desired acceleration of a robot.
 struct State {
   std::vector<double> actuators;     // measured positions (m, rad)
   std::vector<double> velocities;    // measured velocities (m/s, rad/s)
-  std::vector<double> acceleration;  // wanted acceleration of the platform (m/s2, rad/s2)
+  std::vector<double> acceleration;  // desired acceleration of the platform (m/s2, rad/s2)
 };
 
 class Solver {
  public:
   virtual ~Solver() = default;
 
-  // Takes the values of the parameters, in the order of `parameter_names`, and a pose near the first one. False
-  // if they are not as many as there are names.
+  // Sets the parameter values, in the order of `parameter_names`, and a pose near the first one. False if their
+  // number is wrong.
   virtual bool configure(const std::vector<double> &parameters, const std::vector<double> &pose) = 0;
 
   virtual std::size_t actuator_count() const = 0;
@@ -28,8 +28,8 @@ class Solver {
   virtual std::vector<std::string> actuator_names() const = 0;
   virtual std::vector<std::string> parameter_names() const = 0;
 
-  // Torques of least norm for an acceleration, from what the actuators measure. False where the robot has no
-  // value here (`message` says why); `torques` is as it was then.
+  // Least-norm torques for an acceleration, from the measured actuator motion. False if there is no value here
+  // (`message` gives the reason); `torques` is then unchanged.
   virtual bool update(const State &state, std::vector<double> &torques) = 0;
 
   // Mass matrix of the platform's coordinates, row by row, at the pose of the last update.

@@ -1,5 +1,7 @@
-//! Which files of a folder can be read, and which runs are there twice. A query over a folder fails at its first bad
-//! file, and counts what is there twice as often as it is there; so both are found before it starts.
+//! Catalogue of the readable files of a folder and of duplicate runs.
+//!
+//! A query over a folder fails at its first bad file and counts duplicates twice. Both are
+//! therefore detected before it starts.
 
 use arrow::array::AsArray;
 use arrow::datatypes::{DataType, Int64Type};
@@ -10,44 +12,46 @@ use datafusion::{
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The version of factor files that is read.
+/// Supported version of factor files.
 const VERSION: i64 = 2;
 
-/// Something that a query does not see.
+/// A file or runs that queries ignore.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
-    /// The file.
+    /// File.
     pub file: String,
-    /// Runs of it that are left out; all where there is none.
+    /// Ignored runs of the file; empty for all.
     pub runs: Vec<String>,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
-/// The files of a folder.
+/// Catalogue of a folder.
 #[derive(Debug, Clone, Default)]
 pub struct Catalog {
-    /// Those that are read, in order.
+    /// Files to read, in order.
     pub files: Vec<String>,
-    /// Of some of them the runs, by the hash of their numbers, that an earlier file has.
+    /// For some files: hashes of runs that an earlier file already has.
     pub copies: BTreeMap<String, Vec<String>>,
-    /// What is not seen.
+    /// Ignored files and runs.
     pub left_out: Vec<LeftOut>,
 }
 
 impl Catalog {
-    /// That of factor files. With `whole` every page of each is read, so that a file that is damaged anywhere is
-    /// found; else what names its runs alone.
+    /// Catalogue of factor files.
+    ///
+    /// With `whole`, every page of each file is read, which detects any damage. Otherwise, only the
+    /// columns that identify runs are read.
     ///
     /// # Errors
-    /// What is no fault of a file.
+    /// Errors that are not those of a file.
     pub async fn of_factors(
         context: &SessionContext,
         files: &[String],
         whole: bool,
     ) -> Result<Self> {
         let mut own = Self::default();
-        // Of each run the file that has it first.
+        // First file of each run.
         let mut seen: BTreeMap<String, String> = BTreeMap::new();
         for file in files {
             match runs(context, file, whole).await {
@@ -58,10 +62,10 @@ impl Catalog {
         Ok(own)
     }
 
-    /// That of logs: those whose ends can be read. With `whole` every page is.
+    /// Catalogue of logs: those with a readable footer, or with `whole` those with readable pages.
     ///
     /// # Errors
-    /// What is no fault of a file.
+    /// Errors that are not those of a file.
     pub async fn of_logs(context: &SessionContext, files: &[String], whole: bool) -> Result<Self> {
         let mut own = Self::default();
         for file in files {
@@ -123,7 +127,7 @@ impl Catalog {
     }
 }
 
-/// The runs of a factor file, by the hash of their numbers.
+/// Runs of a factor file, by the hash of their numbers.
 async fn runs(
     context: &SessionContext,
     file: &str,

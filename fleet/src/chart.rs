@@ -1,33 +1,34 @@
-//! Control charts: has a parameter of a robot drifted?
+//! Control charts: tests whether a parameter of a robot drifts.
 //!
-//! Each robot has an estimate a day of each parameter. What these scatter by from day to day, with noise, temperature
-//! and everything else, is seen in them, so that no model of it is needed: a line χ = a + b t is fitted to the days so
-//! far, and b is compared with Student's distribution of n - 2 degrees of freedom. A robot without drift, whose days
-//! are independent of each other and normal, is accused at a look of a parameter with the probability that is asked
-//! for, divided by the number of looks and of parameters (Bonferroni): over all of them it is accused with at most the
-//! stated probability.
+//! Each robot has one estimate of each parameter per day. Their scatter from day to day contains
+//! all disturbances, so no noise model is needed. A line χ = a + b t is fitted to the days so far,
+//! and b is tested with Student's t distribution with n − 2 degrees of freedom.
+//!
+//! The false alarm rate is divided by the number of looks and of parameters (Bonferroni). It thus
+//! bounds the probability that a robot without drift raises any alarm, if its days are independent
+//! and normal.
 
 use overact_identification::factors::student_tail;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// An estimate of a day.
+/// Estimate of a robot on a day.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Serial number of the robot.
     pub serial: String,
-    /// Days since the first of all.
+    /// Days since the first day of the fleet.
     pub day: f64,
-    /// The parameters by name.
+    /// Parameters by name.
     pub values: BTreeMap<String, f64>,
 }
 
-/// What is watched.
+/// Settings of the control charts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// The probability that a robot without drift is accused, over all looks and parameters.
+    /// Bound on the probability of any alarm for a robot without drift.
     pub false_alarms: f64,
-    /// The parameters; all if empty.
+    /// Parameters to watch; all if empty.
     pub parameters: Vec<String>,
     /// Days between looks.
     pub every: f64,
@@ -44,7 +45,7 @@ impl Default for Rule {
 }
 
 impl Rule {
-    /// The ends of the days of all looks.
+    /// End of each look, in days.
     #[must_use]
     pub fn looks(&self, points: &[Point]) -> Vec<f64> {
         let last = points.iter().map(|own| own.day).fold(0.0, f64::max);
@@ -55,7 +56,7 @@ impl Rule {
     }
 }
 
-/// A parameter of a robot over the days.
+/// Parameter of a robot over the days.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Chart {
     /// Serial number of the robot.
@@ -64,15 +65,15 @@ pub struct Chart {
     pub parameter: String,
     /// Days and values.
     pub days: Vec<(f64, f64)>,
-    /// By how much the fitted line changes over all days, in percent of its mean.
+    /// Change of the fitted line over all days, in percent of its mean.
     pub change_percent: f64,
-    /// The smallest probability of such a slope without drift, of all looks.
+    /// Smallest p-value of the slope over all looks.
     pub probability: f64,
-    /// The end of the days of the look that raised the alarm first.
+    /// End of the first look with an alarm, in days.
     pub alarm: Option<f64>,
 }
 
-/// A line through days: its slope, and the probability of one as steep, or steeper, without drift.
+/// Slope of a line through the days, and its two-sided p-value.
 fn slope(days: &[(f64, f64)]) -> Option<(f64, f64)> {
     let count = days.len() as f64;
     if days.len() < 4 {
@@ -95,7 +96,7 @@ fn slope(days: &[(f64, f64)]) -> Option<(f64, f64)> {
         .then(|| (slope, student_tail(ratio, count - 2.0)))
 }
 
-/// The charts of all robots, those with alarms first, then by how unlikely they are without drift.
+/// Charts of all robots, sorted by alarm and then by p-value.
 #[must_use]
 pub fn charts(points: &[Point], rule: &Rule) -> Vec<Chart> {
     let mut series: BTreeMap<(&str, &str), Vec<(f64, f64)>> = BTreeMap::new();
@@ -151,19 +152,18 @@ fn chart(
     }
 }
 
-/// A parameter of a robot that is not like that of the others.
+/// Parameter of a robot that differs from that of the others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outlier {
     /// Serial number of the robot.
     pub serial: String,
     /// The parameter.
     pub parameter: String,
-    /// Its median over the days.
+    /// Median over the days.
     pub value: f64,
-    /// The median of all robots.
+    /// Median over all robots.
     pub fleet: f64,
-    /// Distance from that in deviations of the fleet, told from quartiles' half distance so that outliers do not
-    /// hide themselves.
+    /// Distance from that in robust standard deviations of the fleet (median absolute deviation).
     pub deviations: f64,
 }
 
@@ -177,10 +177,11 @@ fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// The median absolute deviation of a normal variable, in deviations.
+/// Median absolute deviation of the standard normal distribution.
 const MAD: f64 = 0.674_489_750_196_082;
 
-/// Robots that are further than so many deviations from the median of all, the furthest first.
+/// Robots farther than `beyond` robust standard deviations from the fleet's median, the farthest
+/// first.
 #[must_use]
 pub fn outliers(charts: &[Chart], beyond: f64) -> Vec<Outlier> {
     let mut of: BTreeMap<&str, Vec<(&str, f64)>> = BTreeMap::new();
@@ -216,7 +217,7 @@ mod tests {
     use super::{Point, Rule, charts, outliers};
     use std::collections::BTreeMap;
 
-    /// Robots of which each has a value a day: 1 with a deviation of 2 %, and what `drift` says of robot and day.
+    /// Robots with one value per day: 1 with a standard deviation of 2 %, times a given drift.
     fn fleet(robots: usize, drift: &dyn Fn(usize, usize) -> f64) -> Vec<Point> {
         let mut state = 12345_u64;
         let mut uniform = || {
@@ -253,7 +254,7 @@ mod tests {
             .iter()
             .filter(|own| own.alarm.is_some())
             .count();
-        // At most 100 of 2000 in the mean; looks at the same days are not independent, so fewer.
+        // At most 100 of 2000 on average; looks share days and are dependent, so fewer.
         assert!((30..=125).contains(&accused), "{accused}");
     }
 

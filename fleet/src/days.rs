@@ -1,21 +1,22 @@
-//! Days of robots that are left out because a file of them can't be read, as a condition of a query: the engine does
-//! not open files whose names don't fulfil it.
+//! Excludes days of robots with an unreadable file, as a query condition.
+//!
+//! The engine does not open files whose names violate the condition.
 
 use crate::catalog::LeftOut;
 use datafusion::logical_expr::{Expr, col, lit};
 use std::collections::BTreeSet;
 
-/// What is left of the logs.
+/// Remaining logs.
 pub(crate) struct Days {
-    /// Files that are read.
+    /// Files to read.
     pub(crate) files: Vec<String>,
-    /// Which rows are theirs.
+    /// Condition on their rows.
     pub(crate) filter: Expr,
-    /// Files that could be read, of days that are left out.
+    /// Readable files on excluded days.
     pub(crate) left_out: Vec<LeftOut>,
 }
 
-/// `serial` and `day` of the names of the folders of a file; empty where there are none.
+/// `serial` and `day` from the folder names of a file; empty if absent.
 fn of(file: &str) -> (String, String) {
     let value = |name: &str| {
         let mut folders = file.split('/');
@@ -26,7 +27,7 @@ fn of(file: &str) -> (String, String) {
 }
 
 impl Days {
-    /// All of these files but those of days of which some are not good.
+    /// Excludes all days on which some files are not good.
     pub(crate) fn without(files: &[String], good: &[String]) -> Self {
         let good: BTreeSet<&String> = good.iter().collect();
         let bad: BTreeSet<(String, String)> = { files.iter() }

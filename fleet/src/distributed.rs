@@ -1,5 +1,6 @@
-//! Many machines: a scheduler, executors that know the functions of a fleet, and their client. They are Ballista's own,
-//! with the functions registered in each process, since a plan names functions and does not carry them.
+//! Distributed queries: scheduler, executors and client, based on Ballista.
+//!
+//! A plan names functions without containing them, so every process registers the fleet functions.
 
 use crate::{functions, lost, robots::Robots, store};
 use ballista::prelude::{SessionConfigExt, SessionContextExt};
@@ -19,10 +20,10 @@ use std::{
     sync::Arc,
 };
 
-/// Bytes of a message between processes, at most: a partition of estimates in one piece.
+/// Largest message between processes, bytes: one partition of estimates.
 const LARGEST_MESSAGE: u32 = 256 << 20;
 
-/// Seconds after which an executor that is silent counts as dead, and between its signs of life.
+/// Silence after which an executor counts as lost, and interval of its heartbeats, s.
 const SILENCE_S: u64 = 20;
 const SIGN_OF_LIFE_S: u64 = 5;
 
@@ -30,15 +31,16 @@ fn failed(error: impl std::fmt::Display) -> DataFusionError {
     DataFusionError::Execution(error.to_string())
 }
 
-/// The planner that changes a query while it runs. Where a task can't fetch what a lost executor had, it runs the stage
-/// before again and then has no place for its results: the query never ends. What it saves, in joins of large tables,
-/// is not what a fleet is asked for.
+/// Setting of the adaptive planner, which is disabled.
+///
+/// After a lost executor it reruns the previous stage without a place for its results, and the
+/// query never ends. It would only help joins of large tables.
 const ADAPTIVE_PLANNER: &str = "ballista.planner.adaptive.enabled";
 
-/// The client of a scheduler.
+/// Client of a scheduler.
 ///
 /// # Errors
-/// An address that is none.
+/// An invalid address.
 pub async fn client(url: &str, config: SessionConfig) -> Result<SessionContext> {
     let config = config
         .upgrade_for_ballista()
@@ -52,7 +54,7 @@ pub async fn client(url: &str, config: SessionConfig) -> Result<SessionContext> 
     SessionContext::remote_with_state(url, state).await
 }
 
-/// Where what listens at an address is reached from its own machine: one that listens everywhere listens here, too.
+/// Address of a local server from its own machine; unspecified addresses become localhost.
 fn reached(address: SocketAddr) -> SocketAddr {
     let ip = match address.ip() {
         IpAddr::V4(ip) if ip.is_unspecified() => Ipv4Addr::LOCALHOST.into(),
@@ -65,7 +67,7 @@ fn reached(address: SocketAddr) -> SocketAddr {
 /// Runs a scheduler until it is stopped.
 ///
 /// # Errors
-/// An address that can't be had.
+/// An address that is not available.
 pub async fn scheduler(address: SocketAddr, robots: Robots) -> Result<()> {
     let builder = Arc::new(move |config: SessionConfig| {
         let state = default_session_builder(config)?;
@@ -83,7 +85,7 @@ pub async fn scheduler(address: SocketAddr, robots: Robots) -> Result<()> {
         grpc_server_max_encoding_message_size: LARGEST_MESSAGE,
         executor_timeout_seconds: SILENCE_S,
         expire_dead_executor_interval_seconds: SIGN_OF_LIFE_S,
-        // The first task that can't fetch what an executor had ends the query, `lost`.
+        // The first task that cannot fetch an executor's results ends the query (see `lost`).
         stage_max_failures: 1,
         task_max_failures: 1,
         ..SchedulerConfig::default()
@@ -97,25 +99,25 @@ pub async fn scheduler(address: SocketAddr, robots: Robots) -> Result<()> {
         .map_err(failed)
 }
 
-/// Where an executor is and how much it does at once.
+/// Settings of an executor.
 #[derive(Debug, Clone)]
 pub struct Executor {
-    /// Where it listens for data; for orders it listens at the next port.
+    /// Address for data; the next port is for commands.
     pub address: SocketAddr,
     /// Host and port of the scheduler.
     pub scheduler: (String, u16),
-    /// Tasks at once.
+    /// Number of concurrent tasks.
     pub tasks: usize,
-    /// Where it puts what other executors fetch; a temporary folder if none.
+    /// Folder of intermediate results; a temporary folder if `None`.
     pub folder: Option<PathBuf>,
-    /// Bytes that its tasks may take together; a part of the machine's memory if none.
+    /// Memory limit of all tasks, bytes; a fraction of the machine's memory if `None`.
     pub memory: Option<u64>,
 }
 
 /// Runs an executor until it is stopped.
 ///
 /// # Errors
-/// A scheduler that can't be reached, an address that can't be had.
+/// A scheduler that cannot be reached, or an address that is not available.
 pub async fn executor(own: Executor, robots: &Robots) -> Result<()> {
     let mut registry = BallistaFunctionRegistry::default();
     for function in functions::aggregates(robots) {

@@ -1,10 +1,11 @@
-//! What scheduler and executors tell of themselves, on stderr: the engine has much to say where a query goes wrong,
-//! and without this nobody hears it.
+//! Log messages of scheduler and executors on stderr.
+//!
+//! The engine only explains failed queries in its log.
 
 use log::{LevelFilter, Log, Metadata, Record};
 use std::{io::Write, time::Instant};
 
-/// Packages that are heard beside this one; those below them tell of each frame that they send.
+/// Packages whose messages are printed; their dependencies log every network frame.
 const HEARD: [&str; 3] = ["ballista", "datafusion", "overact"];
 
 struct Stderr {
@@ -22,7 +23,7 @@ impl Log for Stderr {
             let seconds = self.start.elapsed().as_secs_f64();
             let (level, target, text) = (record.level(), record.target(), record.args());
             let text = format!("{seconds:9.3} s {level} {target}: {text}\n");
-            // A closed stderr is no reason to stop.
+            // A closed stderr is ignored.
             let _ = std::io::stderr().write_all(text.as_bytes());
         }
     }
@@ -30,11 +31,11 @@ impl Log for Stderr {
     fn flush(&self) {}
 }
 
-/// Tells on stderr what is at least as urgent as this.
+/// Prints messages of at least this level on stderr.
 pub fn on_stderr(level: LevelFilter) {
     let start = Instant::now();
     let logger = Box::leak(Box::new(Stderr { level, start }));
-    // A second logger is none: the first one goes on.
+    // If a logger is already set, it is kept.
     if log::set_logger(logger).is_ok() {
         log::set_max_level(level);
     }

@@ -1,8 +1,8 @@
-//! What a scheduler does when an executor is lost: it ends the queries that run, and their clients ask again.
+//! Ends all running queries if an executor is lost; clients then repeat them.
 //!
-//! The engine would go on with the tasks that are left and run again those whose results are gone. Where it was tried,
-//! with an executor killed between two stages of a query, this made rows come twice or not at all: a new task does not
-//! always stand for the same part of the data as the one before. A query that is asked again is asked as a whole.
+//! The engine would instead rerun the tasks whose results are gone. If an executor is killed
+//! between two stages, this duplicates or loses rows. A new task does not always cover the same
+//! part of the data as the old one. A repeated query runs completely.
 
 use ballista_core::{
     JobId,
@@ -27,15 +27,15 @@ use std::{
     sync::Arc,
 };
 
-/// The executors of a cluster, as the engine keeps them, but for what it does when one is lost.
+/// The engine's cluster state, except for the reaction to lost executors.
 struct Executors {
     engine: Arc<dyn ClusterState>,
     jobs: Arc<dyn JobState>,
-    /// Where this scheduler listens, `http://host:port`.
+    /// Address of this scheduler, `http://host:port`.
     scheduler: String,
 }
 
-/// A cluster whose queries end when an executor is lost.
+/// Cluster that ends its queries when an executor is lost.
 pub(crate) fn ending(cluster: &BallistaCluster, scheduler: String) -> BallistaCluster {
     let executors = Executors {
         engine: cluster.cluster_state(),
@@ -46,8 +46,9 @@ pub(crate) fn ending(cluster: &BallistaCluster, scheduler: String) -> BallistaCl
 }
 
 impl Executors {
-    /// Ends all queries that run. The scheduler takes orders one after the other, so this one comes before that to
-    /// make up for what was lost.
+    /// Ends all running queries.
+    ///
+    /// The scheduler processes events in order, so this one precedes the recovery from the loss.
     async fn end_all(&self) -> Result<()> {
         for job in self.jobs.get_all_jobs().await? {
             let status = self.jobs.get_job_status(&job).await?;

@@ -72,7 +72,7 @@ struct Data {
     limit: Option<f64>,
 }
 
-/// Seconds that a query of a cluster may take where nothing is said.
+/// Default time limit of a cluster's query, s.
 const LIMIT_S: f64 = 3600.0;
 
 #[derive(Debug, Args)]
@@ -180,7 +180,7 @@ struct Executor {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    // Plans of large queries nest deeply.
+    // Plans of large queries are deeply nested.
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .thread_stack_size(16 << 20)
@@ -192,7 +192,7 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            // A closed stderr is no reason to fail otherwise.
+            // A closed stderr is ignored.
             let _ = writeln!(std::io::stderr(), "error: {message}");
             ExitCode::FAILURE
         }
@@ -247,7 +247,7 @@ async fn open(data: &Data) -> Result<Fleet, String> {
     fleet.map_err(|error| error.strip_backtrace())
 }
 
-/// Says on stderr what took how long and what was not seen.
+/// Prints times and ignored files on stderr.
 fn tell(fleet: &Fleet, rows: usize, times: [f64; 2]) {
     let mut text = format!(
         "{rows} rows in {:.2} s, files looked through in {:.2} s\n",
@@ -303,7 +303,7 @@ fn csv(rows: &[RecordBatch]) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| error.to_string())
 }
 
-/// What is watched, and how often a robot without drift may be accused.
+/// Watched parameters and false alarm rate.
 fn rule(watch: Vec<String>, false_alarms: f64) -> Result<Rule, String> {
     if !(false_alarms > 0.0 && false_alarms < 1.0) {
         return Err("--false-alarms is a probability between 0 and 1".to_owned());
@@ -350,7 +350,7 @@ fn power(own: Power) -> Result<(), String> {
     print(&overact_fleet::power::table(&found))
 }
 
-/// Writes to stdout; that nobody reads any more is no failure.
+/// Writes to stdout; a closed pipe is not an error.
 fn print(text: &str) -> Result<(), String> {
     match std::io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
@@ -377,13 +377,13 @@ async fn page(own: Report) -> Result<(), String> {
     Ok(())
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file completely or not at all.
 fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), String> {
     let told = |error: std::io::Error| format!("{}: {error}", file.display());
     let own = file.with_extension("part");
     let done = std::fs::write(&own, bytes).and_then(|()| std::fs::rename(&own, file));
     done.map_err(|error| {
-        // What is left of it is of no use; that it can't be removed is no news.
+        // The partial file is useless; a failure to remove it is ignored.
         let _ = std::fs::remove_file(&own);
         told(error)
     })

@@ -1,8 +1,8 @@
-//! Which drifts are found when: virtual robots of which one parameter drifts by a given size, watched as those of a
-//! real fleet are, and robots without drift, of which the false alarms are counted.
+//! Detection rates of drifts, from simulated robots.
 //!
-//! Each robot makes a run a day, of which factors and estimate are made as by `factor` and `estimate`. The drift
-//! grows over the middle third of the days.
+//! One parameter of each robot drifts by a given size over the middle third of the days. Robots
+//! without drift give the false alarm rate. Each robot makes a run per day; factor and estimate are
+//! computed as by `factor` and `estimate`.
 
 use crate::chart::{Chart, Point, Rule, charts};
 use overact::Model;
@@ -11,51 +11,51 @@ use overact_robot::{Error, Robot, VirtualExperiment};
 use overact_simulation::{Fault, Fleet, Member, Record};
 use std::collections::BTreeMap;
 
-/// Robots that are looked through for one with a fault, for each that is wanted.
+/// Number of candidates searched for each robot with a fault.
 const LOOKED_THROUGH: usize = 100;
 
-/// What is tried.
+/// Settings of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// Robots with each drift.
+    /// Number of robots with each drift.
     pub robots: usize,
-    /// Robots without drift.
+    /// Number of robots without drift.
     pub healthy: usize,
-    /// Days, of which each robot makes a run.
+    /// Number of days, with one run per robot and day.
     pub days: usize,
-    /// Seed of everything.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Sizes of the drifts of a first moment of mass, in percent.
+    /// Drifts of a first moment, in percent.
     pub moments: Vec<f64>,
-    /// Sizes of the drifts of viscous friction, in percent.
+    /// Drifts of viscous friction, in percent.
     pub frictions: Vec<f64>,
 }
 
-/// What became of the robots with one drift.
+/// Results for the robots with one drift.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// What drifts.
+    /// Drifting quantity.
     pub fault: Fault,
-    /// By how much, in percent.
+    /// Size of the drift, in percent.
     pub percent: f64,
-    /// Robots.
+    /// Number of robots.
     pub robots: usize,
-    /// Ends of the days of all looks.
+    /// End of each look, in days.
     pub looks: Vec<f64>,
-    /// Of each look the robots that have been accused by then of the parameter that drifts.
+    /// For each look: number of robots with an alarm for the drifting parameter so far.
     pub by_look: Vec<usize>,
-    /// Robots that were accused of another parameter.
+    /// Number of robots with an alarm for another parameter.
     pub of_another: usize,
-    /// Robots that were accused of anything before the drift began.
+    /// Number of robots with an alarm before the drift began.
     pub before: usize,
-    /// Robots that were accused of anything.
+    /// Number of robots with any alarm.
     pub accused: usize,
 }
 
-/// Tries all drifts, robots without drift first; `tell` hears of each before it is tried.
+/// Simulates all drifts, robots without drift first; `tell` receives a message before each.
 ///
 /// # Errors
-/// A description without an experiment, runs that can't be made.
+/// A description without an experiment, or runs that fail.
 pub fn power(
     robot: &Robot,
     plan: &Plan,
@@ -103,12 +103,12 @@ pub fn power(
     Ok(found)
 }
 
-/// The serial number of a robot.
+/// Serial number of a robot.
 fn serial(number: usize) -> String {
     format!("R{number:05}")
 }
 
-/// The estimates of all robots and days.
+/// Estimates of all robots and days.
 fn points(
     (experiment, factory): (&VirtualExperiment<'_>, &Factory<'_>),
     fleet: &Fleet,
@@ -138,7 +138,7 @@ fn points(
     Ok(points)
 }
 
-/// Counts the accused.
+/// Counts the alarms.
 fn counted(
     (robot, members): (&Robot, &[Member]),
     (fault, percent): (Fault, f64),
@@ -182,7 +182,7 @@ fn counted(
     found
 }
 
-/// What was found, as a table of Markdown.
+/// Results as a Markdown table.
 #[must_use]
 pub fn table(found: &[Found]) -> String {
     let looks = found.first().map_or(&[][..], |own| &own.looks);

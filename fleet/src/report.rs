@@ -1,4 +1,4 @@
-//! The page of a fleet: drifts and outliers first, then every parameter over days and robots.
+//! Page of a fleet: drifts and outliers first, then every parameter over days and robots.
 
 use crate::{
     catalog::LeftOut,
@@ -14,38 +14,39 @@ use arrow::{
 use datafusion::error::Result;
 use std::{collections::BTreeMap, fmt::Write, time::Instant};
 
-/// Deviations of the fleet beyond which a robot is an outlier: one of 500 million of a normal fleet.
+/// Distance from the fleet's median of an outlier, in standard deviations: one of 500 million
+/// robots of a normal fleet.
 pub const BEYOND: f64 = 6.0;
 
-/// Robots that have plots of their own, at most.
+/// Largest number of robots with plots of their own.
 const MOST_PLOTS: usize = 60;
 
-/// What a fleet is asked for its page: the parameters of each robot and day.
+/// Query for the page: estimates of each robot and day.
 const QUERY: &str = "SELECT serial, CAST(date_trunc('day', time) AS BIGINT) AS day, estimate(factor) AS e \
                      FROM factors GROUP BY serial, date_trunc('day', time)";
 
 /// Microseconds of a day.
 const DAY: f64 = 86_400e6;
 
-/// The parameters of all robots and days.
+/// Parameters of all robots and days.
 #[derive(Debug, Clone, Default)]
 pub struct Days {
-    /// Of each robot and day.
+    /// Estimates of each robot and day.
     pub points: Vec<Point>,
-    /// Robots and days without an estimate, and why.
+    /// Robots and days without an estimate, with the reason.
     pub problems: Vec<(String, f64, String)>,
-    /// Runs that count, records that count once in spite of a copy, damaged ones, unlike runs.
+    /// Counts: runs used, duplicate records used once, damaged records, incompatible runs.
     pub counts: [u64; 4],
-    /// Residual of each robot in percent, the largest of its days.
+    /// Relative residual of each robot in percent, the largest of its days.
     pub errors: BTreeMap<String, f64>,
-    /// Time that the query took, s.
+    /// Duration of the query, s.
     pub seconds: f64,
 }
 
-/// Asks a fleet for them.
+/// Queries the parameters of a fleet.
 ///
 /// # Errors
-/// As of a query.
+/// Errors of the query.
 pub async fn days(fleet: &mut Fleet) -> Result<Days> {
     let start = Instant::now();
     let rows = fleet.sql(QUERY).await?;
@@ -91,7 +92,7 @@ pub async fn days(fleet: &mut Fleet) -> Result<Days> {
     Ok(own)
 }
 
-/// A text in HTML.
+/// Escapes a text for HTML.
 fn safe(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
@@ -99,7 +100,7 @@ fn safe(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-/// Numbers with four digits.
+/// Number with four digits.
 fn short(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -111,7 +112,7 @@ fn short(value: f64) -> String {
     }
 }
 
-/// A robot by its serial number, with its own report behind it.
+/// Serial number of a robot, linked to its own report.
 fn robot(serial: &str, link: Option<&str>) -> String {
     match link {
         Some(link) => {
@@ -259,7 +260,7 @@ fn troubles(html: &mut String, days: &Days, left_out: &[LeftOut], link: Option<&
     html.push_str("</table></details>");
 }
 
-/// Where numbers stand in a picture.
+/// Scale of a plot.
 struct Scale {
     days: f64,
     low: f64,
@@ -298,7 +299,7 @@ impl Scale {
     }
 }
 
-/// A robot's days as a small line.
+/// Small line plot of a robot's days.
 fn line(own: &Chart) -> String {
     let scale = Scale::new(own.days.iter(), (160.0, 28.0));
     format!(
@@ -307,7 +308,7 @@ fn line(own: &Chart) -> String {
     )
 }
 
-/// A parameter of all robots, and of those that are accused.
+/// Plot of a parameter of all robots, with those that raised alarms.
 fn plot(name: &str, all: &[&Chart], accused: &[&Chart]) -> String {
     let mut of_day: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for (day, value) in all.iter().flat_map(|own| &own.days) {
@@ -354,7 +355,7 @@ fn plot(name: &str, all: &[&Chart], accused: &[&Chart]) -> String {
     svg
 }
 
-/// What comes before the body's content.
+/// Start of the HTML document.
 const HEAD: &str = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
 content=\"width=device-width\"><title>Fleet</title><style>:root{color-scheme:light dark;--own:#b22;--band:#8884}\
 @media(prefers-color-scheme:dark){:root{--own:#f77}}body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;\

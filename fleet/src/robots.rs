@@ -1,5 +1,7 @@
-//! The descriptions that a query knows by the names of their robots. Each process of a distributed query reads them
-//! by itself; factors say by a hash which description they are of, so that two versions never mix.
+//! Descriptions that a query knows by robot name.
+//!
+//! Each process of a distributed query reads them itself. Factors contain a hash of their
+//! description, so that two versions never mix.
 
 use overact::Model;
 use overact_robot::Robot;
@@ -19,7 +21,7 @@ impl Robots {
     /// Reads descriptions.
     ///
     /// # Errors
-    /// What is wrong with them; two with one name.
+    /// All errors of the descriptions, and repeated names.
     pub fn read(files: &[PathBuf]) -> Result<Self, String> {
         let (mut robots, mut problems) = (BTreeMap::new(), Vec::new());
         for file in files {
@@ -42,7 +44,7 @@ impl Robots {
         }
     }
 
-    /// The robot of a name.
+    /// Robot with a name.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Robot> {
         self.0.get(name)

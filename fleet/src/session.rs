@@ -1,8 +1,8 @@
-//! A query over the factor files and logs of a fleet, on this machine or by a scheduler on many.
+//! Queries over the factor files and logs of a fleet, on this machine or on a cluster.
 //!
-//! - `factor_rows`: the files as they are, without those that can't be read;
-//! - `factors`: of them the rows with factors, each run once: its first file counts;
-//! - `logs`: the rows of all logs, with the columns `serial` and `day` of the names of their folders.
+//! - `factor_rows`: all rows of readable factor files;
+//! - `factors`: the rows with factors, each run once, from its first file;
+//! - `logs`: the rows of all logs, with the columns `serial` and `day` from folder names.
 
 use crate::{
     catalog::{Catalog, LeftOut},
@@ -25,35 +25,36 @@ use datafusion::{
 use std::{path::Path, sync::Arc, time::Duration};
 use tempfile::TempDir;
 
-/// What a fleet is.
+/// Settings of a fleet session.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Where factor files are.
+    /// Location of factor files.
     pub factors: Option<Place>,
-    /// Where logs are, `serial=…/day=…/….parquet`.
+    /// Location of logs, `serial=…/day=…/….parquet`.
     pub logs: Option<Place>,
     /// Descriptions for `factor`.
     pub robots: Robots,
-    /// The scheduler of a cluster, `df://host:port`; none for this machine.
+    /// Scheduler of a cluster, `df://host:port`; `None` for this machine.
     pub scheduler: Option<String>,
-    /// Partitions that are worked on at once; as many as there are cores if 0.
+    /// Number of concurrent partitions; the number of cores if 0.
     pub partitions: usize,
-    /// Bytes that a query may take on this machine; any number if 0.
+    /// Memory limit of a query on this machine, bytes; unlimited if 0.
     pub memory: usize,
-    /// Read all of every file before the first query, and not only after one has failed.
+    /// Whether to read all files completely before the first query, not only after a failure.
     pub whole: bool,
-    /// How long a query may take; as long as it takes if none.
+    /// Time limit of a query, if any.
     pub limit: Option<Duration>,
 }
 
-/// How often a cluster is asked a query while executors are lost: the scheduler ends a query then. An executor that is
-/// killed may end two, one that can't fetch from it and one that is to begin with it.
+/// Largest number of attempts of a cluster query, which the scheduler ends if executors are lost.
+///
+/// A killed executor may end two: one that cannot fetch its results and one that starts on it.
 const ATTEMPTS: usize = 5;
 
 /// Time between two attempts.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// What the engine says of executors that are not there, in errors that carry nothing but a text.
+/// Parts of the engine's messages on lost executors; its errors contain only text.
 const LOST: [&str; 7] = [
     "failed: Cancelled",
     "has failed 1 times",
@@ -64,10 +65,10 @@ const LOST: [&str; 7] = [
     "h2 protocol error",
 ];
 
-/// What is said of a query that takes too long.
+/// Message on a query that exceeds the time limit.
 const LATE: &str = "the query did not end within";
 
-/// What the engine says of a file that can't be had. No executor is lost where one of them says so.
+/// The engine's message on an inaccessible file; it does not mean a lost executor.
 const NO_FILE: &str = "Object Store error";
 
 fn lost(error: &DataFusionError) -> bool {
@@ -75,7 +76,7 @@ fn lost(error: &DataFusionError) -> bool {
     LOST.iter().any(|own| text.contains(own)) && !text.contains(NO_FILE)
 }
 
-/// An error of a cluster; of a file with a way out, for this machine could read it.
+/// Error of a cluster; for a file with advice, because this machine could read it.
 fn of_cluster(error: DataFusionError) -> DataFusionError {
     let text = error.strip_backtrace();
     if !text.contains(NO_FILE) {
@@ -89,22 +90,22 @@ fn of_cluster(error: DataFusionError) -> DataFusionError {
     ))
 }
 
-/// A fleet that is asked.
+/// A session with a fleet.
 pub struct Fleet {
     options: Options,
     context: SessionContext,
-    /// What looks through files on this machine, whoever answers.
+    /// Context that checks files on this machine, whoever runs the queries.
     files: SessionContext,
     left_out: Vec<LeftOut>,
-    /// Links to those logs that can be read, where some can't.
+    /// Links to the readable logs, if some are not.
     links: Option<TempDir>,
 }
 
 impl Fleet {
-    /// Looks through the files and makes them known.
+    /// Checks the files and registers the tables.
     ///
     /// # Errors
-    /// A folder or a scheduler that can't be reached; no file that can be read.
+    /// A folder or scheduler that cannot be reached, or no readable file.
     pub async fn open(options: Options) -> Result<Self> {
         let context = context(&options).await?;
         let mut fleet = Self {
@@ -118,23 +119,25 @@ impl Fleet {
         Ok(fleet)
     }
 
-    /// What no query sees.
+    /// Files and runs that queries ignore.
     #[must_use]
     pub fn left_out(&self) -> &[LeftOut] {
         &self.left_out
     }
 
-    /// The engine.
+    /// Context of the query engine.
     #[must_use]
     pub const fn context(&self) -> &SessionContext {
         &self.context
     }
 
-    /// Answers a query. Where it fails, all files are read as a whole, and if some can't be, the query is asked
-    /// again without them.
+    /// Runs a query.
+    ///
+    /// If it fails, all files are read completely. If some are unreadable, the query is repeated
+    /// without them.
     ///
     /// # Errors
-    /// A query that is none, or that fails for another reason than a file.
+    /// An invalid query, or a failure that no file caused.
     pub async fn sql(&mut self, query: &str) -> Result<Vec<RecordBatch>> {
         let first = self.answer(query).await;
         if first.is_ok()
@@ -159,7 +162,7 @@ impl Fleet {
         }
     }
 
-    /// Answers a query within the limit, again where an executor of a cluster was lost.
+    /// Runs a query within the time limit, again if an executor was lost.
     async fn answer(&self, query: &str) -> Result<Vec<RecordBatch>> {
         let attempts = match self.options.scheduler {
             Some(_) => ATTEMPTS,
@@ -252,7 +255,7 @@ impl Fleet {
                 self.logs_below(&root, None).await?
             }
             Place::Bucket(_) if !all => {
-                // A bucket takes no links: days with a file that can't be read are left out as a whole.
+                // A bucket has no links, so whole days with an unreadable file are excluded.
                 let days = Days::without(&files, &catalog.files);
                 self.left_out.extend(days.left_out);
                 none_left(&days.files, place, &self.left_out)?;
@@ -264,7 +267,7 @@ impl Fleet {
         self.put("logs", table)
     }
 
-    /// All logs below a place; the columns are those of a file, of all files if none is named.
+    /// All logs below a place; the columns are those of `file`, or of all files.
     async fn logs_below(&self, place: &Place, file: Option<&String>) -> Result<DataFrame> {
         let columns = ["serial", "day"].map(|name| (name.to_owned(), DataType::Utf8));
         let options = listing().with_table_partition_cols(columns.to_vec());
@@ -300,7 +303,7 @@ impl Fleet {
     }
 }
 
-/// A folder of links to files of another one: the engine finds the columns of names of folders below one root.
+/// Folder of links to files, because the engine derives folder columns below a single root.
 fn linked(folder: &Path, files: &[String]) -> Result<TempDir> {
     let links = TempDir::new()?;
     for file in files.iter().map(Path::new) {
@@ -337,7 +340,7 @@ fn none_left(files: &[String], place: &Place, left_out: &[LeftOut]) -> Result<()
     Err(DataFusionError::Execution(message))
 }
 
-/// How queries are run.
+/// Configuration of queries.
 #[must_use]
 pub fn config(partitions: usize) -> SessionConfig {
     let config = SessionConfig::new().set_bool(

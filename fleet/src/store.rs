@@ -1,8 +1,8 @@
-//! Where files are: below a folder of this machine, or below a prefix of a bucket with the interface of S3.
+//! Locations of files: a folder, or a prefix of a bucket with an S3 interface.
 //!
-//! Every process reads by itself, so a bucket is what machines without a common folder share. Address and keys come
-//! from the environment (`AWS_ENDPOINT_URL`, `AWS_REGION`, `AWS_ACCESS_KEY_ID`, …), of the client, the scheduler and
-//! each executor.
+//! Every process reads by itself, so machines without a common folder share a bucket. Client,
+//! scheduler and each executor take address and keys from the environment (`AWS_ENDPOINT_URL`,
+//! `AWS_REGION`, `AWS_ACCESS_KEY_ID`, …).
 
 use datafusion::object_store::ObjectStore;
 use datafusion::{
@@ -22,10 +22,10 @@ use std::{
 };
 use url::Url;
 
-/// The scheme of what has the interface of S3.
+/// URL scheme of S3.
 const S3: &str = "s3";
 
-/// A folder, or what is below a prefix of a bucket.
+/// A folder, or a prefix of a bucket.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
     /// A folder of this machine.
@@ -69,10 +69,10 @@ impl fmt::Display for Place {
 }
 
 impl Place {
-    /// All files below it whose names end in `.parquet`, in order.
+    /// All files below it with the extension `.parquet`, sorted.
     ///
     /// # Errors
-    /// A place that can't be read.
+    /// A place that cannot be read.
     pub async fn parquet_files(&self, runtime: &RuntimeEnv) -> Result<Vec<String>> {
         match self {
             Self::Folder(folder) => {
@@ -84,14 +84,14 @@ impl Place {
         }
     }
 
-    /// Its address as a folder, for an engine that finds columns in the names below it.
+    /// Address with a trailing slash, for an engine that derives columns from folder names.
     #[must_use]
     pub fn root(&self) -> String {
         format!("{}/", self.to_string().trim_end_matches('/'))
     }
 }
 
-/// A file to a URL that the query engine reads.
+/// Path as text for the query engine.
 pub(crate) fn text(path: &Path) -> String {
     path.display().to_string()
 }
@@ -152,7 +152,7 @@ async fn in_bucket(url: &Url, runtime: &RuntimeEnv) -> Result<Vec<String>> {
     Ok(files)
 }
 
-/// The stores that a process knows: this machine's files, and each bucket from when it is first asked for.
+/// Object stores of a process: local files, and buckets opened on first use.
 #[derive(Debug, Default)]
 struct Stores(DefaultObjectStoreRegistry);
 
@@ -181,7 +181,7 @@ impl ObjectStoreRegistry for Stores {
     }
 }
 
-/// A bucket, as the environment says where it is.
+/// Opens a bucket with settings from the environment.
 #[cfg(feature = "s3")]
 fn opened(bucket: &str) -> Result<Arc<dyn ObjectStore>, String> {
     let store = object_store::aws::AmazonS3Builder::from_env().with_bucket_name(bucket);
@@ -196,7 +196,7 @@ fn opened(_: &str) -> Result<Arc<dyn ObjectStore>, String> {
     Err("this program was built without the feature `s3`".to_owned())
 }
 
-/// What queries run with, in each process.
+/// Runtime environment of queries in each process.
 pub(crate) fn runtime() -> RuntimeEnvBuilder {
     RuntimeEnvBuilder::new().with_object_store_registry(Arc::new(Stores::default()))
 }

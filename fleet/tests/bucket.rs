@@ -1,4 +1,4 @@
-//! Factor files and logs of a bucket with the interface of S3: the answers of the same files in a folder.
+//! Factor files and logs in a bucket with an S3 interface give the same answers as in a folder.
 #![cfg(feature = "s3")]
 
 mod common;
@@ -30,7 +30,8 @@ const OF_LOGS: &str = "SELECT serial, count, p['name'] AS name, p['value'] AS va
                        'tau_right', tau_right)) AS f FROM logs GROUP BY serial, day) GROUP BY serial)) \
                        ORDER BY serial, name";
 
-/// A server whose buckets are the folders below this one; none, with a word, where a machine gives no port.
+/// Server whose buckets are the folders below `root`; `None`, with a message, if no port is
+/// available.
 async fn server(root: &Path) -> Option<SocketAddr> {
     let Ok(listener) = TcpListener::bind("127.0.0.1:0").await else {
         eprintln!("skipped: this machine gives no ports");
@@ -45,7 +46,7 @@ async fn server(root: &Path) -> Option<SocketAddr> {
             let service = service.clone();
             tokio::spawn(async move {
                 let connections = Builder::new(TokioExecutor::new());
-                // A client that goes away ends its connection.
+                // A client that disconnects ends its connection.
                 let _ = connections
                     .serve_connection(TokioIo::new(socket), service)
                     .await;
@@ -55,7 +56,7 @@ async fn server(root: &Path) -> Option<SocketAddr> {
     Some(address)
 }
 
-/// What tells a process where the bucket is.
+/// Environment variables with the address and keys of the bucket.
 fn environment(server: SocketAddr, secret: &str) -> [(&'static str, String); 5] {
     [
         ("AWS_ENDPOINT_URL", format!("http://{server}")),
@@ -66,7 +67,7 @@ fn environment(server: SocketAddr, secret: &str) -> [(&'static str, String); 5] 
     ]
 }
 
-/// The program, which finds the bucket by its environment.
+/// The program, with the bucket in its environment.
 fn program(server: SocketAddr, secret: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_overact-fleet"));
     command
@@ -85,7 +86,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("a text")
 }
 
-/// Of an answer the rows of one robot, or of all, by their names: the engine orders none of them.
+/// Rows of one robot, or of all, sorted, because the engine does not order them.
 fn rows(output: &Output, serial: &str) -> Vec<String> {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let all = text(&output.stdout);
@@ -95,7 +96,7 @@ fn rows(output: &Output, serial: &str) -> Vec<String> {
     own
 }
 
-/// Names are the same, numbers to a few digits of their last.
+/// Asserts that names are equal, and numbers up to a few units of the last digits.
 fn assert_same(a: &[String], b: &[String]) {
     assert!(a.len() > 10 && a.len() == b.len(), "{a:?} {b:?}");
     for (a, b) in a.iter().zip(b) {
@@ -110,7 +111,7 @@ fn assert_same(a: &[String], b: &[String]) {
     }
 }
 
-/// Puts what is in a folder into a bucket of that name.
+/// Copies a folder into a bucket.
 fn copied(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a folder");
     for entry in fs::read_dir(from).expect("a folder").flatten() {
@@ -137,7 +138,7 @@ async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
     let told = asked(server, KEYS[1], &[QUERY, there[0], there[1]]).await;
     assert_same(&rows(&here, ""), &rows(&told, ""));
 
-    // What is bad there is left out and named, as in a folder.
+    // Damaged files are excluded and reported, as in a folder.
     let bucket = root.join("fleet/below/day one");
     let bytes = fs::read(bucket.join("day-3.parquet")).expect("a file");
     fs::write(bucket.join("copy.parquet"), &bytes).expect("a file");
@@ -155,7 +156,7 @@ async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
             .any(|line| line.contains("already in s3://"))
     );
 
-    // A wrong key, a bucket that is not there and an address that is none are told with a way out.
+    // A wrong key, a missing bucket and an invalid address are reported with advice.
     let told = asked(server, "another", &[QUERY, there[0], there[1]]).await;
     let said = text(&told.stderr);
     assert!(
@@ -201,7 +202,7 @@ async fn three_executors_read_a_bucket_by_themselves() {
             assert_same(&rows(&here, ""), &rows(&told, ""));
             continue;
         }
-        // It is they who read, for the client's key is right.
+        // The executors read the files, because only their key is wrong.
         let said = text(&told.stderr);
         assert!(
             !told.status.success() && said.contains("403") && said.contains("in its environment"),
@@ -261,7 +262,7 @@ async fn logs_of_a_bucket_answer_as_those_of_a_folder() {
     assert_same(&rows(&here, ""), &rows(&told, ""));
     assert!(text(&told.stdout).contains(&format!("{},{DAYS},", serial(1))));
 
-    // A log that is cut off costs its robot a day, which is told.
+    // A truncated log removes a day of its robot, which is reported.
     let cut = root.join("logs/serial=R00001/day=2026-03-04/run.parquet");
     let bytes = fs::read(&cut).expect("a file");
     fs::write(&cut, &bytes[..bytes.len() - 9]).expect("a file");

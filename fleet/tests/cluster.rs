@@ -1,4 +1,4 @@
-//! A scheduler and three executors, processes each: the answers of one machine.
+//! A scheduler with three executors gives the same answers as one machine.
 #![cfg(feature = "distributed")]
 
 mod common;
@@ -74,7 +74,7 @@ async fn three_executors_answer_as_one_machine_does() {
     }
 }
 
-/// Kills the first executor at a moment of a query, which has to be answered as if it had not been.
+/// Kills the first executor at a moment of a query; the answer must not change.
 async fn killed(when: impl Fn(&Cluster, Duration) -> bool + Send + 'static) {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
@@ -93,7 +93,7 @@ async fn killed(when: impl Fn(&Cluster, Duration) -> bool + Send + 'static) {
     });
     let told = ask(&folder, Some(&url)).await.expect("rows");
     assert_same(&here, &told);
-    // The two that are left go on.
+    // The two remaining executors continue.
     let _cluster = killer.join().expect("a killer that was in time");
     assert_same(&here, &ask(&folder, Some(&url)).await.expect("rows"));
 }
@@ -105,7 +105,7 @@ async fn an_executor_that_is_killed_while_it_works_costs_no_answer() {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn an_executor_that_is_killed_with_all_its_results_costs_no_answer() {
-    // Six partitions have been read, and what was made of them is about to be fetched.
+    // Six partitions are complete, and their results are about to be fetched.
     killed(|cluster, _| (0..3).map(|own| cluster.results(own)).sum::<usize>() >= 6).await;
 }
 

@@ -1,4 +1,4 @@
-//! Queries on one machine: what one pass over the logs gives, whatever the files are like.
+//! Queries on one machine give the result of a single pass over the logs, whatever the files.
 
 mod common;
 
@@ -31,7 +31,7 @@ fn options(factors: &Path, partitions: usize) -> Options {
     }
 }
 
-/// Estimates by a text in front of them.
+/// Estimates by the text in the first column.
 fn estimates(rows: &[RecordBatch]) -> BTreeMap<String, Pooled> {
     let mut found = BTreeMap::new();
     for batch in rows {
@@ -96,7 +96,7 @@ async fn a_query_gives_what_one_pass_over_the_logs_gives() {
         assert!(white <= 1e-11 * a.standard_deviation, "{a:?} {b:?}");
     }
 
-    // Other partitions, a merge of merges, and a query of a week.
+    // Other partitions, a merge of merges, and a query by week.
     let mut other = Fleet::open(options(&folder, 7)).await.expect("a fleet");
     for (serial, told) in estimates(&other.sql(PER_ROBOT).await.expect("rows")) {
         assert_same(&per_robot[&serial], &told);
@@ -132,7 +132,7 @@ async fn estimates_are_compared_in_sql() {
     let rows = arrow::compute::concat_batches(&rows[0].schema(), &rows).expect("one batch");
     let p = rows.column(1).as_primitive::<Float64Type>();
     assert_eq!(rows.num_rows(), ROBOTS);
-    // The same runs are not apart; robots whose friction differs by a tenth and more are.
+    // Equal runs do not differ; robots whose friction differs by a tenth or more do.
     assert!((p.value(0) - 1.0).abs() < 1e-12);
     let apart = (1..ROBOTS).filter(|row| p.value(*row) < 1e-3).count();
     assert!(apart >= ROBOTS - 2, "{p:?}");
@@ -154,8 +154,8 @@ async fn nothing_is_counted_twice_and_nothing_is_lost() {
     let good = estimates(&good.sql(ALL).await.expect("rows"));
     let read = |name: &str| fs::read(folder.join(name)).expect("a file");
     let put = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("a file");
-    // A copy, a file that has a run of another one beside its own, one that is cut off, one that is no factor file,
-    // and one in the middle of which a byte has changed.
+    // A copy, a file with another file's run and its own, a truncated file, a file of another type,
+    // and a file with one changed byte.
     put("copy.parquet", &read("day-3.parquet"));
     let both: Vec<_> = bench
         .runs
@@ -193,7 +193,8 @@ async fn nothing_is_counted_twice_and_nothing_is_lost() {
     assert!(why("half.parquet").is_some() && why("text.parquet").is_some());
     assert!(why("log.parquet").is_some_and(|(_, why)| why.contains("no column")));
 
-    // A byte inside of the factors: the page can't be read, or the record says that it is damaged.
+    // A changed byte within the factors: the page is unreadable, or the record is reported as
+    // damaged.
     fs::remove_file(folder.join("day-6.parquet")).expect("a file");
     let mut without = Fleet::open(options(&folder, 2)).await.expect("a fleet");
     let without = estimates(&without.sql(ALL).await.expect("rows"));
@@ -214,7 +215,7 @@ async fn nothing_is_counted_twice_and_nothing_is_lost() {
         false => assert!(told["all"].equations < good["all"].equations),
     }
 
-    // The late file comes as it should have been.
+    // The late file arrives intact.
     let six: Vec<_> = bench.runs.iter().skip(6).step_by(DAYS).cloned().collect();
     put("late.parquet", &write_factors(&six).expect("factors"));
     fs::remove_file(folder.join("day-6.parquet")).expect("a file");
@@ -281,7 +282,7 @@ async fn logs_are_factored_in_sql() {
     for (serial, told) in &told {
         assert_same(&reference[serial], told);
     }
-    // One log is cut off: its robot has a day less, which is told.
+    // One log is truncated: its robot has one day less, which is reported.
     let cut = root.join("serial=R00001/day=2026-03-04/run.parquet");
     let bytes = fs::read(&cut).expect("a file");
     fs::write(&cut, &bytes[..bytes.len() - 9]).expect("a file");

@@ -1,4 +1,4 @@
-//! What the platform carried, in SQL: `factor(robot, columns, carried)` gives the factors of the log.
+//! Payloads in SQL: `factor(robot, columns, carried)` gives the factors of the log.
 
 mod common;
 
@@ -19,14 +19,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Runs without and with payload, each in the folder of a day.
+/// Runs without and with payload, one per day.
 const RUNS: [(&str, &str); 3] = [
     ("circle-like", "false"),
     ("with heavy", "heavy"),
     ("with light", "light"),
 ];
 
-/// The five-bar with one payload, or with several that have names.
+/// The five-bar robot with one payload, or with several named ones.
 fn description(named: bool) -> String {
     let text = common::description();
     let runs: Vec<usize> = text
@@ -121,7 +121,7 @@ impl Bench {
         }
     }
 
-    /// The records of a run, as `overact factor` makes them.
+    /// Records of a run, as `overact factor` writes them.
     fn records(&self, run: usize) -> Vec<u8> {
         let settings = self.robot.settings(200.0);
         let factory = self.robot.factory(&settings).expect("settings that fit");
@@ -129,7 +129,7 @@ impl Bench {
         run.records().iter().flat_map(Record::to_bytes).collect()
     }
 
-    /// What a query over the logs gives, with `{f}` in it the factor whose third argument is this.
+    /// Result of a query over the logs, in which `{f}` is the factor with this third argument.
     async fn ask(&self, query: &str, carried: &str) -> Result<Vec<RecordBatch>, String> {
         let mut fleet = Fleet::open(Options {
             logs: Some(self.root.clone().into()),
@@ -147,7 +147,7 @@ impl Bench {
         rows.map_err(|error| error.strip_backtrace())
     }
 
-    /// Of each day the factors, and why there are none.
+    /// Factors of each day, and the problem if there are none.
     async fn factors(&self, carried: &str) -> Result<Vec<(Option<Vec<u8>>, String)>, String> {
         let query = "SELECT f['factor'], f['problem'] FROM (SELECT day, {f} AS f FROM logs GROUP BY day) ORDER BY day";
         let rows = self.ask(query, carried).await?;
@@ -171,7 +171,7 @@ impl Bench {
     }
 }
 
-/// What each day carried, as a column of the logs would say it.
+/// Payload of each day as an SQL expression.
 fn by_day() -> String {
     let cases = RUNS.iter().enumerate();
     let cases: String = cases
@@ -205,12 +205,12 @@ async fn payloads_with_names_are_those_of_the_logs() {
             assert_eq!((told.kind(), told.content), (meant.kind(), meant.content));
             assert_eq!(told.factor, meant.factor);
         }
-        // Each payload has factors of its own.
+        // Each payload has its own factors.
         let load = told[0].load.as_deref().unwrap_or("none");
         assert_eq!(load, ["none", "heavy", "light"][run]);
     }
 
-    // Estimates by payload are those of its records.
+    // Estimates by payload equal those of its records.
     let query = "SELECT carried, estimate(f['factor']) AS e FROM (SELECT day, max(carried) AS carried, {f} AS f FROM \
                  (SELECT *, CARRIED AS carried FROM logs) GROUP BY day) GROUP BY carried ORDER BY carried"
         .replace("CARRIED", &by_day());
@@ -275,7 +275,7 @@ async fn a_payload_that_is_none_is_refused_with_a_way_out() {
             );
         }
     }
-    // Rows of different payloads are no run.
+    // Rows with different payloads do not form a run.
     let query = "SELECT serial, {f} AS f FROM logs GROUP BY serial";
     let error = named.ask(query, &by_day()).await.expect_err("several runs");
     assert!(error.contains("several payloads, in a group"), "{error}");

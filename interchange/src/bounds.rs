@@ -1,4 +1,4 @@
-//! Numbers of a file that no robot has, and robots that are too large, refused before anything is computed from them.
+//! Checks of plausible magnitude and robot size, made before anything is computed.
 
 use crate::{
     files::{Files, Place},
@@ -6,18 +6,19 @@ use crate::{
     xml::Element,
 };
 
-/// Lengths, masses and other numbers are smaller, in SI units: squares of larger ones soon are beyond all numbers.
+/// Upper bound on numbers in SI units; squares of larger ones could soon overflow.
 const LARGEST: f64 = 1e15;
-/// Joints that move, at most: as many as a description may have.
+/// Largest number of moving joints, as in a description.
 const MOST_JOINTS: usize = 200;
 
-/// Elements of joints, fixed ones among them, at most.
+/// Largest number of joint elements, fixed joints included.
 const MOST_JOINT_ELEMENTS: usize = 2_000;
-/// Elements of bodies, at most.
+/// Largest number of body elements.
 const MOST_BODY_ELEMENTS: usize = 10_000;
 
-/// Refuses files with more joints and bodies than a robot has, before they are compared with one another; `None`
-/// after an error.
+/// Rejects files with too many joints or bodies; `None` after an error.
+///
+/// This runs before the elements are compared with each other.
 pub(crate) fn check_elements(files: &Files, root: &Element) -> Option<()> {
     let limits = [
         ("joints", &["joint", "freejoint"], MOST_JOINT_ELEMENTS),
@@ -34,13 +35,13 @@ pub(crate) fn check_elements(files: &Files, root: &Element) -> Option<()> {
     Some(())
 }
 
-/// How many elements have one of these names.
+/// Number of elements with one of these names.
 fn count(element: &Element, names: &[&str]) -> usize {
     let inside = element.children.iter().map(|child| count(child, names));
     inside.sum::<usize>() + usize::from(names.contains(&element.name.as_str()))
 }
 
-/// Refuses what is out of bounds; `None` after an error.
+/// Rejects models out of bounds; `None` after an error.
 pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
     if model.joints.len() > MOST_JOINTS {
         let message = format!(
@@ -103,7 +104,7 @@ fn report(files: &Files, place: Option<&Place>, message: String) {
     }
 }
 
-/// Whether a number is finite and of a size that robots have.
+/// Whether a number is finite and plausible.
 fn is_in_bounds(number: f64) -> bool {
     number.abs() < LARGEST
 }

@@ -1,4 +1,4 @@
-//! Joints that follow others: the relations of a file, composed along chains.
+//! Coupled joints: composes the relations of a file along chains.
 
 use crate::{
     files::{Files, Place},
@@ -21,7 +21,7 @@ pub(crate) struct Couplings {
     all: Vec<Coupling>,
 }
 
-/// The relation of each joint to the one that it follows.
+/// Relation of each joint to its leader, if it is coupled.
 type ByFollower = Vec<Option<Coupling>>;
 
 impl Couplings {
@@ -30,9 +30,9 @@ impl Couplings {
         self.all.push(coupling);
     }
 
-    /// Sets `Joint::follow` of every follower, with factors and offsets composed up to an independent joint.
+    /// Sets `Joint::follow` of every coupled joint, composed up to an independent joint.
     ///
-    /// Reports joints that follow several others, cycles, and relations of balls.
+    /// Reports joints with several leaders, cycles, and couplings of ball joints.
     pub(crate) fn resolve(self, files: &Files, model: &mut Model) {
         let relations = self.by_follower(files, model);
         if let Some(composed) = compose(files, model, &relations) {
@@ -42,7 +42,7 @@ impl Couplings {
         }
     }
 
-    /// The relations by their followers, with those that the model already has.
+    /// Relations by follower, including those already in the model.
     fn by_follower(self, files: &Files, model: &Model) -> ByFollower {
         let known = model.joints.iter().enumerate();
         let known = known.filter_map(|(follower, joint)| {
@@ -86,12 +86,12 @@ impl Couplings {
     }
 }
 
-/// The composed relation of each joint to an independent one; `None` after a cycle was reported.
+/// Composed relation of each joint to an independent joint; `None` after a cycle was reported.
 fn compose(files: &Files, model: &Model, relations: &ByFollower) -> Option<Vec<Option<Follow>>> {
     let mut composed: Vec<Option<Follow>> = vec![None; relations.len()];
     let mut is_done: Vec<bool> = relations.iter().map(Option::is_none).collect();
     let mut has_cycle = false;
-    // The walk that reached each joint last, by the joint that it started from.
+    // Start of the walk that last visited each joint.
     let mut reached_from: Vec<Option<usize>> = vec![None; relations.len()];
     for start in 0..relations.len() {
         let mut chain: Vec<&Coupling> = Vec::new();

@@ -1,4 +1,4 @@
-//! Files that are read, and what is wrong in them: each error with its file and its line, all of them at once.
+//! Input files and their errors, each with file and line; all errors are collected.
 
 use crate::account::{Account, Ledger, Use};
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
@@ -9,34 +9,34 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Bytes of all files of an import together, at most. Meshes are in files of their own, which are never opened.
+/// Largest total size of an import's files, bytes. Mesh files are never opened.
 const MOST_BYTES: u64 = 16 << 20;
-/// Elements of all files of an import together, at most.
+/// Largest total number of elements in an import's files.
 const MOST_ELEMENTS: usize = 500_000;
 
-/// Errors of a file that are kept: each new one is compared with all others.
+/// Largest number of errors kept for a file, because each new one is compared with all others.
 const MOST_ERRORS: usize = 1_000;
 
-/// Where something stands: a file, as the number of the order in which it was read, and bytes of it.
+/// Location in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Place {
-    /// The file.
+    /// Number of the file, in reading order.
     pub(crate) file: usize,
-    /// The bytes.
+    /// Byte range.
     pub(crate) span: Span,
 }
 
-/// All that is wrong, by file.
+/// All errors, by file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Errors(pub Vec<(Source, Diagnostics)>);
 
-/// The files of one import and the errors that were found in them so far.
+/// Files of one import and the errors found in them.
 #[derive(Debug)]
 pub(crate) struct Files {
     read: RefCell<Vec<(PathBuf, Source, Diagnostics)>>,
-    /// Bytes that may still be read.
+    /// Remaining byte budget.
     bytes_left: Cell<u64>,
-    /// Elements that may still be read.
+    /// Remaining element budget.
     elements_left: Cell<usize>,
     ledger: RefCell<Ledger>,
 }
@@ -53,7 +53,7 @@ impl Default for Files {
 }
 
 impl Files {
-    /// Reads a file; `None` after an error, which is noted at the place that names the file.
+    /// Reads a file; `None` after an error, which is reported where the file is named.
     pub(crate) fn read(&self, path: &Path, named_at: Option<&Place>) -> Option<usize> {
         let is_included = named_at.is_some();
         let (text, error) = match read(path, is_included, self.bytes_left.get()) {
@@ -85,44 +85,44 @@ impl Files {
         Some(at)
     }
 
-    /// Elements that may still be read.
+    /// Remaining element budget.
     pub(crate) fn elements_left(&self) -> usize {
         self.elements_left.get()
     }
 
-    /// Counts elements that were read.
+    /// Subtracts elements from the budget.
     pub(crate) fn count_elements(&self, count: usize) {
         let left = self.elements_left.get().saturating_sub(count);
         self.elements_left.set(left);
     }
 
-    /// The text of a file.
+    /// Text of a file.
     pub(crate) fn text(&self, file: usize) -> String {
         self.read.borrow()[file].1.text.clone()
     }
 
-    /// The folder of a file.
+    /// Folder of a file.
     pub(crate) fn folder(&self, file: usize) -> PathBuf {
         let all = self.read.borrow();
         all[file].0.parent().map(Path::to_owned).unwrap_or_default()
     }
 
-    /// How many files were read.
+    /// Number of files read.
     pub(crate) fn count(&self) -> usize {
         self.read.borrow().len()
     }
 
-    /// The path of a file.
+    /// Path of a file.
     pub(crate) fn path(&self, file: usize) -> PathBuf {
         self.read.borrow()[file].0.clone()
     }
 
-    /// The name of a file as it was given.
+    /// Name of a file as the user gave it.
     pub(crate) fn name(&self, file: usize) -> String {
         self.read.borrow()[file].1.name.clone()
     }
 
-    /// The paths of all files that were read.
+    /// Paths of all files read.
     pub(crate) fn paths(&self) -> Vec<PathBuf> {
         self.read
             .borrow()
@@ -131,18 +131,18 @@ impl Files {
             .collect()
     }
 
-    /// All files that were read, in their order.
+    /// All files read, in reading order.
     pub(crate) fn sources(&self) -> Vec<Source> {
         let all = self.read.borrow();
         all.iter().map(|(_, source, _)| source.clone()).collect()
     }
 
-    /// The line of a place, counted from 1.
+    /// Line of a location, counted from 1.
     pub(crate) fn line(&self, place: &Place) -> usize {
         self.read.borrow()[place.file].1.position(&place.span).line
     }
 
-    /// Notes an error at a place.
+    /// Reports an error at a location.
     pub(crate) fn report(
         &self,
         place: &Place,
@@ -156,7 +156,7 @@ impl Files {
         }
     }
 
-    /// Records what became of an element, or of an attribute of it.
+    /// Records the treatment of an element or attribute.
     pub(crate) fn record(
         &self,
         kind: Use,
@@ -176,7 +176,7 @@ impl Files {
         self.ledger.borrow_mut().add(key, place.span.start);
     }
 
-    /// Reports an element or attribute that was read but does not become part of the description.
+    /// Reports an element or attribute that was read but has no effect on the description.
     pub(crate) fn demote(
         &self,
         place: &Place,
@@ -190,7 +190,7 @@ impl Files {
         self.record(Use::Reported, place, element, attribute, reason);
     }
 
-    /// What was used of the files, and what was not.
+    /// Summary of what was used of the files and what was not.
     pub(crate) fn account(&self) -> Account {
         self.ledger.borrow().account(|file, at| {
             let place = Place { file, span: at..at };
@@ -198,14 +198,14 @@ impl Files {
         })
     }
 
-    /// Notes errors that were found in a file elsewhere.
+    /// Adds errors of a file that were found elsewhere.
     pub(crate) fn note(&self, file: usize, errors: &Diagnostics) {
         for error in errors {
             self.read.borrow_mut()[file].2.push(error.clone());
         }
     }
 
-    /// Notes an error of the first file as a whole.
+    /// Reports an error about the first file as a whole.
     pub(crate) fn refuse(&self, message: impl Into<String>, help: impl Into<String>) {
         if let Some(first) = self.read.borrow_mut().first_mut() {
             first
@@ -214,7 +214,7 @@ impl Files {
         }
     }
 
-    /// Whether nothing is wrong so far.
+    /// Whether there are no errors.
     pub(crate) fn is_clean(&self) -> bool {
         self.read
             .borrow()
@@ -222,7 +222,7 @@ impl Files {
             .all(|(.., errors)| errors.is_empty())
     }
 
-    /// All that is wrong.
+    /// All errors, for files with errors only.
     pub(crate) fn into_errors(self) -> Errors {
         let wrong = |(_, source, errors): (PathBuf, Source, Diagnostics)| {
             (!errors.is_empty()).then_some((source, errors))
@@ -237,8 +237,9 @@ impl Files {
     }
 }
 
-/// Reads a text of at most `most` bytes. A file that another one includes has to be a regular one: a device may have no
-/// end, and a pipe may keep its reader waiting.
+/// Reads a text of at most `most` bytes.
+///
+/// An included file must be a regular file: a device may have no end, and a pipe may block.
 fn read(path: &Path, is_included: bool, most: u64) -> io::Result<String> {
     if is_included && !path.metadata()?.is_file() {
         return Err(io::Error::other("it is no regular file"));

@@ -1,14 +1,14 @@
-//! Formats of robots' files.
+//! File formats of robots.
 
-/// The format of a robot's file.
+/// File format of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// That of MuJoCo.
+    /// MuJoCo's format.
     Mjcf,
-    /// That of ROS.
+    /// The format of ROS.
     Urdf,
-    /// That of OpenSYMORO.
+    /// OpenSYMORO's format.
     Par,
-    /// That of Gazebo.
+    /// SDFormat, used by Gazebo.
     Sdf,
 }

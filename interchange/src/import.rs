@@ -1,4 +1,4 @@
-//! The import from a file to a description.
+//! Import of a robot file as a description.
 
 use crate::{
     account::Account,
@@ -25,35 +25,38 @@ use crate::{
 use overact_description::diagnostic::Diagnostics;
 use std::path::{Path, PathBuf};
 
-/// A description that was made of a file.
+/// A description generated from a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Imported {
-    /// The TOML.
+    /// TOML text.
     pub text: String,
-    /// All files that were read.
+    /// Paths of all files read.
     pub inputs: Vec<PathBuf>,
-    /// What the parts of the text come from.
+    /// Source locations of the parts of the text.
     origins: Origins,
-    /// Name of the robot in the file, or that of the options.
+    /// Name of the robot, from the options or else the file.
     pub name: String,
-    /// What of the files was used, and what was not.
+    /// Summary of what was used of the files and what was not.
     pub account: Account,
 }
 
 impl Imported {
-    /// The errors of the description in terms of the file that it was made of: each at its joint, or of the file as a
-    /// whole, with the option of the import that helps.
+    /// Maps errors of the description to the source file.
+    ///
+    /// Each error is reported at its joint, or for the file as a whole, with the import option that
+    /// helps.
     #[must_use]
     pub fn located(&self, errors: &Diagnostics) -> Errors {
         self.origins.located(errors)
     }
 }
 
-/// Makes a description of a robot's file. Whether it is valid is not known before it has been checked:
-/// `overact_robot::import` does both.
+/// Generates a description from a robot file.
+///
+/// The description is not yet validated; `overact_robot::import` also does that.
 ///
 /// # Errors
-/// All that is wrong with the file, each at its line, or what of it can't be said.
+/// All errors of the file, each with its line, and contents that a description cannot express.
 pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
     let files = Files::default();
     let described = described(&files, path, options);
@@ -73,7 +76,7 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
     }
 }
 
-/// The description of a robot before its file's account is added.
+/// A generated description with its origins.
 struct Described {
     name: String,
     text: String,
@@ -93,7 +96,7 @@ fn described(files: &Files, path: &Path, options: &Options) -> Option<Described>
     })
 }
 
-/// The robot of a file with all choices of the user, and the file's format; `None` after an error.
+/// Reads a model and applies the user's choices; `None` after an error.
 pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Model, Format)> {
     let file = files.read(path, None)?;
     let (mut model, format) = read(files, file, options)?;
@@ -111,7 +114,7 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
     Some((model, format))
 }
 
-/// A robot's skeleton and chains, and its legs in the description.
+/// Skeleton and chains of a robot, and its legs in the description.
 pub(crate) struct Robot<'m> {
     pub(crate) network: Network<'m>,
     pub(crate) layout: Layout,
@@ -119,7 +122,7 @@ pub(crate) struct Robot<'m> {
 }
 
 impl<'m> Robot<'m> {
-    /// Skeleton, chains and legs; `None` after an error.
+    /// Computes skeleton, chains and legs; `None` after an error.
     pub(crate) fn new(files: &Files, model: &'m Model, options: &Options) -> Option<Self> {
         let network = Network::new(files, model)?;
         check_motors(files, &network)?;
@@ -132,7 +135,7 @@ impl<'m> Robot<'m> {
         })
     }
 
-    /// The description.
+    /// Writes the description.
     pub(crate) fn toml(
         &self,
         files: &Files,
@@ -182,13 +185,13 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)
     }
 }
 
-/// Whether a text is the table of a .par file.
+/// Whether a text is in the .par format.
 fn is_table(text: &str) -> bool {
     let mut lines = text.lines();
     lines.any(|line| line.trim_start().get(..2) == Some("NJ") && line.contains('='))
 }
 
-/// Which joints are driven and where they stand, as the user says it.
+/// Applies the user's choice of actuated joints and home positions.
 fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
     let find = |model: &Model, name: &str| {
         let found = model.joint_named(name);
@@ -257,8 +260,9 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
     Some(())
 }
 
-/// Without loops a joint that the file's zero puts on its limit stands in the middle of its range at home, so that
-/// there is room for motions about it.
+/// For serial robots: moves joints whose home is at a limit to the middle of their range.
+///
+/// Otherwise there would be no room for motions about the home configuration.
 fn off_limits(model: &mut Model, options: &Options) {
     let mut names = Vec::new();
     for joint in model
@@ -285,7 +289,7 @@ fn off_limits(model: &mut Model, options: &Options) {
     }
 }
 
-/// There have to be as many motors as degrees of freedom.
+/// Checks that a robot with loops has as many motors as degrees of freedom.
 fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
     let model = network.model;
     if model.closures.is_empty() {
@@ -304,7 +308,7 @@ fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
     None
 }
 
-/// Without loops every joint has a motor in a description, and a ball has none.
+/// Rejects ball joints in serial robots: every joint of those has a motor in a description.
 fn no_balls_in_trees(files: &Files, model: &Model) -> Option<()> {
     if !model.closures.is_empty() {
         return Some(());

@@ -1,15 +1,14 @@
-//! Other people's descriptions of robots, made into descriptions of overact, and identified parameters put back into
-//! them.
+//! Import of robots from MJCF, URDF, SDFormat and .par, and export of identified parameters.
 //!
 //! | stage | from | to |
 //! |---|---|---|
 //! | `mjcf`, `urdf`, `sdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |
 //! | `account` | elements and attributes | what is honoured, ignored, reported or rejected |
-//! | `bounds` | the model | its numbers, if a robot may have them |
+//! | `bounds` | the model | the model, if its numbers are plausible |
 //! | `assembly` | the model | a closed configuration, a skeleton and chains |
 //! | `frames` | axes in space | modified Denavit-Hartenberg constants |
-//! | `experiment` | the closed robot | motions inside the limits of its joints |
-//! | `writing` | all of it | TOML with a comment at each choice |
+//! | `experiment` | the closed robot | motions within its joint limits |
+//! | `writing` | the results of the other stages | TOML with a comment at each choice |
 //! | `origins` | errors of the description | errors of the file |
 //! | `export` | the file and parameters | the file with these parameters |
 

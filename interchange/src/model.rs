@@ -1,50 +1,50 @@
-//! A robot as files describe it: a tree of bodies with joints, and closures between them.
+//! Model of a robot as files describe it: a tree of bodies and joints, and loop closures.
 
 use crate::files::Place;
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 
-/// A frame in another, with rotations by right angles exact.
+/// Pose of a frame in another one; rotations by right angles are exact.
 pub(crate) type Pose = IsometryMatrix3<f64>;
 
 /// A robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Model {
-    /// Its name.
+    /// Name.
     pub(crate) name: String,
-    /// Acceleration of gravity in the world.
+    /// Gravitational acceleration in the world frame, m/s².
     pub(crate) gravity: [f64; 3],
-    /// The bodies; the first is the ground, parents come before their children.
+    /// Bodies, parents before children; the first is the ground.
     pub(crate) bodies: Vec<Body>,
     /// Joints of the tree.
     pub(crate) joints: Vec<Joint>,
-    /// What closes loops.
+    /// Constraints that close loops.
     pub(crate) closures: Vec<Closure>,
-    /// Whether the file says which joints are driven.
+    /// Whether the file specifies the actuated joints.
     pub(crate) says_motors: bool,
-    /// What a reader has to know of what was left out or assumed.
+    /// Notes on what was omitted or assumed.
     pub(crate) notes: Vec<String>,
 }
 
 /// A body.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
-    /// Its name.
+    /// Name.
     pub(crate) name: String,
-    /// The body that carries it; the ground carries itself.
+    /// Parent body; the ground is its own parent.
     pub(crate) parent: usize,
-    /// Its frame in that of the parent where the joint stands at its reference.
+    /// Pose in the parent at the joint's reference position.
     pub(crate) placement: Pose,
-    /// Where the file describes it; none of bodies that stand for parts of joints.
+    /// Location in the file; `None` for auxiliary bodies of joints with several axes.
     pub(crate) place: Option<Place>,
-    /// The joint between the two; none where they are fixed together.
+    /// Joint to the parent; `None` if fixed.
     pub(crate) joint: Option<usize>,
-    /// Mass and inertia, none of a massless body.
+    /// Inertia; `None` for a massless body.
     pub(crate) inertia: Option<Inertia>,
-    /// Whether the file says that it has mass and inertia, but not how much.
+    /// Whether the file says that the body has inertia without giving its value.
     pub(crate) has_unknown_inertia: bool,
 }
 
-/// Mass, centre and inertia about the centre in the axes of the body.
+/// Mass, centre of mass, and inertia about the centre in the body's axes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inertia {
     pub(crate) mass: f64,
@@ -52,16 +52,16 @@ pub(crate) struct Inertia {
     pub(crate) tensor: Matrix3<f64>,
 }
 
-/// Kinds of joints.
+/// Joint types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Revolute,
     Prismatic,
-    /// Turns in all directions about a point.
+    /// Spherical joint.
     Ball,
 }
 
-/// A joint that follows another: factor times its position and an offset.
+/// Coupling to another joint: position = factor · leader + offset.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Follow {
     pub(crate) joint: usize,
@@ -72,54 +72,54 @@ pub(crate) struct Follow {
 /// A joint of the tree.
 #[derive(Debug, Clone)]
 pub(crate) struct Joint {
-    /// Its name.
+    /// Name.
     pub(crate) name: String,
     pub(crate) kind: Kind,
-    /// Axis of length 1 in the frame of the body that it carries.
+    /// Unit axis in the frame of the carried body.
     pub(crate) axis: Vector3<f64>,
-    /// A point of the axis, or the ball's centre, in that frame.
+    /// Point on the axis, or centre of a ball joint, in that frame.
     pub(crate) at: Point3<f64>,
-    /// Its position where the body stands as it is placed.
+    /// Position at the body's `placement`.
     pub(crate) reference: f64,
-    /// Its position in the file's usual configuration.
+    /// Home position of the file.
     pub(crate) home: f64,
-    /// Its smallest and largest position.
+    /// Lower and upper position limit.
     pub(crate) range: Option<[f64; 2]>,
-    /// Its largest speed, rad/s or m/s.
+    /// Speed limit, rad/s or m/s.
     pub(crate) speed: Option<f64>,
-    /// What it follows.
+    /// Coupling, if the joint is not independent.
     pub(crate) follow: Option<Follow>,
     pub(crate) actuated: bool,
     pub(crate) damping: f64,
     pub(crate) friction: f64,
     pub(crate) armature: f64,
-    /// Stiffness of a spring and where it rests.
+    /// Spring stiffness and rest position.
     pub(crate) spring: Option<(f64, f64)>,
-    /// What a motor's transmission is, for people.
+    /// Description of the transmission, for comments.
     pub(crate) drive: String,
     pub(crate) place: Place,
 }
 
-/// What closes a loop.
+/// A constraint that closes a loop.
 #[derive(Debug, Clone)]
 pub(crate) struct Closure {
-    /// Its name, or what the file calls it.
+    /// Name, or the file's word for it.
     pub(crate) name: String,
     pub(crate) kind: ClosureKind,
     pub(crate) place: Place,
 }
 
-/// Two frames of two bodies that meet.
+/// Constraint between two frames on two bodies.
 #[derive(Debug, Clone)]
 pub(crate) enum ClosureKind {
-    /// Their origins.
+    /// Coincident origins.
     Point {
         bodies: [usize; 2],
         at: [Point3<f64>; 2],
     },
-    /// Origins and axes.
+    /// Coincident frames.
     Weld { bodies: [usize; 2], at: [Pose; 2] },
-    /// Origins and the axis z: a pin.
+    /// Coincident origins and z axes: a revolute joint.
     Pin { bodies: [usize; 2], at: [Pose; 2] },
 }
 
@@ -135,7 +135,7 @@ impl Closure {
 }
 
 impl Model {
-    /// The ground and nothing else.
+    /// A model with the ground only.
     pub(crate) fn new(name: &str) -> Self {
         let ground = Body {
             name: "ground".to_owned(),
@@ -157,17 +157,17 @@ impl Model {
         }
     }
 
-    /// The joint of a name.
+    /// Joint with a name.
     pub(crate) fn joint_named(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
-    /// The body of a name.
+    /// Body with a name.
     pub(crate) fn body_named(&self, name: &str) -> Option<usize> {
         self.bodies.iter().position(|body| body.name == name)
     }
 
-    /// The body that a joint carries.
+    /// Body that a joint carries.
     pub(crate) fn carried_by(&self, joint: usize) -> usize {
         self.bodies
             .iter()
@@ -177,7 +177,7 @@ impl Model {
 }
 
 impl Joint {
-    /// A passive joint about z without friction.
+    /// A passive, frictionless joint about z.
     pub(crate) fn new(name: &str, kind: Kind, place: Place) -> Self {
         Self {
             name: name.to_owned(),
@@ -201,7 +201,7 @@ impl Joint {
 }
 
 impl Inertia {
-    /// Both bodies as one, in the same frame.
+    /// Inertia of two welded bodies, both in the same frame.
     #[must_use]
     pub(crate) fn with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
@@ -223,7 +223,7 @@ impl Inertia {
         }
     }
 
-    /// What is left of a body without another that is part of it, in the same frame.
+    /// Inertia after removal of a part, both in the same frame.
     #[must_use]
     pub(crate) fn without(&self, other: &Self) -> Self {
         let negative = Self {
@@ -234,7 +234,7 @@ impl Inertia {
         self.with(&negative)
     }
 
-    /// The same body seen from a frame in which its own stands.
+    /// Inertia expressed in another frame, in which the body's frame has the pose `frame`.
     #[must_use]
     pub(crate) fn seen(&self, frame: &Pose) -> Self {
         let rotation = frame.rotation;
@@ -245,14 +245,14 @@ impl Inertia {
         }
     }
 
-    /// The inertia about the origin.
+    /// Inertia about the origin of the frame.
     #[must_use]
     pub(crate) fn about_origin(&self) -> Matrix3<f64> {
         self.tensor + point(self.mass, &self.centre.coords)
     }
 }
 
-/// The inertia of a mass in a point about the origin.
+/// Inertia of a point mass about the origin.
 fn point(mass: f64, at: &Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() * at.norm_squared() - at * at.transpose()) * mass
 }

@@ -1,20 +1,20 @@
-//! What a user decides in the place of the importer.
+//! User choices that override those of the importer.
 
-/// Choices that overrule those of the importer.
+/// Choices that override those of the importer.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Name of the robot; that of the file's model where there is none.
+    /// Name of the robot; by default the name of the file's model.
     pub name: Option<String>,
-    /// The model that is meant, where a world has several.
+    /// Model to import from a world with several models.
     pub model: Option<String>,
-    /// Whether a base that floats is fixed where it stands.
+    /// Whether a floating base is fixed at its pose in the file.
     pub fix_base: bool,
-    /// The driven joints, in the place of those that the file names.
+    /// Actuated joints, instead of those of the file.
     pub actuated: Option<Vec<String>>,
-    /// Joints that shall be the independent coordinates.
+    /// Joints to use as independent coordinates.
     pub coordinates: Option<Vec<String>>,
-    /// Values of symbols in the file, lengths in m and angles in rad.
+    /// Values of the file's symbols; lengths in m, angles in rad.
     pub values: Vec<(String, f64)>,
-    /// Positions of joints where the search for a closed home configuration starts, rad or m.
+    /// Start positions for the search of a closed home configuration, rad or m.
     pub home: Vec<(String, f64)>,
 }

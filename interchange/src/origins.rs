@@ -1,4 +1,4 @@
-//! Where the parts of a description come from, so that its errors are reported in the file that it was made of.
+//! Maps locations in a generated description to the file that it was imported from.
 
 use crate::{
     files::{Errors, Files, Place},
@@ -6,16 +6,16 @@ use crate::{
 };
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
 
-/// The parts of a description and the files that they come from.
+/// Parts of a description and their source files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Origins {
-    /// Bytes of the description, and what they are of.
+    /// Byte range of each part, and its origin.
     parts: Vec<(Span, Origin)>,
-    /// The files that were read, the robot's first.
+    /// Files read, the robot's file first.
     sources: Vec<Source>,
 }
 
-/// What a part of a description comes from.
+/// Origin of one part of a description.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Origin {
     joint: String,
@@ -23,7 +23,7 @@ struct Origin {
 }
 
 impl Origins {
-    /// The origins of a text whose `parts` are those of joints of a model.
+    /// Origins of a text whose `parts` belong to joints of the model.
     pub(crate) fn new(files: &Files, model: &Model, parts: Vec<(Span, usize)>) -> Self {
         let origin = |(span, joint): (Span, usize)| {
             let own = &model.joints[joint];
@@ -39,7 +39,7 @@ impl Origins {
         }
     }
 
-    /// The errors of the description, each at the joint of the file that it comes from, or of the file as a whole.
+    /// Maps errors of the description to joints of the source file, or to the file as a whole.
     pub(crate) fn located(&self, errors: &Diagnostics) -> Errors {
         let mut all: Vec<(Source, Diagnostics)> = self
             .sources
@@ -58,7 +58,7 @@ impl Origins {
         Errors(all)
     }
 
-    /// The origin of the first joint that a text names.
+    /// Origin of the first joint that a text names.
     fn named(&self, text: &str) -> Option<&Origin> {
         let mut names = text.split('`').skip(1).step_by(2);
         names.find_map(|name| {
@@ -75,7 +75,7 @@ impl Origins {
     }
 }
 
-/// An error of a description as one of the file.
+/// Converts an error of the description to an error of the source file.
 fn in_file(error: &Diagnostic, origin: Option<&Origin>) -> Diagnostic {
     let label = match error.label.as_str() {
         "" => String::new(),
@@ -94,7 +94,7 @@ fn in_file(error: &Diagnostic, origin: Option<&Origin>) -> Diagnostic {
     .help(help)
 }
 
-/// A way out in the file or among the options of the import.
+/// Advice in terms of the source file or the import options.
 fn help(error: &Diagnostic) -> String {
     let own = match error.code {
         Code::ACTUATED => {

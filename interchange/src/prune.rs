@@ -1,5 +1,6 @@
-//! Pruning of a file's tree by the table of its format: readers only see what the table honours. Everything else is
-//! taken out and recorded.
+//! Removes elements and attributes that a format's table does not honour, and records them.
+//!
+//! Readers then see honoured contents only.
 
 use crate::{
     account::{Index, Rule, Table, Treatment, Use, is_neutral},
@@ -7,13 +8,13 @@ use crate::{
     xml::Element,
 };
 
-/// Why names outside a table are reported.
+/// Reason for names that are not in the table.
 const UNKNOWN: &str = "not in the specification that import knows; not used";
 
-/// Why a neutral value needs no report.
+/// Reason for values without effect, which are not reported.
 const NEUTRAL: &str = "this value has no effect";
 
-/// Takes everything that the table does not honour out of a file's tree, and records it.
+/// Removes and records everything in a tree that the table does not honour.
 pub(crate) fn keep_honoured(files: &Files, table: &Table, root: &mut Element) {
     let index = Index::new(table);
     if let Some(rule) = index.rule("", &root.name) {
@@ -55,7 +56,7 @@ fn keep_inside(files: &Files, index: &Index, rule: &Rule, element: &mut Element)
     });
 }
 
-/// An element or an attribute of a file.
+/// An element or attribute of a file.
 struct Subject<'s> {
     element: &'s str,
     attribute: Option<&'s str>,
@@ -63,7 +64,7 @@ struct Subject<'s> {
     place: &'s Place,
 }
 
-/// Records what is done with an element or attribute; true if the reader is to see it.
+/// Records the treatment of an element or attribute; true if readers are to see it.
 fn is_kept(files: &Files, treatment: Option<Treatment>, subject: &Subject<'_>) -> bool {
     let record = |kind, reason| {
         files.record(
@@ -100,7 +101,7 @@ fn is_kept(files: &Files, treatment: Option<Treatment>, subject: &Subject<'_>) -
     false
 }
 
-/// Records a key of a format without elements.
+/// Records a key of a format without XML elements.
 pub(crate) fn record_key(
     files: &Files,
     table: &Table,

@@ -1,4 +1,4 @@
-//! Torques of joints that a description cannot have: they are left out and reported.
+//! Removes and reports joint torques that a description cannot express.
 
 use crate::{
     files::Files,
@@ -6,7 +6,7 @@ use crate::{
     model::{Joint, Kind, Model},
 };
 
-/// What a file says of the torques of a joint.
+/// Torque components that a file may give for a joint.
 #[derive(Debug, Clone, Copy)]
 enum Torque {
     Damping,
@@ -15,7 +15,7 @@ enum Torque {
     Spring,
 }
 
-/// Leaves torques of balls and, in robots with loops, springs out.
+/// Removes all torques of ball joints, and springs of robots with loops.
 pub(crate) fn leave_out(files: &Files, format: Format, model: &mut Model) {
     let has_loops = !model.closures.is_empty();
     for joint in &mut model.joints {
@@ -34,7 +34,7 @@ pub(crate) fn leave_out(files: &Files, format: Format, model: &mut Model) {
     }
 }
 
-/// The torques that a joint has.
+/// Torque components that a joint has.
 fn given(joint: &Joint) -> Vec<Torque> {
     let stiffness = joint.spring.map_or(0.0, |(stiffness, _)| stiffness);
     let all = [
@@ -52,7 +52,7 @@ fn report(files: &Files, format: Format, joint: &Joint, torque: Torque, reason: 
     files.demote(&joint.place, element, attribute, reason);
 }
 
-/// The element and attribute in which a format gives a torque.
+/// Element and attribute of a torque component in a format.
 fn source(format: Format, torque: Torque) -> (&'static str, Option<&'static str>) {
     let of = |all: [&'static str; 4]| all[torque as usize];
     match format {

@@ -1,4 +1,4 @@
-//! The description as TOML, with a comment at each choice.
+//! Writes the description as TOML, with a comment at each choice.
 
 mod believable;
 mod experiment;
@@ -16,14 +16,14 @@ use crate::{
 use overact_description::diagnostic::Span;
 use std::fmt::Write as _;
 
-/// A description, and where its joints are in it.
+/// A description, and the locations of its joints.
 pub(crate) struct Written {
     pub(crate) text: String,
-    /// Bytes of the text and the joint of the model that they are about.
+    /// Byte ranges of the text and the joint that each belongs to.
     pub(crate) joints: Vec<(Span, usize)>,
 }
 
-/// The description.
+/// Writes the description.
 pub(crate) fn toml(
     network: &Network<'_>,
     plan: &Plan,
@@ -72,7 +72,7 @@ pub(crate) fn toml(
     Written { text, joints }
 }
 
-/// What of the file the description does not use although the model may differ without it.
+/// Lists contents of the file that are not used although they may change the model.
 fn unused(text: &mut String, account: &Account) {
     if account.reported.is_empty() {
         return;
@@ -87,7 +87,7 @@ fn unused(text: &mut String, account: &Account) {
     }
 }
 
-/// The choices of the user on which names of parameters depend; none where there are none.
+/// Import options that parameter names depend on; `None` if there are none.
 fn given(options: &Options) -> Option<String> {
     let mut words = Vec::new();
     if options.fix_base {
@@ -213,7 +213,7 @@ fn joint(text: &mut String, leg: &str, joint: &Joint) {
     }
 }
 
-/// `theta` or `r`: a constant, or the variable and one.
+/// `theta` or `r`: a constant, or a variable plus a constant.
 fn variable(
     text: &mut String,
     joint: &Joint,
@@ -270,7 +270,7 @@ fn place(text: &mut String, leg: &Leg) {
     }
 }
 
-/// Values of the file's masses, inertias and friction: those of the virtual robot, and the prior.
+/// Masses, inertias and friction of the file, as values of the virtual robot and as prior.
 fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
     let single = plan.legs.len() == 1;
     let (mut lines, mut impossible) = (Vec::new(), Vec::new());
@@ -339,7 +339,7 @@ fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
     }
 }
 
-/// An angle as a value: a number, or a text with its unit.
+/// An angle as TOML: a number, or a string with unit.
 fn angle_value(value: f64) -> String {
     let shown = angle(value);
     if shown.ends_with("deg") {
@@ -349,12 +349,12 @@ fn angle_value(value: f64) -> String {
     }
 }
 
-/// A position with all its digits.
+/// A number with all its digits.
 fn plain(value: f64) -> String {
     decimal(value)
 }
 
-/// A line of comment, wrapped.
+/// Appends a wrapped comment line.
 fn comment(text: &mut String, line: &str) {
     let mut width = 0;
     text.push('#');
@@ -373,20 +373,20 @@ fn comment(text: &mut String, line: &str) {
     text.push('\n');
 }
 
-/// A text without anything that would end a comment.
+/// Replaces control characters, which would end a comment.
 fn comment_text(text: &str) -> String {
     text.chars()
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect()
 }
 
-/// A text inside quotation marks.
+/// Escapes a text as a TOML string.
 fn quoted(text: &str) -> String {
     let text = comment_text(text);
     text.replace('\\', "\\\\").replace('"', "\\\"")
 }
 
-/// The name of the robot: words that begin with capitals, as a Rust type.
+/// Name of the robot in upper camel case, like a Rust type.
 fn robot_name(name: &str) -> String {
     let word = word(name);
     let capital = |part: &str| {

@@ -1,41 +1,41 @@
-//! XML as a tree of elements that know their place: without entities, of bounded depth and size.
+//! XML as a tree of elements with locations; no entities, bounded depth and size.
 
 #[cfg(test)]
 use crate::account::trace;
 use crate::files::{Files, Place};
 
-/// Elements within each other, also those of included files.
+/// Largest depth of nested elements, including those of included files.
 pub(crate) const DEPTH: usize = 400;
-/// Attributes of an element, at most.
+/// Largest number of attributes of an element.
 const MOST_ATTRIBUTES: usize = 200;
-/// Attributes of an element before they are looked at: the parser compares each with all others.
+/// Largest number of attributes before parsing, because the parser compares each with all others.
 const PARSED_ATTRIBUTES: usize = 5_000;
-/// Declarations of namespaces, which each element inherits.
+/// Largest number of namespace declarations, which each element inherits.
 const MOST_NAMESPACES: usize = 1_000;
 
-/// An element.
+/// An XML element.
 #[derive(Debug, Clone)]
 pub(crate) struct Element {
-    /// Its name.
+    /// Tag name.
     pub(crate) name: String,
-    /// Its attributes in the order of the file, each with the place of its value.
+    /// Attributes in file order: name, value, location of the value.
     pub(crate) attributes: Vec<(String, String, Place)>,
-    /// The elements in it.
+    /// Child elements.
     pub(crate) children: Vec<Element>,
-    /// The text in it without blanks around, and its place; that of the element where there is none.
+    /// Trimmed text and its location; the location of the element if there is no text.
     pub(crate) text: (String, Place),
-    /// Where it begins.
+    /// Location of the start tag.
     pub(crate) place: Place,
 }
 
-/// Reads a file's text; `None` after an error.
+/// Parses a file; `None` after an error.
 pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
     let text = files.text(file);
     check_tags(files, file, &text)?;
     let most = files.elements_left();
     let options = roxmltree::ParsingOptions {
         allow_dtd: false,
-        // Elements, and the texts and comments between them.
+        // Elements and the text and comment nodes between them.
         nodes_limit: u32::try_from(3 * most + 3).unwrap_or(u32::MAX),
         ..roxmltree::ParsingOptions::default()
     };
@@ -86,13 +86,13 @@ pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
     found
 }
 
-/// Reports elements that are within each other more than [`DEPTH`] deep.
+/// Reports elements nested deeper than [`DEPTH`].
 pub(crate) fn too_deep(files: &Files, place: &Place) {
     let message = format!("elements are within each other more than {DEPTH} deep");
     files.report(place, message, "describe the robot in parts");
 }
 
-/// Refuses tags with more attributes, and files with more namespaces, than the parser reads in a short time.
+/// Rejects tags with too many attributes and files with too many namespaces, which parse slowly.
 fn check_tags(files: &Files, file: usize, text: &str) -> Option<()> {
     let help = "no element of a robot has so many";
     let mut start = 0;
@@ -114,7 +114,7 @@ fn check_tags(files: &Files, file: usize, text: &str) -> Option<()> {
     Some(())
 }
 
-/// The byte of a line and column.
+/// Location of a line and column.
 fn place_of(text: &str, file: usize, at: roxmltree::TextPos) -> Place {
     let line = (at.row as usize).saturating_sub(1);
     let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
@@ -125,7 +125,7 @@ fn place_of(text: &str, file: usize, at: roxmltree::TextPos) -> Place {
     Place { file, span }
 }
 
-/// An element with all that is in it; `None` where that is too deep.
+/// Converts a node with its children; `None` if nested too deep.
 pub(crate) fn element(node: roxmltree::Node<'_, '_>, file: usize, depth: usize) -> Option<Element> {
     if depth > DEPTH {
         return None;
@@ -154,7 +154,7 @@ pub(crate) fn element(node: roxmltree::Node<'_, '_>, file: usize, depth: usize) 
     })
 }
 
-/// The text of a node between its elements and comments.
+/// Text of a node between its child elements and comments.
 fn text(node: roxmltree::Node<'_, '_>, place: &Place) -> (String, Place) {
     let mut all = String::new();
     let mut span: Option<std::ops::Range<usize>> = None;
@@ -165,7 +165,8 @@ fn text(node: roxmltree::Node<'_, '_>, place: &Place) -> (String, Place) {
             continue;
         }
         let range = part.range();
-        // Where characters are written by their numbers, the text is as long as it is written only on the whole.
+        // With character references, lengths in text and file differ; only the whole range is then
+        // known.
         let before = own.len() - own.trim_start().len();
         let (start, end) = match own.len() == range.len() {
             true => (range.start + before, range.start + before + inside.len()),
@@ -188,12 +189,12 @@ fn text(node: roxmltree::Node<'_, '_>, place: &Place) -> (String, Place) {
 }
 
 impl Element {
-    /// The value of an attribute.
+    /// Value of an attribute.
     pub(crate) fn get(&self, name: &str) -> Option<&str> {
         self.attribute(name).map(|(value, _)| value)
     }
 
-    /// The value of an attribute and its place.
+    /// Value of an attribute and its location.
     pub(crate) fn attribute(&self, name: &str) -> Option<(&str, &Place)> {
         #[cfg(test)]
         trace::attribute(&self.name, name);
@@ -202,26 +203,26 @@ impl Element {
             .map(|(_, value, place)| (value.as_str(), place))
     }
 
-    /// The first element of a name in it.
+    /// First child element with a name.
     pub(crate) fn child(&self, name: &str) -> Option<&Self> {
         #[cfg(test)]
         trace::child(&self.name, name);
         self.children.iter().find(|child| child.name == name)
     }
 
-    /// All elements of a name in it.
+    /// All child elements with a name.
     pub(crate) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Self> + 'a {
         #[cfg(test)]
         trace::child(&self.name, name);
         self.children.iter().filter(move |child| child.name == name)
     }
 
-    /// A number; the default where the attribute is absent or, after an error, no number.
+    /// Number in an attribute; the default if it is absent or invalid.
     pub(crate) fn number(&self, files: &Files, name: &str, default: f64) -> f64 {
         self.numbers(files, name).map_or(default, |[value]| value)
     }
 
-    /// So many numbers; `None` where the attribute is absent or, after an error, something else.
+    /// `N` numbers in an attribute; `None` if it is absent or invalid.
     pub(crate) fn numbers<const N: usize>(&self, files: &Files, name: &str) -> Option<[f64; N]> {
         let (text, place) = self.attribute(name)?;
         match numbers(text).map(<[f64; N]>::try_from) {
@@ -234,7 +235,7 @@ impl Element {
         }
     }
 
-    /// Any number of numbers.
+    /// List of numbers in an attribute.
     pub(crate) fn list(&self, files: &Files, name: &str) -> Option<Vec<f64>> {
         let (text, place) = self.attribute(name)?;
         let found = numbers(text);
@@ -245,7 +246,7 @@ impl Element {
         found
     }
 
-    /// The name that refers to something; an error where it is absent.
+    /// Required attribute; reports an error if absent.
     pub(crate) fn required(&self, files: &Files, name: &str) -> Option<&str> {
         let found = self.get(name);
         if found.is_none() {
@@ -256,7 +257,7 @@ impl Element {
     }
 }
 
-/// Numbers with blanks or commas between them; none where one of them is no finite number.
+/// Parses numbers separated by blanks or commas; `None` if one is not finite.
 pub(crate) fn numbers(text: &str) -> Option<Vec<f64>> {
     let words = text
         .split([' ', '\t', '\n', '\r', ','])

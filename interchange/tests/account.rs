@@ -1,9 +1,9 @@
-//! What an import leaves out of a file is reported, or the file is rejected.
+//! Contents that an import omits are reported, or the file is rejected.
 
 use overact_interchange::{Account, Imported, Options, import};
 use std::path::Path;
 
-/// An import of files in a folder of their own; the first is imported.
+/// Imports the first of several files in their own folder.
 fn imported(files: &[(&str, &str)]) -> Imported {
     let folder = written(files);
     import(&folder.path().join(files[0].0), &Options::default()).expect("a robot")
@@ -17,7 +17,7 @@ fn written(files: &[(&str, &str)]) -> tempfile::TempDir {
     folder
 }
 
-/// What is reported: line, element, attribute and count of each entry.
+/// Reported entries: line, element, attribute and count.
 fn reported(account: &Account) -> Vec<String> {
     let shown = |entry: &overact_interchange::Entry| {
         assert!(!entry.reason.is_empty());
@@ -26,7 +26,7 @@ fn reported(account: &Account) -> Vec<String> {
     account.reported.iter().map(shown).collect()
 }
 
-/// The errors of a file, each with its line.
+/// Errors of a file with their lines.
 fn errors(name: &str, text: &str) -> String {
     let folder = written(&[(name, text)]);
     let errors = import(&folder.path().join(name), &Options::default()).expect_err(text);
@@ -41,7 +41,7 @@ fn errors(name: &str, text: &str) -> String {
     all
 }
 
-/// MJCF of one hinge, with attributes and elements in several places.
+/// MJCF with one hinge, and attributes and elements in several places.
 fn hinge(
     compiler: &str,
     option: &str,
@@ -120,7 +120,7 @@ fn what_has_no_effect_is_ignored_with_a_reason() {
     assert_eq!(mass.map(|entry| (entry.line, entry.count)), Some((4, 1)));
 }
 
-/// URDF of two links with a joint of a type, and more.
+/// URDF with two links, a joint and additional elements.
 fn two_links(more: &str) -> String {
     format!(
         "<robot name='r' xmlns:drake='d'><link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>\n\

@@ -1,9 +1,9 @@
-//! Files that are wrong, or say what can't be said: each error at its place, with a way out.
+//! Invalid or unsupported files: each error has a location and advice.
 
 use overact_interchange::{Options, import};
 use std::fs;
 
-/// What is said of a file.
+/// Error messages of a file.
 fn refused(name: &str, text: &str) -> String {
     refused_with(name, text, &Options::default())
 }
@@ -32,7 +32,7 @@ fn refused_with(name: &str, text: &str, options: &Options) -> String {
     all
 }
 
-/// A robot of URDF with two links, a joint of a type between them, and more.
+/// URDF with two links, a joint of a type, and additional elements.
 fn two_links(kind: &str, more: &str) -> String {
     format!(
         "<robot name='r'>\n<link name='a'/>\n<link name='b'><inertial><mass value='1'/></inertial></link>\n\
@@ -157,7 +157,7 @@ fn loops_that_cannot_close_are_named() {
     );
 }
 
-/// A table of two joints, with one line in the place of another.
+/// Table of two joints with one line replaced.
 fn table(line: &str, by: &str) -> String {
     let text = "(* Robotname = 'two' *)\nNL = 2\nNJ = 2\nNF = 2\nant = {0,1}\nsigma = {0,0}\nb = {0,0}\nd = {0,D2}\n\
         r = {0,0}\ngamma = {0,0}\nalpha = {0,pi/2}\nmu = {1,1}\ntheta = {t1,t2}\nM = {1,M2}\n";
@@ -206,7 +206,7 @@ fn tables_that_say_no_robot_are_told_at_their_line() {
         let said = refused("two.par", &table(line, by).replace("D2", "0"));
         assert!(said.starts_with(expected), "{by}: {said}");
     }
-    // What is neither: bytes of something else are told without a line.
+    // Files in no known format are reported without a line.
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.par");
     fs::write(&file, [0_u8, 159, 146, 150]).expect("a file");
@@ -333,7 +333,8 @@ fn included_files_are_limited_together() {
 
 #[test]
 fn a_second_frame_may_be_fixed_on_another_one() {
-    // A pendulum of two links whose tip is held by two links more; frame 6 is fixed on frame 5's body.
+    // A pendulum of two links whose tip is held by two more links; frame 6 is fixed to the body of
+    // frame 5.
     let table = |d: &str| {
         format!(
             "NL = 5\nNJ = 7\nNF = 9\nant = {{0,1,0,0,0,3,5,2,8}}\nsigma = {{0,0,0,0,0,0,0,2,2}}\nb = {{0,0,0,0,0,0,0,0,0}}\n\

@@ -1,8 +1,8 @@
-//! Joints that follow joints that follow others: factors and offsets are composed, in any order of the file.
+//! Chains of coupled joints: factors and offsets are composed, in any order of the file.
 
 use overact_interchange::{Errors, Options, import};
 
-/// The description of a file without its comments and name.
+/// Description of a file without its comments and name.
 fn imported(name: &str, text: &str) -> Result<String, Errors> {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join(name);
@@ -12,7 +12,7 @@ fn imported(name: &str, text: &str) -> Result<String, Errors> {
     Ok(kept.map(|line| format!("{line}\n")).collect())
 }
 
-/// The errors of a file, each with its line.
+/// Errors of a file with their lines.
 fn errors(name: &str, text: &str) -> String {
     let errors = imported(name, text).expect_err(text);
     let mut all = String::new();
@@ -30,7 +30,7 @@ fn errors(name: &str, text: &str) -> String {
 const INERTIAL: &str = "<inertial><origin xyz='0.1 0.02 -0.03'/><mass value='2'/>\
     <inertia ixx='0.02' iyy='0.03' izz='0.04' ixy='0' ixz='0' iyz='0'/></inertial>";
 
-/// URDF of links a, b, c, d in a row; the joints j1, j2, … stand in the file in the given order, a line each.
+/// URDF with links a, b, c, d in a row, and joints j1, j2, … in the given order, one per line.
 fn row(order: &[usize], mimics: [&str; 4]) -> String {
     let links = ["base", "a", "b", "c", "d"];
     let mut text = String::from("<robot name='row'><link name='base'/>");
@@ -70,7 +70,7 @@ fn mimics_of_mimics_compose_in_any_order_of_the_file() {
     }
 }
 
-/// MJCF of four hinges in a row with equalities between them.
+/// MJCF with four hinges in a row and equality constraints between them.
 fn hinges(equalities: &[&str]) -> String {
     let mut text = String::from("<mujoco model='row'><compiler angle='radian'/><worldbody>\n");
     for at in 1..=4 {
@@ -109,7 +109,7 @@ fn equalities_of_mjcf_compose_in_any_order_of_the_file() {
         imported("row.xml", &hinges(&backwards)).expect("a row"),
         expected
     );
-    // Coefficients that are not given are MuJoCo's: 0 1 0 0 0.
+    // Missing coefficients are MuJoCo's defaults 0 1 0 0 0.
     let all = |second: &str| hinges(&[second, composed[1], composed[2]]);
     assert_eq!(
         imported("row.xml", &all("joint1='j2' joint2='j1' polycoef='0.25'")).expect("a row"),

@@ -1,5 +1,5 @@
-//! Parameters go back into the file that they came from: what differs changes, everything else stays byte by byte,
-//! and an import of the new file gives the parameters that were put in.
+//! Export of parameters to their file: only changed values differ, and a new import gives these
+//! parameters.
 
 use overact_codegen::{Source, description};
 use overact_interchange::{Exported, Options, export, import};
@@ -15,7 +15,7 @@ fn model(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// The parameters that an import gives the virtual robot.
+/// Parameters that an import gives the virtual robot.
 fn parameters(file: &Path) -> BTreeMap<String, f64> {
     let text = import(file, &Options::default()).expect("a robot").text;
     let description = description::parse(&Source::new("made.toml", text)).expect("a description");
@@ -34,7 +34,7 @@ fn exported(file: &Path, values: &BTreeMap<String, f64>, folder: &Path) -> Expor
     export(file, &path, &Options::default()).expect("an export")
 }
 
-/// Every mass and moment as of a body of another size and density in the same axes, and other friction.
+/// Masses and moments of a body with another size and density in the same axes, and other friction.
 fn others(values: &BTreeMap<String, f64>) -> BTreeMap<String, f64> {
     let factor = |name: &str| match name.split('_').next() {
         Some("m") => 1.25,
@@ -90,7 +90,7 @@ fn mjcf_goes_round() {
             .find(|(before, _)| before.contains(part))
             .map(|(_, after)| after.trim().to_owned())
     };
-    // What a default class says of a joint is said of the joint itself.
+    // Values from a default class are written to the joint itself.
     let expected = "<joint name=\"left_motor\" axis=\"0 1 0\" armature=\"0.0075\" damping=\"0.6\" frictionloss=\"0.15\"/>";
     assert_eq!(line("name=\"left_motor\"").as_deref(), Some(expected));
     let foot = line("mass=\"0.8\"").expect("the foot");
@@ -129,7 +129,7 @@ fn what_has_no_place_is_told() {
         made.notes,
         ["URDF has no place for ia_yaw = 0.2: left out."]
     );
-    // A mass that can't be is written, and told.
+    // A negative mass is written and reported.
     values.remove("ia_yaw");
     values.insert("m_reach".to_owned(), -1.0);
     let made = exported(&file, &values, folder.path());

@@ -1,4 +1,4 @@
-//! Files of each format become descriptions that pass their check.
+//! Files of each format are imported as valid descriptions.
 
 use overact_codegen::{Source, check};
 use overact_interchange::{Options, import};
@@ -10,7 +10,7 @@ fn model(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// The text and what its check finds.
+/// Text of the description and result of its check.
 fn made(name: &str, options: &Options) -> (String, overact_codegen::Checked) {
     let imported = import(&model(name), options).expect("a robot that can be said");
     let source = Source::new("made.toml", imported.text.clone());
@@ -76,7 +76,7 @@ fn a_body_of_a_chain_that_carries_a_motor_has_a_branch() {
     );
 }
 
-/// The four-bar of the table, with lengths that its symbols have.
+/// The four-bar of the table, with values for its symbolic lengths.
 fn of_table() -> Options {
     let lengths = [("L1", 0.2), ("D3", 0.5), ("L2", 0.52), ("L3", 0.25)];
     Options {
@@ -101,9 +101,9 @@ fn a_table_of_opensymoro_closes_its_loops() {
     );
     assert!(text.contains("name = \"LoopArm\""), "{text}");
     assert!(text.contains("gravity = [0, 0, -9.81]"), "{text}");
-    // The rocker's numbers are values, the rod's symbols are parameters without any.
+    // The rocker's numbers are values; the rod's symbols are parameters without values.
     assert!(text.contains("m_j3_") && text.contains(" = 2.0"), "{text}");
-    // The rod hangs on the joint that closes the loop.
+    // The rod is connected to the joint that closes the loop.
     assert!(!text.contains("m_j4_"), "{text}");
     let joints = mechanism.legs.iter().flat_map(|leg| &leg.joints);
     let rod = joints.into_iter().find(|joint| joint.name == "j4");
@@ -122,7 +122,7 @@ fn every_robot_has_runs_inside_the_limits_of_its_joints() {
         }
         assert!(experiment.torque_noise.iter().all(|noise| *noise > 0.0));
     }
-    // The slide of the arm goes from 0 to 0.2 m: home is in the middle, and a run stays inside.
+    // The slide's range is 0 to 0.2 m: home is in the middle, and runs stay within the range.
     let (text, checked) = made("arm.urdf", &Options::default());
     assert!(text.contains("home = { reach = 0.1 }"), "{text}");
     let experiment = checked.description.experiment.expect("an experiment");
@@ -160,7 +160,8 @@ fn a_joint_that_follows_keeps_its_constant() {
         std::fs::write(&path, body).expect("a file");
         import(&path, &Options::default()).expect("a robot").text
     };
-    // The centre of the mass is 0.1 m along x of a body that is turned by 0.3 rad where the leader is at zero.
+    // The centre of mass is 0.1 m along x of a body that is rotated by 0.3 rad when the leader is
+    // at zero.
     let told = text(" offset='0.3'");
     assert!(told.contains("theta = \"0.5 * q_j\""), "{told}");
     let value = |name: &str| {

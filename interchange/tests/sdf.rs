@@ -1,4 +1,4 @@
-//! Files of SDFormat: the same robot as in another format, loops of joints, and what can't be said.
+//! SDFormat files: the same robot as in another format, closed loops, and unsupported contents.
 
 use overact_codegen::{Checked, Source, check};
 use overact_interchange::{Options, import};
@@ -13,7 +13,7 @@ fn model(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// The text and what its check finds.
+/// Text of the description and result of its check.
 fn made(path: &Path, options: &Options) -> (String, Checked) {
     let said = |errors: overact_interchange::Errors| {
         let all = errors.0.iter();
@@ -31,7 +31,7 @@ fn made(path: &Path, options: &Options) -> (String, Checked) {
     }
 }
 
-/// The text and check of a file of these words.
+/// Description and check of an SDFormat text.
 fn written(text: &str, options: &Options) -> (String, Checked) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("robot.sdf");
@@ -39,7 +39,7 @@ fn written(text: &str, options: &Options) -> (String, Checked) {
     made(&path, options)
 }
 
-/// Lines that say something: no comments, and not the name of the file.
+/// Lines of a description without comments and the file name.
 fn kept(text: &str) -> Vec<&str> {
     let is_kept = |line: &&str| !line.starts_with('#') && !line.starts_with("s");
     text.lines().filter(is_kept).collect()
@@ -92,7 +92,8 @@ fn a_five_bar_closes_by_its_own_joints() {
     );
     assert_eq!(sizes, (2, 2, 2));
     assert!(text.contains("gravity = [0, 0, -9.81]"), "{text}");
-    // Seven digits of a right angle are one, and ten of 60 degrees: no fraction of a degree is left.
+    // Seven digits of a right angle and ten of 60 degrees are exact: no fractions of a degree
+    // remain.
     for line in text
         .lines()
         .filter(|line| line.starts_with("theta") || line.starts_with("rotation"))
@@ -105,13 +106,13 @@ fn a_five_bar_closes_by_its_own_joints() {
         }
     }
     assert!(text.contains("d = 0.2\n"), "{text}");
-    // Without the names of motors nobody knows which joints of a loop are driven.
+    // Without motor names, the actuated joints of a loop are unknown.
     assert!(
         said(&fs::read_to_string(model("five_bar.sdf")).expect("a file")).contains("--actuated")
     );
 }
 
-/// A joint of a type between the world and a link, with more in it, in a model of more.
+/// A joint of a type between the world and a link, with more contents of joint and model.
 fn one_joint(kind: &str, inside: &str, more: &str) -> String {
     format!(
         "<sdf version='1.11'>\n<model name='m'>\n<link name='a'>\n<pose>0.1 0.2 0.3 0 0 0</pose></link>\n\
@@ -136,7 +137,7 @@ fn joints_of_two_axes_are_two() {
             "{text}"
         );
     }
-    // A ball turns without a motor: in a loop it may, and in a robot without one it can't be said.
+    // A ball joint has no motor; it is allowed in loops only.
     let ball = one_joint("ball", "", "");
     assert!(said(&ball).starts_with("5: the ball `j` has no motor"));
     let five_bar = fs::read_to_string(model("five_bar.sdf")).expect("a file");
@@ -166,13 +167,13 @@ fn a_screw_is_a_helical_joint() {
         text.contains("fv_j = 0.5") && text.contains("m_j = 1"),
         "{text}"
     );
-    // The older word counts radians for a metre, of a thread with a left hand.
+    // The deprecated `thread_pitch` is in rad/m, for a left-handed thread.
     let (old, _) = written(
         &screw("<thread_pitch>-1256.6370614359173</thread_pitch>"),
         &Options::default(),
     );
     assert_eq!(kept(&text), kept(&old));
-    // The same screw, told from the body to the world.
+    // The same screw, described from the body to the world.
     let against = plain.replace(
         "<parent>world</parent><child>a</child>",
         "<pose relative_to='a'/><parent>a</parent><child>b</child>",
@@ -196,7 +197,7 @@ fn axes_follow_axes() {
     };
     let (text, checked) = written(&one_joint("revolute", Z, &mimic("j")), &Options::default());
     assert_eq!(checked.mechanism.dof(), 1);
-    // 0.25 (q - 0.2) + 0.1, of which the body's frame takes the constant.
+    // 0.25 (q - 0.2) + 0.1; the body's frame contains the constant.
     assert!(text.contains("r = \"0.25 m/rad * q_j\""), "{text}");
     assert!(text.contains("mz_k = 0.05\n"), "{text}");
     assert!(
@@ -215,7 +216,7 @@ fn axes_follow_axes() {
     };
     let (text, checked) = written(&one_joint("revolute", Z, &gears("a")), &Options::default());
     assert_eq!(checked.mechanism.dof(), 2);
-    // The wheels turn against each other; the second joint is told from its wheel to the frame.
+    // The wheels counter-rotate; the second joint is described from its wheel to the frame.
     assert!(text.contains("q_k"), "{text}");
     assert!(
         text.contains("= \"3.0 * q_k\"") || text.contains("= \"3 * q_k\""),
@@ -227,7 +228,7 @@ fn axes_follow_axes() {
     );
 }
 
-/// What is said of a file.
+/// Error messages of a file.
 fn said(text: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.sdf");
@@ -409,7 +410,7 @@ fn models_of_a_world_and_models_of_files() {
         fs::write(&path, text).expect("a file");
         path
     };
-    // An old file, whose axes are told in its model, turned in another.
+    // An old file whose axes are in its model's frame, rotated in another.
     let part = |version: &str| {
         format!(
             "<sdf version='{version}'><model name='part'><link name='a'/><link name='b'><pose>0 0 0 0 0 1.5707963</pose></link>\
@@ -445,11 +446,11 @@ fn models_of_a_world_and_models_of_files() {
         texts.push(text.replace("arm__", ""));
     }
     assert_eq!(kept(&texts[0]), kept(&texts[1]));
-    // Since 1.5 the axis is told in the joint, which the child turns.
+    // Since 1.5 the axis is in the joint frame, which the child rotates.
     assert_ne!(kept(&texts[0]), kept(&texts[2]));
 }
 
-/// A file that ends early, or has something else in the place of one of its values, is told of or is another robot.
+/// A truncated file or a replaced value gives an error or another robot.
 #[test]
 fn slips_are_no_panics() {
     let text = fs::read_to_string(model("five_bar.sdf")).expect("a file");

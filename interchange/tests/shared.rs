@@ -1,11 +1,11 @@
-//! Robots of other people, from a folder beside the repository: each becomes a description that passes its check, or
-//! is refused by name.
+//! Public robot models from a folder next to the repository are imported as valid descriptions, or
+//! rejected by name.
 
 use overact_codegen::{Source, check};
 use overact_interchange::{Imported, Options, import};
 use std::path::{Path, PathBuf};
 
-/// The folder of the models; none where it is not there.
+/// Folder of the models, if it exists.
 fn shared() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
     let folder = std::env::var_os("OVERACT_SHARED")
@@ -18,7 +18,7 @@ fn shared() -> Option<PathBuf> {
     Some(folder)
 }
 
-/// Each with its degrees of freedom, motors, legs and joints.
+/// Models with their degrees of freedom, motors, legs and joints.
 const SAID: [(&str, [usize; 4]); 10] = [
     ("ankles/g1.xml", [2, 2, 3, 11]),
     ("ankles/tiangong.xml", [2, 2, 3, 8]),
@@ -53,7 +53,7 @@ const SAID: [(&str, [usize; 4]); 10] = [
     ),
 ];
 
-/// Each with a part of the reason.
+/// Rejected models with a part of the reason.
 const REFUSED: [(&str, &str); 1] = [(
     "example-parallel-robots/disney_like/robot.urdf",
     "the robot has 7 degrees of freedom, and 6 motors",
@@ -114,7 +114,7 @@ fn a_file_that_includes_another_is_the_same_robot() {
             ..Options::default()
         };
         let text = import(&folder.join(name), &options).expect("a robot").text;
-        // Lines and the name of the file differ.
+        // Comments and the name of the file differ.
         let kept = text.lines().filter(|line| !line.starts_with(['#', 's']));
         kept.map(str::to_owned).collect::<Vec<_>>()
     };

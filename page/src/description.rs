@@ -1,4 +1,4 @@
-//! A description while it is written.
+//! A description that is being edited.
 
 use crate::problems::{json, thrown};
 use overact_codegen::{Source, mechanism::Mechanism};
@@ -13,7 +13,7 @@ pub struct Description {
     note: Option<String>,
 }
 
-/// What is said of it at once.
+/// Information shown while editing.
 #[derive(Serialize)]
 struct Said<'a> {
     robot: &'a str,
@@ -22,16 +22,16 @@ struct Said<'a> {
     joints: usize,
     actuators: usize,
     dof: usize,
-    /// What may not be meant.
+    /// Contents that may be unintended.
     note: Option<&'a str>,
 }
 
 #[wasm_bindgen]
 impl Description {
-    /// Checks a description; errors call it `name`.
+    /// Checks a description; `name` is its name in errors.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All errors of the description.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str, text: &str) -> Result<Self, JsValue> {
         let checked = check_text(Source::new(name, text)).map_err(thrown)?;
@@ -58,7 +58,7 @@ impl Description {
         })
     }
 
-    /// The drawing at home, turned around its vertical and over, rad: an SVG document.
+    /// Drawing at home as SVG, rotated about the vertical and towards the reader, rad.
     #[must_use]
     pub fn drawing(&self, around: f64, over: f64) -> String {
         drawing::turned(&self.mechanism, around, over)

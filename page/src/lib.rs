@@ -1,13 +1,13 @@
-//! overact in a browser: what the page's script calls, in a worker beside the page.
+//! overact in a browser: functions that the page's script calls in a worker.
 //!
-//! Texts go in, texts and documents (JSON) come out; nothing here touches the page, a network or a disk. What is
-//! wrong is thrown as a document, too: a list of problems, each with its line.
+//! Inputs are texts; outputs are texts and JSON documents. Nothing here accesses the page, a
+//! network or a disk. Errors are thrown as JSON: a list of problems with their lines.
 //!
-//! - `description`: a description while it is written: its errors, its drawing;
-//! - `model`: a description that is compiled: parameters, operations, Rust and C;
-//! - `session`: a robot that runs: virtual runs, logs, identification;
-//! - `values`: its functions at samples;
-//! - `progress`: how far long work is, and defects of overact itself, told to the script.
+//! - `description`: errors and drawing of a description that is being edited;
+//! - `model`: a compiled description: parameters, operations, Rust and C;
+//! - `session`: virtual runs, logs and identification of a robot;
+//! - `values`: functions at samples;
+//! - `progress`: progress and internal errors, reported to the script.
 
 mod description;
 mod model;

@@ -1,4 +1,4 @@
-//! A description that is compiled: what its model consists of, what it costs, and its code.
+//! A compiled description: composition, cost and code of its model.
 
 use crate::{
     problems::{json, thrown},
@@ -21,7 +21,7 @@ impl Model {
     /// Compiles a description with all its functions; `effort` is `none`, `quick` or `thorough`.
     ///
     /// # Errors
-    /// Everything that is wrong with the description.
+    /// All errors of the description.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str, text: &str, effort: &str) -> Result<Self, JsValue> {
         let unknown = || Problem::new(Code::USAGE, format!("there is no effort `{effort}`"));
@@ -44,31 +44,31 @@ impl Model {
         })
     }
 
-    /// What `overact inspect --json` prints.
+    /// Output of `overact inspect --json`.
     #[must_use]
     pub fn inspection(&self) -> String {
         self.inspection.clone()
     }
 
-    /// The robot's module of Rust.
+    /// Rust module.
     #[must_use]
     pub fn rust(&self) -> String {
         self.rust.clone()
     }
 
-    /// How the files of C are called, without `.h` and `.c`.
+    /// Name of the C files, without `.h` and `.c`.
     #[must_use]
     pub fn c_name(&self) -> String {
         self.c.stem.clone()
     }
 
-    /// The header of C.
+    /// C header.
     #[must_use]
     pub fn c_header(&self) -> String {
         self.c.header.clone()
     }
 
-    /// The source of C.
+    /// C source.
     #[must_use]
     pub fn c_source(&self) -> String {
         self.c.source.clone()

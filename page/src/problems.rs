@@ -1,14 +1,14 @@
-//! What is wrong, as a document that is thrown to the script.
+//! Errors as JSON documents that are thrown to the script.
 
 use overact_codegen::diagnostic::Code;
 use overact_robot::{Error, Problem};
 use serde::Serialize;
 use wasm_bindgen::JsValue;
 
-/// A document: the fields of `document` as JSON.
+/// JSON of a document.
 ///
 /// # Errors
-/// Never for the documents of the page: their keys are texts.
+/// Never for the documents of the page: their keys are strings.
 pub(crate) fn json(document: &impl Serialize) -> Result<String, JsValue> {
     serde_json::to_string(document).map_err(|error| {
         let problem = Problem::new(Code::NO_RESULT_TEXT, error.to_string());
@@ -16,7 +16,7 @@ pub(crate) fn json(document: &impl Serialize) -> Result<String, JsValue> {
     })
 }
 
-/// Everything that is wrong: a list of problems with code, message, file, line, column and a way out.
+/// List of problems with code, message, file, line, column and advice.
 pub(crate) fn thrown(error: impl Into<Error>) -> JsValue {
     match json(&error.into().problems()) {
         Ok(text) => JsValue::from_str(&text),

@@ -1,7 +1,7 @@
-//! How far long work is, told to functions of the script.
+//! Reports progress to functions of the script.
 //!
-//! A worker has one thread, and its functions live on it: they are kept here, so that what asks for a watcher of
-//! any thread is given one that holds nothing.
+//! A worker has one thread, and its functions stay on it. They are stored in a thread-local
+//! variable, so that callbacks for other threads capture nothing.
 
 use js_sys::Function;
 use std::cell::RefCell;
@@ -16,8 +16,10 @@ struct Listeners {
     defect: Function,
 }
 
-/// From now on `progress` is called with the part of the work that is done, from 0 to 1, and a word on what is
-/// being done; `defect` with what went wrong in overact itself, just before the module ends with a trap.
+/// Sets the listeners.
+///
+/// `progress` receives the completed fraction, from 0 to 1, and the current work. `defect` receives
+/// an internal error just before the module traps.
 #[wasm_bindgen]
 pub fn listen(progress: Function, defect: Function) {
     LISTENERS.set(Some(Listeners { progress, defect }));
@@ -26,7 +28,7 @@ pub fn listen(progress: Function, defect: Function) {
     }));
 }
 
-/// Tells how far the work is. A listener that fails is no reason to stop.
+/// Reports progress; a failing listener is ignored.
 pub(crate) fn tell(part: f64, what: &str) {
     with_listeners(|all| {
         drop(

@@ -1,4 +1,4 @@
-//! A robot that runs: its virtual runs, logs of the user, and what is identified from either.
+//! Session with a robot: virtual runs, user's logs, and identification.
 
 use crate::{
     problems::{json, thrown},
@@ -12,19 +12,19 @@ use overact_simulation::{Record, write_csv};
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
-/// A robot with the logs that have been given to it.
+/// A robot with its logs.
 #[wasm_bindgen]
 pub struct Session {
     pub(crate) robot: Robot,
     runs: Runs,
 }
 
-/// A run of the virtual experiment, as the simulation writes it to a file.
+/// Run of the virtual experiment as CSV.
 #[derive(Serialize)]
 struct Log<'a> {
     name: &'a str,
     payload: bool,
-    /// Whether the description holds it out, to validate with.
+    /// Whether it is a validation run of the description.
     held_out: bool,
     samples: usize,
     csv: String,
@@ -47,10 +47,10 @@ impl<'a> Log<'a> {
 
 #[wasm_bindgen]
 impl Session {
-    /// The robot of a description; errors call it `name`.
+    /// Robot of a description; `name` is its name in errors.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All errors of the description.
     #[wasm_bindgen(constructor)]
     pub fn new(name: &str, text: &str) -> Result<Self, JsValue> {
         let robot = Robot::from_text(name, text).map_err(thrown)?;
@@ -58,10 +58,10 @@ impl Session {
         Ok(Self { robot, runs })
     }
 
-    /// The virtual runs as logs.
+    /// Virtual runs as logs.
     ///
     /// # Errors
-    /// A description without an experiment, or one that can't be made.
+    /// A description without an experiment, or an invalid one.
     pub fn simulate(&self) -> Result<String, JsValue> {
         let experiment = self.robot.experiment().map_err(thrown)?;
         let records = experiment.records(&tell).map_err(thrown)?;
@@ -70,11 +70,10 @@ impl Session {
         json(&logs.collect::<Vec<_>>())
     }
 
-    /// Adds the bytes of a log, whatever its format: of a run with the payload on the platform or without, to identify
-    /// from or held out, to validate with.
+    /// Adds a log in any format, with or without payload, for training or validation.
     ///
     /// # Errors
-    /// A log that can't be used.
+    /// A log that cannot be used.
     pub fn add_log(
         &mut self,
         name: &str,
@@ -91,10 +90,11 @@ impl Session {
         Ok(())
     }
 
-    /// Identifies from the logs that have been added, or from the virtual experiment where there are none.
+    /// Identifies the parameters from the added logs, or from the virtual experiment if there are
+    /// none.
     ///
     /// # Errors
-    /// What is wrong with the logs or the experiment, or data that determine nothing.
+    /// Errors of the logs or the experiment, or data that determine no parameter.
     pub fn identify(&self) -> Result<Identified, JsValue> {
         let made;
         let runs = if self.runs.identified.is_empty() {
@@ -124,7 +124,7 @@ fn doing(progress: Progress<'_>) {
     }
 }
 
-/// What was identified, in all the ways in which it is told.
+/// Result of an identification in all output formats.
 #[wasm_bindgen]
 pub struct Identified {
     summary: String,
@@ -157,19 +157,19 @@ impl Identified {
 
 #[wasm_bindgen]
 impl Identified {
-    /// What `overact identify --all` prints.
+    /// Output of `overact identify --all`.
     #[must_use]
     pub fn summary(&self) -> String {
         self.summary.clone()
     }
 
-    /// The report: a page of its own.
+    /// Report as an HTML page.
     #[must_use]
     pub fn page(&self) -> String {
         self.page.clone()
     }
 
-    /// All numbers, that of `overact identify --json`.
+    /// All numbers, as in `overact identify --json`.
     #[must_use]
     pub fn document(&self) -> String {
         self.document.clone()
@@ -181,7 +181,7 @@ impl Identified {
         self.numbers.clone()
     }
 
-    /// Whether nothing was found that speaks against the result.
+    /// Whether the verdict is to use the result.
     #[must_use]
     pub fn trusted(&self) -> bool {
         self.trusted

@@ -1,4 +1,4 @@
-//! The functions of a robot at samples.
+//! Functions of a robot at samples.
 
 use crate::{Session, problems::thrown};
 use overact::Function;
@@ -7,7 +7,7 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 impl Session {
-    /// The names of the functions that are evaluated, one a line.
+    /// Names of the available functions, one per line.
     #[must_use]
     pub fn functions(&self) -> String {
         let all = Function::ALL.into_iter();
@@ -16,11 +16,12 @@ impl Session {
         names.join("\n")
     }
 
-    /// A function at samples: `inputs` are its inputs in their order, each sample after sample; parameters stand
-    /// once.
+    /// Evaluates a function at samples.
+    ///
+    /// `inputs` contains its inputs in order, each sample by sample; parameters occur once.
     ///
     /// # Errors
-    /// A function that the robot does not have, another number of inputs, or a sample without a value.
+    /// An unknown function, a wrong number of inputs, or a sample without a value.
     pub fn values(
         &self,
         function: &str,

@@ -1,7 +1,7 @@
-// Calls of a worker: each is a promise; one that is stopped takes its worker along, and the next has a new one.
+// Calls of a worker as promises; stopping a call ends its worker, and the next call starts a new one.
 'use strict';
 
-/** What is wrong with a description or a log: a list of problems. */
+/** Error with the problems of a description or a log. */
 class Problems extends Error {
   constructor(problems) {
     super(problems.map(one => one.message).join('\n'));
@@ -9,7 +9,7 @@ class Problems extends Error {
   }
 }
 
-/** Work that was given up for newer work. */
+/** Error of work that newer work replaced. */
 class Stopped extends Error {}
 
 class Calls {
@@ -46,7 +46,7 @@ class Calls {
     } else call.resolve(data.result);
   }
 
-  /** Ends the worker; whoever waits hears why. */
+  /** Ends the worker and rejects pending calls with the reason. */
   end(error) {
     if (this.worker) this.worker.terminate();
     this.worker = null;

@@ -1,8 +1,8 @@
-// The drawing, turned by mouse, touch or keys.
+// The drawing, rotated by mouse, touch or keys.
 'use strict';
 
 class Drawing {
-  /** @param draw gives the drawing at two angles, as a promise of a text */
+  /** @param draw returns a promise of the drawing at two angles, as text */
   constructor(element, draw) {
     this.element = element;
     this.draw = draw;
@@ -41,7 +41,7 @@ class Drawing {
     this.show();
   }
 
-  /** Draws anew; while it is drawn, later wishes are one. */
+  /** Redraws; requests during a drawing are merged. */
   async show() {
     this.isWanted = true;
     if (this.isBusy) return;
@@ -58,7 +58,7 @@ class Drawing {
     }
   }
 
-  /** An SVG document as an element of the page; names in it are texts, as XML says. */
+  /** An SVG document as an element of the page; it is parsed as XML, so names stay text. */
   put(text) {
     if (!text) return;
     const parsed = new DOMParser().parseFromString(text, 'image/svg+xml').documentElement;

@@ -1,8 +1,8 @@
-// The description as a text that is edited, with problems below their lines.
+// Text editor of the description, with problems below their lines.
 //
-// The text is the text nodes of one element; problems are elements between them, at the ends of lines, that are no
-// part of the text. What is typed goes into the text nodes as the browser puts it there; undoing is kept here, since
-// the browser's own knows nothing of the elements between.
+// The text consists of the text nodes of one element. Problems are elements between them, at the ends of lines,
+// and not part of the text. The browser inserts typed text into the text nodes. Undo is implemented here, because
+// the browser's own does not know the elements in between.
 'use strict';
 
 class Editor {
@@ -36,7 +36,7 @@ class Editor {
     return text;
   }
 
-  /** Shows another text; what was before can be had back. */
+  /** Replaces the text; undo restores the previous one. */
   set(text) {
     this.put(text, [0, 0]);
     this.past = [];
@@ -51,7 +51,7 @@ class Editor {
     this.select(at);
   }
 
-  /** The number of characters of the text before a place of the document. */
+  /** Number of characters of the text before a position in the document. */
   offset(node, within) {
     let count = 0;
     const children = [...this.element.childNodes];
@@ -67,7 +67,7 @@ class Editor {
     return count;
   }
 
-  /** The selected characters: from and to. */
+  /** Start and end of the selected characters. */
   get selected() {
     const selection = getSelection();
     if (!selection.rangeCount || !this.element.contains(selection.anchorNode)) return null;
@@ -85,7 +85,7 @@ class Editor {
     selection.addRange(range);
   }
 
-  /** The text node and the place in it of a character. */
+  /** Text node and offset of a character. */
   place(offset) {
     let last = [this.element, 0];
     for (const child of this.element.childNodes) {
@@ -97,7 +97,7 @@ class Editor {
     return last;
   }
 
-  /** Puts a text in the place of what is selected. */
+  /** Replaces the selection by a text. */
   replace(inserted) {
     const at = this.selected;
     if (!at) return;
@@ -160,7 +160,7 @@ class Editor {
     event.clipboardData.setData('text/plain', this.text.slice(...at));
   }
 
-  /** Scrolls to where the text is edited. */
+  /** Scrolls to the caret. */
   reveal() {
     const selection = getSelection();
     if (!selection.rangeCount) return;
@@ -169,7 +169,7 @@ class Editor {
     if (box.bottom > own.bottom) this.element.scrollTop += box.bottom - own.bottom + 20;
   }
 
-  /** Shows problems below their lines; those without a line stand at the top. */
+  /** Shows problems below their lines; those without a line are at the top. */
   show(problems) {
     const isShown = this.element.querySelector('.problem');
     if (this.isComposing || !problems.length && !isShown) return;

@@ -1,4 +1,4 @@
-// Logs in, reports out, all on this machine.
+// Identification from logs, entirely on this machine.
 'use strict';
 
 class Logs {
@@ -35,7 +35,7 @@ class Logs {
     this.show();
   }
 
-  /** The virtual runs of the description, as logs that may be saved. */
+  /** Virtual runs of the description, as logs that can be saved. */
   async simulate() {
     const made = await this.page.work('simulate', this.page.described());
     if (!made) return;
@@ -73,8 +73,8 @@ class Logs {
   }
 
   tell(found) {
-    // The report has no script, and the frame would run none. In a frame without an address of its own a link to a place on
-    // the page would lead to this one's.
+    // The report has no script, and the frame would run none. In a frame without an address, links to anchors would
+    // lead to this page.
     const page = found.page.replaceAll('href="#', 'href="about:srcdoc#');
     const frame = element('iframe', { sandbox: 'allow-downloads', title: 'Report of the identification', srcdoc: page });
     this.result.replaceChildren(

@@ -1,7 +1,7 @@
-// What a model consists of: base parameters, operations, code.
+// Contents of a model: base parameters, operations, code.
 'use strict';
 
-/** An element with texts and elements in it; texts are never markup. */
+/** Element with texts and elements as children; texts are never markup. */
 function element(name, attributes, ...children) {
   const made = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
@@ -9,7 +9,7 @@ function element(name, attributes, ...children) {
   return made;
 }
 
-/** A name that may be broken behind its underscores. */
+/** Name that may be broken after its underscores. */
 function broken(name) {
   return name.split(/(?<=_)/).flatMap((part, at) => (at ? [document.createElement('wbr'), part] : [part]));
 }
@@ -23,12 +23,12 @@ function table(header, rows, classes = []) {
   return element('div', { class: 'scroll', tabindex: '0' }, made);
 }
 
-/** A number with the digits that a regrouping is read with. */
+/** Coefficient of a regrouping as text. */
 function digits(value) {
   return String(Number(value.toPrecision(6)));
 }
 
-/** A sum that is broken between its terms, never inside one. */
+/** Sum that may only be broken between its terms. */
 function regrouping(terms) {
   return terms.flatMap(({ parameter, coefficient }, at) => {
     const sign = coefficient < 0 ? (at ? '− ' : '−') : (at ? '+ ' : '');
@@ -59,21 +59,21 @@ function operationsOf(model) {
   return [table(header, rows)];
 }
 
-/** Gives a text as a file. */
+/** Saves a text as a file. */
 function save(name, type, ...parts) {
   const link = element('a', { download: name, href: URL.createObjectURL(new Blob(parts, { type })) });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-/** A button that gives a text as a file. */
+/** Button that saves a text as a file. */
 function saving(name, type, text) {
   const button = element('button', { type: 'button' }, `Save ${name}`);
   button.addEventListener('click', () => save(name, type, text));
   return button;
 }
 
-/** Code with buttons to save it; long code is shown from its beginning. */
+/** Code with buttons to save it; of long code only the beginning is shown. */
 function codeOf(files) {
   const LONGEST = 200000;
   const buttons = files.map(({ name, text }) => saving(name, 'text/plain', text));

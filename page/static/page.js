@@ -1,7 +1,7 @@
-// The page: what is typed is checked and drawn at once; the rest is made when it is looked at.
+// The page: the text is checked and drawn while typing; the rest is computed when its tab is open.
 'use strict';
 
-/** The module, compiled once for all workers, and what a worker is made of. */
+/** The module, compiled once for all workers, and the script of a worker. */
 const program = (() => {
   let loaded = null;
   return () => loaded ||= (async () => {
@@ -53,7 +53,7 @@ class Page {
     get('save').addEventListener('click', () => save(this.name, 'text/plain', this.editor.text));
   }
 
-  /** A robot that comes along. */
+  /** Opens a bundled robot. */
   open(name) {
     get('robots').value = name;
     this.name = `${name}.toml`;
@@ -73,7 +73,7 @@ class Page {
     this.stale();
   }
 
-  /** What was made of the description is of an older one. */
+  /** Marks results as those of an older description. */
   stale() {
     this.model = null;
     this.making = null;
@@ -84,7 +84,7 @@ class Page {
   async check() {
     const turn = ++this.checked;
     const state = get('state');
-    // A check that still runs is of an older text.
+    // A running check belongs to an older text.
     this.quick.stop();
     try {
       const said = await this.quick.call('check', this.described());
@@ -107,7 +107,7 @@ class Page {
     }
   }
 
-  /** Makes the model if the tab that is open shows it. */
+  /** Compiles the model if the open tab shows it. */
   async need() {
     if (!this.isRight || this.model || this.making || !['parameters', 'operations', 'rust', 'c'].includes(this.tab)) return;
     const values = { ...this.described(), effort: get('effort').value };
@@ -124,7 +124,7 @@ class Page {
     get('c').replaceChildren(...codeOf([{ name: `${model.c.name}.h`, text: model.c.header }, { name: `${model.c.name}.c`, text: model.c.source }]));
   }
 
-  /** Long work with its progress; nothing where it fails or is stopped. */
+  /** Runs long work with a progress bar; the result is undefined if it fails or is stopped. */
   async work(call, values) {
     this.long.stop();
     const failed = get('failed');
@@ -176,7 +176,7 @@ class Page {
   }
 }
 
-/** A problem in the words of the command line. */
+/** A problem as text, as on the command line. */
 function described(one) {
   const place = [one.file, one.line, one.column].filter(part => part !== null && part !== undefined).join(':');
   return `${one.code}: ${one.message}${place ? `\n  in ${place}` : ''}${one.help ? `\n  ${one.help}` : ''}`;

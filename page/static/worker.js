@@ -1,9 +1,9 @@
-// Long work, beside the page: one call after the other, each with its number.
+// Worker for long work: processes numbered calls in order.
 'use strict';
 
 if (typeof wasm_bindgen === 'undefined') importScripts('overact.js');
 
-/** What is kept between calls: the last description that was right, and the robot that logs were given to. */
+/** State between calls: the last valid description, and the robot with its logs. */
 const kept = { description: null, model: null, session: null };
 let current = 0;
 let defect = null;
@@ -60,7 +60,7 @@ onmessage = ({ data: { id, call, values } }) => {
   try {
     postMessage({ id, result: calls[call](values) });
   } catch (error) {
-    // Problems are thrown as a document; anything else is a defect, after which the module is of no use.
+    // Problems are thrown as JSON; anything else is an internal error, after which the module is unusable.
     if (typeof error === 'string') postMessage({ id, problems: JSON.parse(error) });
     else postMessage({ id, defect: defect || String(error) });
   }

@@ -1,9 +1,9 @@
-// The page in a headless Chromium: what is typed is checked below its line, mended, drawn, turned, generated and
+// Tests of the page in a headless Chromium: a typed description is checked, corrected, drawn, rotated, generated and
 // identified, with the numbers of the command line.
 //
 // node browser.mjs FOLDER: the folder that page/build wrote. OVERACT_BINARY is the command line (default
-// target/debug/overact), OVERACT_CHROMIUM the browser, OVERACT_SCREENSHOTS a folder for pictures. What is not there is
-// skipped with a word. It ends after fifteen minutes at the latest.
+// target/debug/overact), OVERACT_CHROMIUM the browser, OVERACT_SCREENSHOTS a folder for pictures. Tests without their
+// programs are skipped with a message. The time limit is fifteen minutes.
 
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -25,7 +25,7 @@ function skip(why) {
   process.exit(0);
 }
 
-/** A DualV whose virtual runs are short, in a folder of its own. */
+/** A DualV with short virtual runs, in a separate folder. */
 const short = mkdtempSync(join(tmpdir(), 'overact-page-'));
 const description = readFileSync(join(root, 'robots/dualv.toml'), 'utf8').replaceAll('duration = "10 s"', 'duration = "1.5 s"');
 writeFileSync(join(short, 'dualv.toml'), description);
@@ -50,7 +50,7 @@ function holds(what, condition, seen = '') {
   if (!condition) failures.push(`${what}: ${seen}`);
 }
 
-/** The largest relative difference of the numbers of two documents, and where it is. */
+/** Largest relative difference of the numbers of two documents, and its location. */
 function difference(own, other, path = '') {
   if (typeof own === 'number' && typeof other === 'number') {
     const size = Math.max(Math.abs(own), Math.abs(other), 1e-9);
@@ -63,7 +63,7 @@ function difference(own, other, path = '') {
   return [own === other ? 0 : Infinity, `${path}: ${own} and ${other}`];
 }
 
-/** What the command line prints, or null where there is none. */
+/** Output of the command line, or null without it. */
 function command(...words) {
   if (!existsSync(binary)) return null;
   return execFileSync(binary, words, { cwd: join(root, 'robots'), maxBuffer: 1 << 28, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] });
@@ -92,7 +92,7 @@ async function loads(tab) {
   const shown = "document.getElementById('state').className === 'good' && document.querySelector('#sheet svg')";
   await tab.until(shown);
   let time = await tab.value('performance.now()');
-  // A machine that does other work as well is given three attempts.
+  // Three attempts, because the machine may be busy.
   for (let attempt = 1; attempt < 3 && time >= 3000; attempt++) {
     await tab.send('Page.reload', { ignoreCache: true });
     await new Promise(resolve => setTimeout(resolve, 500));
@@ -156,8 +156,8 @@ async function generates(tab) {
   holds('base parameters and regroupings are those of `overact inspect`', most < 1e-9, `${most} ${where}`);
   const counts = own.functions.map((one, at) => [one.function, one.operations, other.functions[at].operations]);
   const differing = counts.filter(([, one, two]) => one !== two);
-  // Sines of constants may differ in the last digit from those of the other C library, and with them what is found
-  // to be equal.
+  // Sines of constants may differ in the last digit from those of the other C library, and with them which
+  // expressions are equal.
   holds('operations too, to 1 %', counts.every(([, one, two]) => Math.abs(one - two) <= 0.01 * two), `${differing.length} of ${counts.length} differ: ${differing.join(' ')}`);
   await tab.value("document.getElementById('effort').value = 'none'; page.stale()");
   await tab.until('page.model', 120);
@@ -169,7 +169,7 @@ async function generates(tab) {
   sameCode('and its source', await tab.value('page.model.c.source'), source);
 }
 
-/** Two texts of code that differ in the last digits of constants at most. */
+/** Asserts that two texts of code differ in the last digits of constants at most. */
 function sameCode(what, own, other) {
   const number = /\d+(\.\d+)?(e[-+]?\d+)?/g;
   const isSame = own.replace(number, '#') === other.replace(number, '#');
@@ -183,7 +183,7 @@ async function identifies(tab) {
   await tab.click('tab-identification');
   const virtual = await identified(tab);
   holds('the report is shown', await tab.value("document.querySelector('iframe').srcdoc.includes('Identification of')"));
-  // The frame is laid out by a process of its own.
+  // A separate process lays out the frame.
   if (process.env.OVERACT_SCREENSHOTS) await new Promise(resolve => setTimeout(resolve, 3000));
   await picture(tab, 'report');
   await tab.click('simulate');
@@ -207,7 +207,7 @@ async function identified(tab) {
   return JSON.parse(await tab.value('page.logs.result.found.document'));
 }
 
-/** The same logs, given to both. */
+/** The same logs for both. */
 async function identifiesAsTheCommand(tab, virtual) {
   const run = (...words) => execFileSync(binary, words, { cwd: short, maxBuffer: 1 << 28, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] });
   const { runs } = JSON.parse(run('simulate', 'dualv.toml', '-o', 'logs/', '--json'));
@@ -229,13 +229,13 @@ async function identifiesAsTheCommand(tab, virtual) {
   const words = [...option('--data', false, false), ...option('--payload-data', true, false), ...option('--cross-validate', false, true), ...option('--cross-validate-payload', true, true)];
   const [most, where] = difference(values(own), values(JSON.parse(run('identify', 'dualv.toml', ...words, '--json'))));
   holds('parameters from logs are those of `overact identify`', most < 1e-6, `${most} ${where}`);
-  // A rounding that moves an encoder's reading by one line goes through the controller into all that follows.
+  // A rounding difference of one encoder step affects the controller and everything after it.
   const made = values(JSON.parse(run('identify', 'dualv.toml', '--json')));
   const far = values(virtual).flatMap((all, at) => all.map((one, k) => Math.abs(one.value - made[at][k].value) / (made[at][k].standard_deviation || 1)));
   holds('those of the virtual experiment are within a standard deviation', Math.max(...far) < 1, Math.max(...far));
 }
 
-/** Estimates with their deviations. */
+/** Estimates with their standard deviations. */
 function values(document) {
   return document.estimates.map(one => one.parameters.map(({ name, value, standard_deviation }) => ({ name, value, standard_deviation })));
 }
@@ -256,7 +256,7 @@ async function refuses(tab) {
   await tab.until("document.getElementById('state').className === 'good'");
 }
 
-/** Keeps what is seen, where a folder for pictures is named. */
+/** Saves a screenshot if a folder for pictures is given. */
 async function picture(tab, name) {
   const folder = process.env.OVERACT_SCREENSHOTS;
   if (!folder) return;

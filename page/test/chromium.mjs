@@ -1,4 +1,4 @@
-// A headless Chromium that is told what to do through a pipe (the DevTools protocol), and ended whatever happens.
+// A headless Chromium, controlled through a pipe (DevTools protocol) and always ended.
 
 import { spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
@@ -60,7 +60,7 @@ export class Chromium {
     return tab;
   }
 
-  /** Ends the browser, and removes what it wrote once all of its processes let go of it. */
+  /** Ends the browser, and removes its files once all of its processes have released them. */
   async end() {
     const gone = new Promise(resolve => this.process.on('exit', resolve));
     this.process.kill('SIGKILL');
@@ -79,7 +79,7 @@ export class Tab {
   constructor(chromium, session) {
     this.chromium = chromium;
     this.session = session;
-    /** What the page complained of. */
+    /** Errors that the page logged. */
     this.complaints = [];
     this.requests = [];
     chromium.listeners.push(({ sessionId, method, params }) => {
@@ -97,14 +97,14 @@ export class Tab {
     await this.send('Page.navigate', { url });
   }
 
-  /** The value of an expression in the page. */
+  /** Evaluates an expression in the page. */
   async value(expression) {
     const { result, exceptionDetails } = await this.send('Runtime.evaluate', { expression, awaitPromise: true, returnByValue: true });
     if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description || exceptionDetails.text}`);
     return result.value;
   }
 
-  /** Waits until an expression is true, no longer than so many seconds. */
+  /** Waits until an expression is true, with a time limit in seconds. */
   async until(expression, seconds = 60) {
     const end = Date.now() + 1000 * seconds;
     while (Date.now() < end) {
@@ -139,7 +139,7 @@ export class Tab {
     await mouse('mouseReleased', right, down);
   }
 
-  /** The window's size and colours. */
+  /** Sets the size and colour scheme of the window. */
   async look(width, height, dark) {
     await this.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: width < 600 });
     await this.send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }] });

@@ -1,4 +1,4 @@
-// Serves a folder as a static host does: files as they are, compressed where the browser takes that.
+// Serves a folder like a static host: unchanged files, compressed if the browser accepts that.
 
 import { createServer } from 'node:http';
 import { existsSync, readFileSync } from 'node:fs';
@@ -7,7 +7,7 @@ import { gzipSync } from 'node:zlib';
 
 const TYPES = { '.html': 'text/html; charset=utf-8', '.css': 'text/css', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
-/** The host and its address. */
+/** Server and its address. */
 export async function serve(folder) {
   const compressed = new Map();
   const server = createServer((request, response) => {

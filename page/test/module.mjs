@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import vm from 'node:vm';
 
-/** The functions and classes of the module in the folder that page/build wrote. */
+/** Functions and classes of the module in the folder that page/build wrote. */
 export function load(folder) {
   const glue = readFileSync(join(folder, 'overact.js'), 'utf8');
   const overact = vm.runInThisContext(`${glue}\n;wasm_bindgen`);

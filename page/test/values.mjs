@@ -1,6 +1,6 @@
-// Values of the page's WebAssembly for those who ask from elsewhere: `node values.mjs FOLDER ROBOTS < questions`.
+// Evaluates functions by the page's WebAssembly: `node values.mjs FOLDER ROBOTS < questions`.
 //
-// A question is a line `STEM FUNCTION SAMPLES INPUTS` and a line of numbers for each input, sample after sample, as
+// A question is a line `STEM FUNCTION SAMPLES INPUTS` and a line of numbers for each input, sample by sample, as
 // for tests/compiled/examples/values.rs. The answer is a line of numbers, or one that begins with `error`.
 
 import { readFileSync } from 'node:fs';
@@ -13,7 +13,7 @@ const sessions = new Map();
 
 function session(stem) {
   if (!sessions.has(stem)) {
-    // One robot at a time: a module's memory does not shrink.
+    // One robot at a time, because a module's memory does not shrink.
     for (const one of sessions.values()) one.free();
     sessions.clear();
     const text = readFileSync(join(robots, `${stem}.toml`), 'utf8');

@@ -10,7 +10,7 @@ import numpy as np
 
 import overact
 
-# A notebook beside this file has no `__file__`.
+# A notebook next to this file has no `__file__`.
 EXAMPLES = pathlib.Path(globals().get("__file__", "dualv.ipynb")).resolve().parent
 robot = overact.Robot(EXAMPLES.parents[1] / "robots" / "dualv.toml")
 print(robot)

@@ -1,5 +1,7 @@
-//! The time that the block evaluator itself takes for a robot's regressor in the layout of rows, beside which
-//! `benchmark.py` stands: `cargo run --release --example rows ../robots/dualv.toml 1000000`.
+//! Times the block evaluator for a robot's regressor in the layout of rows, for comparison with
+//! `benchmark.py`.
+//!
+//! `cargo run --release --example rows ../robots/dualv.toml 1000000`.
 
 use overact::{Columns, Function, Model};
 use overact_codegen::evaluation::{Evaluator, Rows};
@@ -18,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .served(Function::IdmRedPlatform(Columns::Standard))
         .ok_or("no identification model")?;
     let home = robot.model().info().home_pose;
-    // A motion around home: its numbers do not matter, only that the robot reaches them.
+    // A motion around home; only its reachability matters.
     let row = |width: usize, base: &[f64]| -> Vec<f64> {
         let number = |at: usize| {
             let home = base.get(at % width).copied().unwrap_or_default();

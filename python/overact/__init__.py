@@ -6,8 +6,8 @@
 >>> result = overact.identify(robot, {"time": t, "q_leg1": ..., "tau_leg1": ...})
 >>> result.recommended["zz_platformR"].interval_95
 
-`Robot` has the functions of the robot, which take NumPy arrays; `Robot.simulate` makes its virtual
-experiment, `identify` finds its parameters. What is wrong comes as one of the exceptions below, all of
+`Robot` has the functions of the robot, which take NumPy arrays. `Robot.simulate` simulates its virtual
+experiment, `identify` estimates its parameters. Errors are raised as one of the exceptions below, all of
 which are an `OveractError`. All numbers are in SI units: m, rad, s, N, N m, kg.
 """
 

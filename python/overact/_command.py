@@ -1,4 +1,4 @@
-"""The command line, which the package brings along: ``overact`` or ``python -m overact``."""
+"""The command line, which is part of the package: ``overact`` or ``python -m overact``."""
 
 from __future__ import annotations
 
@@ -10,6 +10,6 @@ from ._overact import command
 
 def main() -> int:
     """Runs the command line with the arguments of the process; returns its exit code."""
-    # The work is done outside of Python, which would hear of Ctrl-C at its end only.
+    # The work is done outside of Python, which would handle Ctrl-C only at its end.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(["overact", *sys.argv[1:]])

@@ -9,14 +9,14 @@ from typing import Any, Iterable
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong.
+    """One problem.
 
     Attributes:
-        message: What is wrong, in one sentence.
-        file: The file, as it was named, or the name of a run.
+        message: The problem, in one sentence.
+        file: File name as given, or the name of a run.
         line: Line, counted from 1.
         column: Number of a character, counted from 1, or the name of a column of a table.
-        help: A way out.
+        help: Advice.
     """
 
     message: str
@@ -27,10 +27,10 @@ class Problem:
 
 
 class OveractError(Exception):
-    """What overact can't do, with all that is wrong at once.
+    """An error of overact, with all problems at once.
 
     Attributes:
-        problems: All of it, each with its place and a way out.
+        problems: All problems, each with its location and advice.
     """
 
     def __init__(self, message: str, problems: Iterable[tuple] = ()) -> None:
@@ -52,29 +52,29 @@ class OveractError(Exception):
 
     @property
     def column(self) -> int | str | None:
-        """Where the first problem is in its line."""
+        """Position of the first problem in its line."""
         return self._first("column")
 
     @property
     def help(self) -> str | None:
-        """A way out of the first problem."""
+        """Advice on the first problem."""
         return self._first("help")
 
 
 class DescriptionError(OveractError, ValueError):
-    """A description that is wrong: every error of it, each at its line."""
+    """An invalid description: every error with its line."""
 
 
 class DataError(OveractError, ValueError):
-    """Files, logs or settings that can't be used."""
+    """Files, logs or settings that cannot be used."""
 
 
 class EvaluationError(OveractError, ArithmeticError):
-    """A state at which a function has no value: out of reach, singular, not finite.
+    """A state at which a function has no value: unreachable, singular or not finite.
 
     Attributes:
-        sample: Number of the first such sample, counted from 0 through all axes but the last.
-        reason: What is wrong there.
+        sample: Index of the first such sample, counted from 0 through all axes but the last.
+        reason: The reason.
     """
 
     def __init__(self, message: str, sample: int = 0, reason: str = "") -> None:
@@ -84,9 +84,9 @@ class EvaluationError(OveractError, ArithmeticError):
 
 
 class UnknownNameError(OveractError, KeyError):
-    """A name by which nothing is called; `help` has the nearest that there is."""
+    """An unknown name; `help` suggests the nearest known one."""
 
-    # That of KeyError puts the message into quotes.
+    # `KeyError.__str__` would quote the message.
     __str__ = Exception.__str__
 
     def __init__(self, message: str, help: str | None = None) -> None:
@@ -95,7 +95,7 @@ class UnknownNameError(OveractError, KeyError):
 
 
 def unknown(what: str, name: Any, known: Iterable[str]) -> UnknownNameError:
-    """The error of a name by which no `what` is called."""
+    """Error for a name of an unknown `what`."""
     names = list(known)
     near = get_close_matches(str(name), names, n=1)
     if near:
@@ -109,7 +109,7 @@ def unknown(what: str, name: Any, known: Iterable[str]) -> UnknownNameError:
 
 
 class Named(dict):
-    """Numbers by the names of parameters, or others by the names of functions."""
+    """Numbers by parameter name, or other values by function name."""
 
     _what = "parameter"
 
@@ -118,10 +118,10 @@ class Named(dict):
 
 
 class NamedFunctions(Named):
-    """By the names of functions."""
+    """Values by function name."""
 
     _what = "function"
 
 
 class InternalError(OveractError, RuntimeError):
-    """Something is wrong with overact itself; please report it."""
+    """An internal error of overact; please report it."""

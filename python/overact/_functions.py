@@ -2,4 +2,4 @@
 
 
 class Functions:
-    """Functions are found by `Robot` when they are asked for."""
+    """`Robot` creates functions on first access."""

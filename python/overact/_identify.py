@@ -13,7 +13,7 @@ from ._result import Identification
 from ._robot import Robot
 from ._run import Run
 
-#: How far steps of a time may be from the usual one, relative to it.
+#: Tolerance of time steps, relative to the usual one.
 _UNIFORM = 1e-3
 
 
@@ -34,39 +34,39 @@ def identify(
     published: str | os.PathLike[str] | None | bool = None,
     progress: Callable[[float, str], None] | None = None,
 ) -> Identification:
-    """Identifies the dynamic parameters of a robot from runs, as its description asks for it.
+    """Identifies the dynamic parameters of a robot from runs, with the settings of its description.
 
-    A run is one of these, and several are a list of them:
+    A run has one of these forms; several runs are a list:
 
-    - a `Run`, as `Robot.simulate` makes it;
+    - a `Run` from `Robot.simulate`;
     - the path of a log (``"a.csv+b.csv"`` is one run in two files);
-    - a data frame or table with Arrow's interface (pandas, Polars, PyArrow), whose columns are those
-      that the description names in ``[data]``, else ``time``, ``q_ACTUATOR``, ``tau_ACTUATOR``;
-    - a mapping of such names to arrays, a matrix ``q`` having columns ``q(:,1)`` and so on;
+    - a data frame or table with Arrow's interface (pandas, Polars, PyArrow). Its columns are those of
+      ``[data]`` in the description, else ``time``, ``q_ACTUATOR``, ``tau_ACTUATOR``;
+    - a mapping of such names to arrays; a matrix ``q`` has columns ``q(:,1)`` and so on;
     - a mapping with ``positions`` and ``torques`` as N x n arrays in SI units (rad or m, N m or N), and
-      ``sampling`` (Hz) or ``time`` (s); ``velocities``, ``name`` and ``payload`` may be there, too.
+      ``sampling`` (Hz) or ``time`` (s). ``velocities``, ``name`` and ``payload`` are optional.
 
     Args:
         robot: The robot.
-        data: Runs to identify from. Without any the virtual experiment is made.
-        payload_data: Runs with the payload on the platform.
-        validation: Runs to compare predictions with.
-        payload_validation: The same, with the payload.
-        held_out: Of a virtual experiment the runs to compare predictions with, by name.
-        seed: Of the virtual experiment's noise.
-        kept: Names of the actuators that case 2 keeps.
+        data: Training runs. Without any, the virtual experiment is simulated.
+        payload_data: Training runs with the payload on the platform.
+        validation: Validation runs.
+        payload_validation: Validation runs with the payload.
+        held_out: Names of the virtual experiment's validation runs.
+        seed: Seed of the virtual experiment's noise.
+        kept: Names of the actuators that the actuator projection (case 2) keeps.
         friction: "symmetric" or "asymmetric".
         calibrate: Encoder offsets and lengths first: "smallest" (or True), "offsets" or "all".
-        gains: Whether gains of the drives are identified first.
-        tracking: Whether the virtual robot follows the held-out runs with the result; where the runs are
-            virtual and there are published results, if not given.
-        published: Results to show beside; ``published/NAME.toml`` beside the description, where it
-            exists, if not given; False for none.
-        progress: Is told the part that is done, from 0 to 1, and what is being done.
+        gains: Whether drive gains are identified first.
+        tracking: Whether the virtual robot follows the validation runs with the result. By default, if
+            runs are virtual and there are published results.
+        published: Published results for comparison. By default ``published/NAME.toml`` next to the
+            description, if it exists; False for none.
+        progress: Receives the completed fraction, from 0 to 1, and the current work.
 
     Raises:
-        DataError: Runs or settings that can't be used, data that determine nothing.
-        DescriptionError: A virtual experiment that can't be made.
+        DataError: Runs or settings that cannot be used, or data that determine no parameter.
+        DescriptionError: An invalid virtual experiment.
     """
     if not isinstance(robot, Robot):
         raise TypeError(f"`robot` is a {type(robot).__name__}: give a Robot, as Robot(\"my.toml\") makes it")
@@ -109,7 +109,7 @@ def _published(robot: Robot, given: str | os.PathLike[str] | None | bool) -> str
 
 
 def _runs(robot: Robot, data: Any, payload: bool, label: str) -> list[tuple]:
-    """Runs as the compiled half takes them."""
+    """Converts runs for the compiled part."""
     if data is None:
         return []
     if isinstance(data, (list, tuple)):
@@ -166,7 +166,7 @@ def _of_mapping(robot: Robot, item: Mapping[str, Any], payload: bool, label: str
 
 
 def _sampling(item: Mapping[str, Any], samples: int, label: str) -> float:
-    """The sampling frequency, Hz."""
+    """Sampling frequency, Hz."""
     if "sampling" in item:
         return float(item["sampling"])
     if "time" not in item:
@@ -188,7 +188,7 @@ def _of_table(robot: Robot, table: Any, label: str) -> list[tuple]:
     try:
         numbers, others = _columns_of_arrow(table)
     except ImportError:
-        # pandas wants PyArrow to speak Arrow; its columns can be had without.
+        # pandas needs PyArrow for Arrow's interface; its columns can be read without.
         names = [name for name in table.columns if np.asarray(table[name]).dtype.kind in "fiub"]
         numbers = {str(name): np.asarray(table[name], dtype=np.float64) for name in names}
         others = {str(name): str(table[name].dtype) for name in table.columns if name not in names}
@@ -199,7 +199,7 @@ def _of_table(robot: Robot, table: Any, label: str) -> list[tuple]:
 
 
 def _array(name: str, value: Any, label: str) -> tuple:
-    """Name, rows, columns, and the numbers one column after the other."""
+    """Name, rows, columns, and the numbers in column-major order."""
     array = np.asarray(value)
     if np.ma.isMaskedArray(value) or array.dtype.kind not in "fiub":
         raise TypeError(f"`{label}['{name}']` has the dtype {array.dtype}, no real numbers")

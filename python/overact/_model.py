@@ -1,4 +1,4 @@
-"""What a model consists of and what it costs."""
+"""Composition and cost of a model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class Parameter:
 
     Attributes:
         name: Unique name, ``zz_2_leg3``, ``m_platform`` or ``m_payload``.
-        symbol: Which of the standard parameters it is, ``zz`` for instance.
+        symbol: Symbol of the standard parameter, for instance ``zz``.
         unit: SI unit.
     """
 
@@ -26,13 +26,13 @@ class Parameter:
 
 @dataclass(frozen=True)
 class BaseParameter:
-    """A base parameter: an independent column, and the standard parameters that are regrouped into it.
+    """A base parameter: an independent column, with the standard parameters regrouped into it.
 
     Attributes:
-        name: The kept parameter's name, with the suffix ``R`` where others are regrouped into it.
+        name: Name of the kept parameter, with the suffix ``R`` if others are regrouped into it.
         parameter: Name of the standard parameter whose column is kept.
         unit: SI unit.
-        regrouped: Coefficients of the other standard parameters that it stands for, by name.
+        regrouped: Coefficients of the regrouped standard parameters, by name.
     """
 
     name: str
@@ -41,7 +41,7 @@ class BaseParameter:
     regrouped: Mapping[str, float]
 
     def value(self, values: Mapping[str, float]) -> float:
-        """Its value from those of the standard parameters; what is missing counts as zero."""
+        """Value from those of the standard parameters; missing ones count as zero."""
         others = (factor * values.get(name, 0.0) for name, factor in self.regrouped.items())
         return values.get(self.parameter, 0.0) + sum(others)
 
@@ -63,11 +63,11 @@ class BaseParameter:
 
 @dataclass(frozen=True)
 class Iteration:
-    """An iteration that a function runs, and what each of its steps takes.
+    """An iteration within a function, and the cost of each step.
 
     Attributes:
         function: The function that iterates.
-        within: The iteration in which it stands, if it does.
+        within: The enclosing iteration, if there is one.
         operations: Additions, multiplications and divisions of a step.
     """
 
@@ -78,9 +78,10 @@ class Iteration:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a function costs, with all that it calls.
+    """Cost of a function including all functions that it calls.
 
-    A product with a sign is a multiplication; what stands apart of `operations` is not counted in it.
+    A product with a sign is a multiplication. Attributes other than additions, multiplications and
+    divisions are not part of `operations`.
     """
 
     additions: int

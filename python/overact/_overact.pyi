@@ -1,4 +1,4 @@
-"""The compiled half of the package. `Function` is what `Robot`'s functions are; the rest is internal."""
+"""The compiled part of the package. Functions of a `Robot` are `Function` objects; the rest is internal."""
 
 from typing import Any, Callable, Literal, Sequence
 
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 class Function:
-    """A function of a robot: call it with arrays of one sample or of thousands."""
+    """A function of a robot, callable with arrays of one or many samples."""
 
     def __call__(
         self,
@@ -21,13 +21,13 @@ class Function:
         """Evaluates the function.
 
         Args:
-            arguments: Its inputs in their order, or by name: arrays whose last axis has the numbers of a
-                sample, all axes before being samples. An input of one axis serves all samples. Contiguous
-                float64 is read where it lies; other real numbers and layouts are converted.
-            out: A contiguous float64 array of the result's shape that the result is written to.
-            start: For functions from actuators the pose from which the first sample's is searched.
-            invalid: What is done of samples without a value (out of reach, singular, not finite): an
-                `EvaluationError` that names the first one, or rows of NaN.
+            arguments: Inputs in order, or by name. The last axis of each array has the numbers of a
+                sample, all axes before are samples. An input of one axis is used for all samples.
+                Contiguous float64 is read in place; other real numbers and layouts are converted.
+            out: A contiguous float64 array of the result's shape for the result.
+            start: For functions from actuators: start pose of the first sample.
+            invalid: Treatment of samples without a value (unreachable, singular, not finite): an
+                `EvaluationError` with the first one, or rows of NaN.
 
         Returns:
             The results: the axes of the samples, then `shape`.
@@ -38,16 +38,16 @@ class Function:
         """Name of the function, as in generated code."""
     @property
     def summary(self) -> str:
-        """What it computes, with its equation."""
+        """Result of the function, with its equation."""
     @property
     def inputs(self) -> dict[str, int]:
-        """Its inputs in their order: how many numbers of each a sample has."""
+        """Inputs in order, with their length in a sample."""
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of its output at a sample."""
+        """Shape of the output at a sample."""
     @property
     def columns(self) -> list[str]:
-        """Names of the parameters that its columns stand for; empty where they stand for none."""
+        """Names of the parameters of its columns; empty if it is not a regressor."""
     @property
     def signature(self) -> str:
         """The function with its inputs and shapes."""

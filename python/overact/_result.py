@@ -1,4 +1,4 @@
-"""What an identification found."""
+"""Results of an identification."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ class ParameterEstimate:
     """The estimate of a parameter.
 
     Attributes:
-        name: Its name.
-        value: The estimate, in `unit`.
+        name: Name of the parameter.
+        value: Estimate, in `unit`.
         unit: SI unit.
-        standard_deviation: Under white residuals.
-        correlated_standard_deviation: Under residuals that are correlated over time and between the lines:
-            the one to trust.
+        standard_deviation: For white residuals.
+        correlated_standard_deviation: For residuals that are correlated over time and between rows; use
+            this one.
         interval_95: Lower and upper end of the 95 % interval.
-        true_value: The true value, where it is known.
+        true_value: True value, if known.
     """
 
     name: str
@@ -53,15 +53,16 @@ class ParameterEstimate:
 
 
 class Estimate(Mapping):
-    """Estimates of parameters, by their names.
+    """Estimates of parameters, by name.
 
     Attributes:
-        model: Which inputs they explain: "platform" (case 1), "actuators" (case 2) or "joints".
+        model: "platform" (platform projection, case 1), "actuators" (actuator projection, case 2) or
+            "joints".
         stage: "base", "recommended" or "essential".
         estimator: "least-squares", "ordinary-least-squares" or "instrumental-variables".
-        kept_actuators: Names of the actuators on which inputs are projected; none for the platform.
-        relative_error_percent: What they leave unexplained of the torques.
-        condition_number: Of the observation matrix.
+        kept_actuators: Names of the actuators of the actuator projection; none for the platform.
+        relative_error_percent: Relative residual of the torques.
+        condition_number: Condition number of the observation matrix.
     """
 
     def __init__(self, document: Mapping[str, Any]) -> None:
@@ -113,20 +114,20 @@ class Estimate(Mapping):
 
 
 def _half(one: ParameterEstimate) -> float:
-    """Half the width of the 95 % interval."""
+    """Half width of the 95 % interval."""
     return (one.interval_95[1] - one.interval_95[0]) / 2
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What may be done with the estimates of a model.
+    """Verdict on the estimates of a model.
 
     Attributes:
-        subject: What is judged: "case 1", "case 2" or "joint model".
+        subject: "case 1", "case 2" or "joint model".
         grade: "use", "use-listed" or "do-not-use".
         trusted: Whether they may be used without restriction.
-        listed: The parameters that may be used, where not all may.
-        reasons: Why, in sentences.
+        listed: Parameters that may be used, if not all may.
+        reasons: Reasons, in sentences.
     """
 
     subject: str
@@ -141,7 +142,7 @@ class Verdict:
 
 
 class Identification:
-    """Everything that an identification found; a notebook shows its report."""
+    """Result of an identification; a notebook shows its report."""
 
     def __init__(self, handle: Any, inputs: Sequence[str]) -> None:
         self._handle = handle
@@ -156,29 +157,29 @@ class Identification:
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """What may be done with the result: a verdict for each model."""
+        """Verdict on each model."""
         fields = Verdict.__dataclass_fields__
         all = self._document["verdicts"]
         return tuple(Verdict(**{name: one[name] for name in fields}) for one in all)
 
     @property
     def verdict(self) -> Verdict:
-        """The verdict on the first model, which takes in all actuators."""
+        """Verdict on the first model, which contains all actuators."""
         return self.verdicts[0]
 
     @property
     def trusted(self) -> bool:
-        """Whether nothing was found that speaks against the first model."""
+        """Whether the verdict on the first model is to use it."""
         return self._handle.trusted()
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What one should know before trusting the numbers."""
+        """Warnings on the result."""
         return tuple(self._document["warnings"])
 
     @property
     def estimates(self) -> tuple[Estimate, ...]:
-        """All estimates: of each model base, recommended and essential parameters, then those by other
+        """All estimates: for each model base, recommended and essential parameters, then those by other
         estimators."""
         return self._estimates
 
@@ -204,7 +205,7 @@ class Identification:
 
     @property
     def recommended(self) -> Estimate:
-        """The fewest parameters of the first model that the data do not refute."""
+        """The recommended parameters of the first model, the fewest that the data do not refute."""
         return self.estimate("recommended")
 
     @property
@@ -214,38 +215,40 @@ class Identification:
 
     @property
     def consistent(self) -> dict[str, float]:
-        """Standard parameters that a robot can have, by name (SI units): what `Robot.parameter_vector`,
-        `Robot.simulate` and controllers take. Empty where there are none."""
+        """Physically consistent standard parameters by name (SI units), empty if there are none.
+
+        They are inputs of `Robot.parameter_vector`, `Robot.simulate` and controllers.
+        """
         all = self._document["consistent"]
         return Named({one["name"]: one["value"] for one in all[0]["parameters"]} if all else {})
 
     def to_dict(self) -> dict[str, Any]:
-        """The document that ``overact identify --json`` prints."""
+        """The document of ``overact identify --json``."""
         return json.loads(self._handle.json())
 
     def to_json(self) -> str:
-        """`to_dict` as a text."""
+        """`to_dict` as a JSON string."""
         return self._handle.json()
 
     def summary(self) -> str:
-        """What ``overact identify --all`` prints."""
+        """Output of ``overact identify --all``."""
         return self._handle.summary()
 
     def tables(self) -> str:
-        """All tables, as ``overact identify --tables`` prints them."""
+        """All tables, as in ``overact identify --tables``."""
         return self._handle.tables()
 
     def report(self) -> str:
-        """The report: one page for a browser (HTML) that needs nothing from elsewhere."""
+        """The report: one self-contained HTML page."""
         return self._handle.html()
 
     def calibrated_description(self) -> str | None:
-        """The description with the offsets and lengths that were calibrated; None where none were."""
+        """The description with calibrated offsets and lengths; None without calibration."""
         return self._handle.calibrated_description()
 
     def save_report(self, path: str | os.PathLike[str]) -> None:
-        """Writes the report: a page (``.html``), all numbers and plotted series (``.json``), or all numbers
-        as one flat table (``.csv``)."""
+        """Writes the report: a page (``.html``), all numbers and figures (``.json``), or a flat table
+        (``.csv``)."""
         kinds = {
             ".html": self._handle.html,
             ".htm": self._handle.html,
@@ -266,7 +269,7 @@ class Identification:
         self._save(path, text)
 
     def _save(self, path: str | os.PathLike[str], text: str) -> None:
-        """Writes a file whole or not at all, and over no input."""
+        """Writes a file completely or not at all, and never over an input."""
         for read in self._inputs:
             if os.path.exists(read) and os.path.exists(path) and os.path.samefile(read, path):
                 raise ValueError(f"{os.fspath(path)!r} has been read, and would be overwritten")
@@ -293,8 +296,8 @@ class Identification:
         return self.summary()
 
     def _repr_html_(self) -> str:
-        """The report in a frame of its own, so that its style stays its own."""
-        # In a frame without an address of its own a link to a place on the page would lead to the notebook's.
+        """The report in a separate frame, to isolate its style."""
+        # In a frame without an address, links to anchors would lead to the notebook.
         page = html.escape(self.report().replace('href="#', 'href="about:srcdoc#'), quote=True)
         return (
             f'<iframe title="Identification of {html.escape(self.robot, quote=True)}" srcdoc="{page}" '

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class _Table(tuple):
-    """A tuple whose elements can be called by their names, too."""
+    """A tuple whose elements can also be accessed by name."""
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str):
@@ -35,21 +35,21 @@ class _Table(tuple):
 class Robot(Functions):
     """A robot, compiled from its description in TOML.
 
-    The functions of the robot are attributes of it: ``robot.idm_red_platform(pose, twist,
-    acceleration)``; `functions` lists them. Each input is an array whose last axis has the numbers of a
-    sample, all axes before are samples; an input of one axis serves all samples. Contiguous float64 is
-    read where it lies, and ``out=`` takes a contiguous float64 array that the result is written to.
-    Other threads of Python run meanwhile. A state at which a function has no value (out of reach,
-    singular, not a finite number) is an `EvaluationError` that names the sample, or rows of NaN with
-    ``invalid="nan"``. Functions ``…_from_actuators`` find the pose first, sample after sample, from
-    ``start=`` or from the home configuration.
+    The functions of the robot are attributes: ``robot.idm_red_platform(pose, twist, acceleration)``;
+    `functions` lists them. The last axis of each input has the numbers of a sample, all axes before are
+    samples. An input of one axis is used for all samples.
+
+    Contiguous float64 is read in place, and ``out=`` is a contiguous float64 array for the result. Other
+    Python threads can run meanwhile. A state without a value (unreachable, singular or not finite) raises
+    an `EvaluationError` with its sample, or gives rows of NaN with ``invalid="nan"``. Functions
+    ``…_from_actuators`` first compute the pose, sample after sample, from ``start=`` or from home.
 
     Args:
         path: The description.
 
     Raises:
-        DescriptionError: Everything that is wrong with the description, each at its line.
-        DataError: A file that can't be read.
+        DescriptionError: All errors of the description, each with its line.
+        DataError: A file that cannot be read.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -57,7 +57,7 @@ class Robot(Functions):
 
     @classmethod
     def from_string(cls, text: str, name: str = "robot.toml") -> Robot:
-        """The robot of a description in memory; errors call it `name`."""
+        """Robot of a description in memory; `name` is its name in errors."""
         robot = cls.__new__(cls)
         robot._take(Handle.from_text(text, name))
         return robot
@@ -74,7 +74,7 @@ class Robot(Functions):
         )
 
     def _missing(self, name: str) -> Function:
-        # Asked for what is not there: a function, which stays from then on.
+        # Unknown attributes are functions, which are then stored.
         if name.startswith("_"):
             raise AttributeError(name)
         function = self._handle.function(name)
@@ -82,7 +82,7 @@ class Robot(Functions):
         return function
 
     if not TYPE_CHECKING:
-        # Type checkers know the functions of `Functions`, and no others.
+        # Type checkers know only the functions of `Functions`.
         __getattr__ = _missing
 
     def __dir__(self) -> Iterable[str]:
@@ -100,12 +100,12 @@ class Robot(Functions):
 
     @property
     def summary(self) -> str:
-        """What the robot is, in a sentence."""
+        """Summary of the robot, one sentence."""
         return self._info["summary"]
 
     @property
     def file(self) -> str:
-        """The description's path, or the name that it was given."""
+        """Path of the description, or its given name."""
         return self._handle.file
 
     @property
@@ -115,7 +115,7 @@ class Robot(Functions):
 
     @property
     def r(self) -> int:
-        """Degrees of freedom: numbers of a twist."""
+        """Degrees of freedom, the length of a twist."""
         return self._info["r"]
 
     @property
@@ -140,7 +140,7 @@ class Robot(Functions):
 
     @property
     def kept_actuators(self) -> tuple[str, ...]:
-        """Names of the actuators that case 2 keeps."""
+        """Names of the actuators that the actuator projection (case 2) keeps."""
         return tuple(self.actuators[at] for at in self._info["kept_actuators"])
 
     @property
@@ -150,7 +150,7 @@ class Robot(Functions):
 
     @property
     def pose_coordinates(self) -> tuple[str, ...]:
-        """Names of the numbers of a pose (m, rad); a spatial one ends with a quaternion."""
+        """Names of the pose coordinates (m, rad); a spatial pose ends with a quaternion."""
         return tuple(self._info["pose_coordinates"])
 
     @property
@@ -165,18 +165,18 @@ class Robot(Functions):
 
     @property
     def parameters(self) -> Sequence[Parameter]:
-        """Standard parameters whose columns are not identically zero, in the order of the columns; they
-        can be called by name, too."""
+        """Standard parameters whose columns are not identically zero, in column order; also accessible by
+        name."""
         return self._parameters
 
     @property
     def payload_parameters(self) -> Sequence[Parameter]:
-        """The payload's parameters in the order of their columns."""
+        """The payload's parameters in column order."""
         return self._payload_parameters
 
     @property
     def base_parameters(self) -> Sequence[BaseParameter]:
-        """The base parameters with what is regrouped into each, in the order of the columns."""
+        """The base parameters with their regroupings, in column order."""
         return self._base_parameters
 
     @property
@@ -186,7 +186,7 @@ class Robot(Functions):
 
     @property
     def held_out(self) -> tuple[str, ...]:
-        """Names of the runs that the description holds out, to validate with."""
+        """Names of the description's validation runs."""
         return tuple(self._info["held_out"])
 
     @property
@@ -203,17 +203,17 @@ class Robot(Functions):
         return tuple(self._handle.function_names())
 
     def function(self, name: str) -> Function:
-        """A function by its name, as ``getattr(robot, name)``."""
+        """A function by name, as ``getattr(robot, name)``."""
         return self._handle.function(name)
 
     def pose_from_actuators(self, actuators: Any, start: Any = None, out: Any = None) -> np.ndarray:
-        """Forward kinematics: the poses that fit the positions of all actuators best.
+        """Forward kinematics: the least-squares poses for the positions of all actuators.
 
         Args:
             actuators: Positions of the actuators, (n,) or (N, n) (rad, m).
-            start: The pose from which the first sample is searched; each other one is searched from the
-                sample before. The home configuration if not given.
-            out: An array that the poses are written to.
+            start: Start pose of the first sample, by default home; each further sample starts from the
+                previous one.
+            out: Array for the poses.
 
         Returns:
             Poses (m, rad), one for each sample.
@@ -221,28 +221,29 @@ class Robot(Functions):
         return self._handle.pose_from_actuators(actuators, start, out)
 
     def cost(self, function: str, effort: str = "quick") -> Cost:
-        """What a function costs in generated code.
+        """Cost of a function in generated code.
 
         Args:
-            function: Its name.
-            effort: How hard fewer operations are searched: "none", "quick" or "thorough".
+            function: Name of the function.
+            effort: Effort of the search for fewer operations: "none", "quick" or "thorough".
         """
         return self.costs([function], effort)[function]
 
     def costs(self, functions: Iterable[str] | None = None, effort: str = "quick") -> dict[str, Cost]:
-        """What functions cost in generated code, and what they call; all functions if none are named.
-        Groups are "control", "identification" and "kinematics"."""
+        """Cost of functions and of those that they call, in generated code; by default of all functions.
+
+        Groups are "control", "identification" and "kinematics".
+        """
         names = None if functions is None else list(functions)
         document = json.loads(self._handle.costs(names, effort))
         return NamedFunctions({name: Cost._of(one["cost"]) for name, one in document.items()})
 
     def to_sympy(self, function: str, effort: str = "quick") -> Symbolic:
-        """A function as expressions of SymPy (``pip install "overact[sympy]"``), for those who want to
-        look inside.
+        """A function as SymPy expressions (``pip install "overact[sympy]"``).
 
         Args:
-            function: Its name.
-            effort: How hard fewer operations are searched: "none", "quick" or "thorough".
+            function: Name of the function.
+            effort: Effort of the search for fewer operations: "none", "quick" or "thorough".
         """
         names = {
             "pose": self.pose_coordinates,
@@ -263,19 +264,22 @@ class Robot(Functions):
     # Values of parameters
 
     def parameter_vector(self, values: Mapping[str, float]) -> np.ndarray:
-        """Standard parameters by name as the array that functions take as ``parameters``: the robot's,
-        then the payload's, which may be left out all together.
+        """Converts standard parameters by name to the array that functions take as ``parameters``.
+
+        The robot's parameters come first, then the payload's, which may be omitted together.
 
         Raises:
-            ValueError: Names that the robot does not have, or values that are missing.
+            ValueError: Unknown or missing names.
         """
         self._complete(values)
         names = [one.name for one in (*self.parameters, *self.payload_parameters)]
         return np.array([float(values.get(name, 0.0)) for name in names])
 
     def base_parameter_vector(self, values: Mapping[str, float]) -> np.ndarray:
-        """The array that functions take as ``base_parameters`` from standard parameters by name: all that
-        is regrouped into the base parameters, then the payload's."""
+        """Converts standard parameters by name to the array that functions take as ``base_parameters``.
+
+        It contains the regrouped values of the base parameters, then the payload's.
+        """
         self._complete(values)
         return np.array(self._handle.regrouped({name: float(one) for name, one in values.items()}))
 
@@ -302,20 +306,20 @@ class Robot(Functions):
         parameters: Mapping[str, float] | None = None,
         progress: Callable[[float, str], None] | None = None,
     ) -> list[Run]:
-        """Makes the virtual experiment of the description.
+        """Simulates the virtual experiment of the description.
 
         Args:
-            runs: Names of the runs; all if not given.
-            seed: Of the noise; the description's if not given.
-            parameters: Standard parameters of the virtual robot by name (SI units); those that are not
-                given are the description's.
-            progress: Is told the part that is done, from 0 to 1, and the name of a run.
+            runs: Names of the runs; all by default.
+            seed: Seed of the noise; the description's by default.
+            parameters: Standard parameters of the virtual robot by name (SI units); the description's by
+                default.
+            progress: Receives the completed fraction, from 0 to 1, and the name of a run.
 
         Returns:
-            The runs, in their order.
+            The runs, in order.
 
         Raises:
-            DescriptionError, DataError: An experiment that is not described, or can't be made.
+            DescriptionError, DataError: A missing or invalid experiment.
         """
         names = [runs] if isinstance(runs, str) else list(runs or ())
         given = None if parameters is None else {name: float(one) for name, one in parameters.items()}

@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run, measured or virtual, uniformly sampled.
+    """A measured or virtual run, uniformly sampled.
 
     Attributes:
-        name: Its name.
+        name: Name of the run.
         positions: Positions of the actuators, N x n (rad, m).
-        torques: Their torques and forces, N x n (N m, N).
+        torques: Torques and forces of the actuators, N x n (N m, N).
         sampling: Sampling frequency (Hz).
         payload: Whether the platform carried the payload.
         velocities: Measured velocities of the actuators, N x n (rad/s, m/s), or None.
         time: Time of each sample, N (s).
         actuators: Names of the actuators.
-        tracking_error: Of a virtual run the largest errors of the actuators, n (rad, m).
+        tracking_error: Largest tracking errors of a virtual run, n (rad, m).
     """
 
     name: str
@@ -36,8 +36,10 @@ class Run:
     tracking_error: NDArray[np.float64] | None = field(default=None, repr=False)
 
     def to_dict(self) -> dict[str, NDArray[np.float64]]:
-        """The columns of the log that ``overact simulate`` writes: ``time``, ``q_ACTUATOR``,
-        ``tau_ACTUATOR``. ``pandas.DataFrame(run.to_dict())`` is a data frame of it."""
+        """Columns of the log that ``overact simulate`` writes: ``time``, ``q_ACTUATOR``, ``tau_ACTUATOR``.
+
+        ``pandas.DataFrame(run.to_dict())`` is its data frame.
+        """
         count, n = self.positions.shape
         time = np.arange(count) / self.sampling if self.time is None else self.time
         actuators = self.actuators or [str(at + 1) for at in range(n)]

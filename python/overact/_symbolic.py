@@ -1,4 +1,4 @@
-"""Programs as expressions of SymPy."""
+"""Programs as SymPy expressions."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ def _sympy() -> Any:
 
 
 class Symbolic:
-    """A function of a robot as expressions of SymPy, step by step, as `sympy.cse` would give it.
+    """A function of a robot as SymPy expressions, in steps like the result of `sympy.cse`.
 
     Attributes:
         function: Name of the function.
         inputs: Symbols of each input.
-        steps: Assignments, each a symbol and what it stands for; later ones use earlier ones.
+        steps: Assignments of a symbol and its expression; later ones use earlier ones.
         matrix: The output (a vector has one column), in terms of inputs and steps.
-        guards: Expressions with what has to hold of each, so that the output has a meaning.
+        guards: Expressions and the conditions that they must satisfy for a valid output.
     """
 
     function: str
@@ -74,7 +74,7 @@ class Symbolic:
         self.guards = tuple((value(term), what) for term, what in program["guards"])
 
     def inlined(self) -> sympy.Matrix:
-        """The output in terms of the inputs alone. Long: what the steps share is written out."""
+        """The output in terms of the inputs only; long, because shared steps are expanded."""
         sympy = _sympy()
         known: dict = {}
         for name, expression in self.steps:
@@ -82,7 +82,7 @@ class Symbolic:
         return sympy.Matrix(*self.matrix.shape, [one.xreplace(known) for one in self.matrix])
 
     def lambdify(self, modules: str | list = "numpy") -> Callable[..., Any]:
-        """A function of the inputs, each a sequence of numbers, that gives the output as an array."""
+        """Function of the inputs, each a sequence of numbers, that returns the output as an array."""
         sympy = _sympy()
         steps, matrix = list(self.steps), self.matrix
 

@@ -1,5 +1,7 @@
-//! NumPy arrays as rows of numbers: without a copy where they are float64 and lie row after row, else
-//! converted once; what is no array of real numbers is refused by its name.
+//! NumPy arrays as rows of numbers.
+//!
+//! C-contiguous float64 arrays are used without a copy; others are converted once. Values that are
+//! not real arrays are rejected by name.
 
 use numpy::{
     PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArray,
@@ -19,10 +21,10 @@ pub(crate) struct Rows<'py> {
 }
 
 impl<'py> Rows<'py> {
-    /// The rows of a value; `width` is how many numbers a row has, `what` says which.
+    /// Rows of a value with `width` numbers each; `what` describes them.
     ///
     /// # Errors
-    /// What is no array of real numbers, or of another shape.
+    /// A value that is not a real array, or has another shape.
     pub(crate) fn new(
         value: &Bound<'py, PyAny>,
         name: &str,
@@ -43,12 +45,12 @@ impl<'py> Rows<'py> {
         Ok(Self { array, name, width })
     }
 
-    /// The shape of the samples; nothing of a single row.
+    /// Shape of the samples; empty for a single row.
     fn samples(&self) -> &[usize] {
         self.array.shape().split_last().map_or(&[], |(_, all)| all)
     }
 
-    /// All numbers, row after row.
+    /// All numbers, row-major.
     pub(crate) fn values(&self) -> PyResult<&[f64]> {
         Ok(self.array.as_slice()?)
     }
@@ -58,13 +60,13 @@ impl<'py> Rows<'py> {
         self.array.ndim() == 1
     }
 
-    /// Numbers of a row.
+    /// Numbers per row.
     pub(crate) const fn width(&self) -> usize {
         self.width
     }
 }
 
-/// The shape that all inputs with more than a row have in common.
+/// Common shape of all inputs with more than one row.
 ///
 /// # Errors
 /// Inputs of different shapes.
@@ -90,16 +92,16 @@ pub(crate) fn common_samples(inputs: &[Rows<'_>]) -> PyResult<Vec<usize>> {
     Ok(found.map_or_else(Vec::new, |input| input.samples().to_vec()))
 }
 
-/// An array that can be read as it lies.
+/// The array, if it can be read in place.
 fn as_it_lies<'py>(value: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f64>>> {
-    // Subclasses may mean something else by the same numbers.
+    // Subclasses may give the same numbers another meaning.
     let array = value.cast::<PyArrayDyn<f64>>().ok()?;
     let is_plain = value.is_exact_instance_of::<PyUntypedArray>();
     let lies_right = is_plain && array.is_c_contiguous() && array.is_aligned();
     lies_right.then(|| array.clone())
 }
 
-/// A copy as float64, row after row.
+/// Copy as float64, row-major.
 fn converted<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let py = value.py();
     if value.hasattr(intern!(py, "mask"))? && value.hasattr(intern!(py, "filled"))? {
@@ -140,10 +142,10 @@ fn wrong_shape(name: &str, shape: &[usize], width: usize, what: &str) -> PyErr {
     ))
 }
 
-/// An array that results are written to: the caller's, or a new one.
+/// Output array: the caller's, or a new one.
 ///
 /// # Errors
-/// A caller's that is not float64, of another shape, not row after row, or not to be written.
+/// An array that is not float64, C-contiguous, writable and of the right shape.
 pub(crate) fn output<'py>(
     py: Python<'py>,
     given: Option<&Bound<'py, PyAny>>,
@@ -191,7 +193,7 @@ fn right_output<'py>(
     Ok(array.clone())
 }
 
-/// A shape as Python shows it.
+/// Shape in Python notation.
 pub(crate) fn shown(shape: &[usize]) -> String {
     let parts: Vec<String> = shape.iter().map(ToString::to_string).collect();
     match parts.as_slice() {

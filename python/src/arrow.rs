@@ -1,5 +1,6 @@
-//! Columns of tables that speak Arrow's C interface (`__arrow_c_stream__`, `__arrow_c_array__`), as those of
-//! pandas, Polars and PyArrow do.
+//! Columns of tables with Arrow's C interface, as those of pandas, Polars and PyArrow.
+//!
+//! The interface consists of `__arrow_c_stream__` and `__arrow_c_array__`.
 
 use arrow_array::{
     Array, RecordBatch, RecordBatchReader,
@@ -20,13 +21,13 @@ use pyo3::{
 };
 use std::collections::BTreeMap;
 
-/// A column on its way: numbers so far, or what it holds in their place.
+/// Column being read: its numbers so far, or the type of its other contents.
 enum Column {
     Numbers(Vec<f64>),
     Other(String),
 }
 
-/// The numeric columns of a table as float64, and what the others hold, by name.
+/// Numeric columns of a table as float64, and types of the others, by name.
 #[pyfunction]
 pub(crate) fn columns<'py>(
     py: Python<'py>,
@@ -70,7 +71,7 @@ pub(crate) fn columns<'py>(
     Ok((numbers, others))
 }
 
-/// All of a table, whose numbers stay where they are.
+/// Reads a table without copying its numbers.
 fn read(table: &Bound<'_, PyAny>) -> PyResult<(Schema, Vec<RecordBatch>)> {
     if table.hasattr("__arrow_c_stream__")? {
         let reader = arrow_array::ffi_stream::RecordBatchStreamReader::from_pyarrow_bound(table)?;

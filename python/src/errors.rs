@@ -1,11 +1,11 @@
-//! Errors of the libraries as exceptions of the package, which are classes of `overact._errors`.
+//! Converts errors to exceptions of the package, which are classes of `overact._errors`.
 
 use overact::SampleError;
 use overact_cli::failure::Failure;
 use overact_robot::{Column, Error, Problem};
 use pyo3::{call::PyCallArgs, exceptions::PyValueError, prelude::*};
 
-/// An exception of the package.
+/// Exception of the package.
 fn raised<'py, A>(py: Python<'py>, class: &str, arguments: A) -> PyErr
 where
     A: PyCallArgs<'py>,
@@ -20,7 +20,7 @@ where
     }
 }
 
-/// What is wrong with a description, with data or with overact itself.
+/// Exception for an error of a description, of data or of overact itself.
 pub(crate) fn of_robot(py: Python<'_>, error: &Error) -> PyErr {
     let class = match error {
         _ if error.internal().is_some() => "InternalError",
@@ -31,7 +31,7 @@ pub(crate) fn of_robot(py: Python<'_>, error: &Error) -> PyErr {
     raised(py, class, (error.render(false), problems))
 }
 
-/// What a part of the command line says.
+/// Exception for a failure of the command line.
 pub(crate) fn of_command(py: Python<'_>, failure: &Failure) -> PyErr {
     match failure {
         Failure::Input(error) => of_robot(py, error),
@@ -42,7 +42,7 @@ pub(crate) fn of_command(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
-/// A sample at which a function has no value.
+/// Exception for a sample at which a function has no value.
 pub(crate) fn of_sample(py: Python<'_>, function: &str, error: &SampleError) -> PyErr {
     let message = format!("{function}: {error}");
     raised(
@@ -60,7 +60,7 @@ fn is_of_description(error: &Error) -> bool {
     }
 }
 
-/// Message, file, line, column and a way out.
+/// Message, file, line, column and advice.
 type Parts = (
     String,
     Option<String>,
@@ -69,7 +69,7 @@ type Parts = (
     Option<String>,
 );
 
-/// A place in a line: the number of a character, or the name of a column.
+/// Position in a line: number of a character, or name of a column.
 #[derive(IntoPyObject)]
 pub(crate) enum Place {
     Number(usize),

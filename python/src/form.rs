@@ -1,5 +1,4 @@
-//! A function of a robot in one of its forms (from the pose, from joints, from actuators), evaluated over
-//! samples.
+//! A function of a robot in one of its forms (from pose, joints or actuators), over samples.
 
 use overact::{Error, Function, Input, Model, SampleError, guard, limits::DOUBLE};
 use overact_codegen::{
@@ -10,11 +9,11 @@ use overact_codegen::{
 use overact_robot::{InterpretedRobot, Robot};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Who has the program of a form.
+/// Owner of a form's program.
 pub(crate) enum Owner {
-    /// The robot, whose usual functions are compiled with it.
+    /// The robot, with which its usual functions are compiled.
     Robot(Arc<Robot>),
-    /// A model of this function alone.
+    /// A model of this function only.
     Own(Box<InterpretedRobot>),
 }
 
@@ -37,17 +36,17 @@ pub(crate) struct Argument {
 /// A function in one of its forms.
 pub(crate) struct Form {
     owner: Owner,
-    /// Its place among the model's functions.
+    /// Index among the model's functions.
     index: usize,
-    /// What it takes from its caller.
+    /// Arguments from the caller.
     pub(crate) arguments: Vec<Argument>,
-    /// Whether it is the form that [`Model::evaluate`] serves.
+    /// Whether [`Model::evaluate`] offers this form.
     is_served: bool,
     evaluators: Mutex<Vec<Evaluator>>,
 }
 
 impl Form {
-    /// A form of an owner's model by its full name.
+    /// Form of an owner's model by its full name.
     pub(crate) fn new(owner: Owner, name: &str) -> Option<Self> {
         let model = owner.model().model();
         let index = model.functions.iter().position(|f| f.name == name)?;
@@ -66,28 +65,30 @@ impl Form {
         })
     }
 
-    /// The model that has it.
+    /// Model of the form.
     pub(crate) fn model(&self) -> &InterpretedRobot {
         self.owner.model()
     }
 
-    /// The function with its program.
+    /// Function with its program.
     pub(crate) fn function(&self) -> &CompiledFunction {
         &self.model().model().functions[self.index]
     }
 
-    /// The shape of the output at a sample.
+    /// Shape of the output at a sample.
     pub(crate) fn shape(&self) -> &[usize] {
         &self.function().program.output.shape
     }
 
-    /// Whether forward kinematics finds its poses, from a start.
+    /// Whether forward kinematics computes the poses, from a start.
     pub(crate) fn follows(&self) -> bool {
         self.model().model().finds_pose(self.function())
     }
 
-    /// Evaluates the form at `samples` samples; each input is a row for each, or one row for all. `start` is
-    /// the pose from which forward kinematics starts, and then the last pose that it found.
+    /// Evaluates the form at `samples` samples.
+    ///
+    /// Each input has a row per sample or one row for all. `start` is the start pose of forward
+    /// kinematics, and then its last pose.
     pub(crate) fn evaluate(
         &self,
         inputs: &[&[f64]],
@@ -103,7 +104,7 @@ impl Form {
         self.run(inputs, samples, start, output)
     }
 
-    /// Runs the program itself, after what it needs has been found.
+    /// Runs the program after its inputs have been computed.
     fn run(
         &self,
         inputs: &[&[f64]],
@@ -159,7 +160,7 @@ impl Form {
             .map_err(|failed| self.model().error(&function.program, &failed))
     }
 
-    /// Lends memory of earlier calls.
+    /// Calls `work` with memory from a pool.
     fn with_evaluator<R>(&self, work: impl FnOnce(&mut Evaluator) -> R) -> R {
         let free = || {
             self.evaluators
@@ -173,7 +174,7 @@ impl Form {
         result
     }
 
-    /// The first sample with a number that is not finite or too large is an error.
+    /// Rejects the first sample with a number that is not finite or too large.
     fn check_range(&self, inputs: &[&[f64]]) -> Result<(), SampleError> {
         let bad = self
             .arguments
@@ -211,7 +212,7 @@ impl Form {
         Ok(poses)
     }
 
-    /// Poses whose quaternions have length 1.
+    /// Poses with normalised quaternions.
     fn unit(&self, poses: &[f64]) -> Result<Vec<f64>, SampleError> {
         let length = self.model().info().sizes.pose.max(1);
         let mut unit = Vec::with_capacity(poses.len());
@@ -222,7 +223,7 @@ impl Form {
         Ok(unit)
     }
 
-    /// Joints that the function does not take, by inverse kinematics.
+    /// Joints by inverse kinematics, if they are not arguments.
     fn joints(&self, poses: &[f64]) -> Result<Vec<f64>, SampleError> {
         let sizes = self.model().info().sizes;
         let mut joints = vec![0.0; poses.len() / sizes.pose.max(1) * sizes.joints];
@@ -248,8 +249,9 @@ pub(crate) fn follow(
     })
 }
 
-/// Whether a form is the one that [`Model::evaluate`] serves. A model of one form alone serves that one for want
-/// of others, with inputs that are not its own.
+/// Whether [`Model::evaluate`] offers a form.
+///
+/// A model of one form only always offers it, with inputs that are not its own.
 fn is_served(model: &RobotModel, function: &CompiledFunction) -> bool {
     let computes = function.computes;
     let has_own_inputs = match function.from {
@@ -261,7 +263,7 @@ fn is_served(model: &RobotModel, function: &CompiledFunction) -> bool {
     has_own_inputs && served.is_some_and(|served| std::ptr::eq(served, function))
 }
 
-/// What a function takes that [`Model::evaluate`] serves.
+/// Arguments of a function that [`Model::evaluate`] offers.
 fn served_arguments(robot: &InterpretedRobot, function: Function) -> Vec<Argument> {
     let sizes = robot.info().sizes;
     let is_tree = robot.model().is_tree();
@@ -276,7 +278,7 @@ fn served_arguments(robot: &InterpretedRobot, function: Function) -> Vec<Argumen
     function.inputs().iter().map(argument).collect()
 }
 
-/// What a program takes whose pose or joints are found first.
+/// Arguments of a program whose pose or joints are computed first.
 fn own_arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Argument> {
     let follows = model.finds_pose(function);
     let finds_joints = model.finds_joints(function);
@@ -293,7 +295,7 @@ fn own_arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Argumen
         length: model.mechanism.actuated().len(),
     });
     let mut all: Vec<Argument> = actuators.into_iter().chain(own).collect();
-    // Joints that Newton's method finds from a pose need that pose.
+    // Newton's method needs the pose to compute the joints.
     let has = |all: &[Argument], name: &str| all.iter().any(|one| one.name == name);
     if finds_joints && function.from == MotionInput::Pose && !has(&all, "pose") {
         all.insert(
@@ -307,7 +309,7 @@ fn own_arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Argumen
     all
 }
 
-/// The name of an argument with the life that errors need.
+/// Name of an argument with static lifetime, for errors.
 fn known_name(name: &str) -> &'static str {
     let all = [
         Input::Pose,

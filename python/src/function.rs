@@ -1,4 +1,4 @@
-//! A function of a robot as an object that is called with arrays.
+//! Function of a robot as a Python callable on arrays.
 
 use crate::{
     arrays::{Rows, common_samples, output},
@@ -17,13 +17,13 @@ use pyo3::{
 };
 use std::sync::Arc;
 
-/// Samples between two looks at signals, such as Ctrl-C.
+/// Number of samples between checks for signals, such as Ctrl-C.
 const STRETCH: usize = 1 << 15;
 
-/// Samples of which each is tried by itself, where one of them has no value.
+/// Number of samples that are evaluated individually if one of them has no value.
 const TRIED: usize = 64;
 
-/// A function of a robot: call it with arrays of one sample or of thousands.
+/// A function of a robot, callable with arrays of one or many samples.
 #[pyclass(module = "overact", frozen)]
 pub(crate) struct Function {
     form: Arc<Form>,
@@ -39,8 +39,8 @@ impl Function {
 impl Function {
     /// Evaluates the function.
     ///
-    /// Each input is an array whose last axis has the numbers of a sample; what stands before are samples. An
-    /// input of one axis serves all samples. Contiguous float64 is read where it lies.
+    /// The last axis of each input has the numbers of a sample; all axes before are samples. An
+    /// input of one axis is used for all samples. Contiguous float64 is read in place.
     #[pyo3(signature = (*arguments, out=None, start=None, invalid="raise", **named))]
     fn __call__<'py>(
         &self,
@@ -110,13 +110,13 @@ impl Function {
         self.form.function().name.clone()
     }
 
-    /// What it computes, with its equation.
+    /// Result of the function, with its equation.
     #[getter]
     fn summary(&self) -> &'static str {
         self.form.function().computes.summary()
     }
 
-    /// Its inputs: how many numbers of each a sample has.
+    /// Inputs in order, with their length in a sample.
     #[getter]
     fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let inputs = PyDict::new(py);
@@ -126,13 +126,13 @@ impl Function {
         Ok(inputs)
     }
 
-    /// The shape of its output at a sample.
+    /// Shape of the output at a sample.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.form.shape())
     }
 
-    /// Names of the parameters that its columns stand for; empty where they stand for none.
+    /// Names of the parameters of its columns; empty if it is not a regressor.
     #[getter]
     fn columns(&self) -> Vec<String> {
         let model = self.form.model().model();
@@ -148,7 +148,7 @@ impl Function {
         }
     }
 
-    /// What is called a signature: the function with its inputs and shapes.
+    /// Signature: the function with its inputs and shapes.
     #[getter]
     fn signature(&self) -> String {
         let argument = |one: &Argument| format!("{}: ({},)", one.name, one.length);
@@ -164,7 +164,7 @@ impl Function {
 }
 
 impl Function {
-    /// The inputs of a call in their order, by place or by name.
+    /// Inputs of a call in order, by position or name.
     fn inputs_of<'py>(
         &self,
         arguments: &Bound<'py, PyTuple>,
@@ -208,7 +208,7 @@ impl Function {
         Ok(inputs)
     }
 
-    /// What the numbers of an input are.
+    /// Description of an input's numbers.
     fn what(&self, one: &Argument) -> String {
         let model = self.form.model();
         let info = model.info();
@@ -227,7 +227,7 @@ impl Function {
         PyTypeError::new_err(format!("{} {what}: {}", self.name(), self.signature()))
     }
 
-    /// The pose from which forward kinematics starts.
+    /// Start pose of forward kinematics.
     fn start(&self, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
         let info = self.form.model().info();
         let Some(given) = given else {
@@ -244,14 +244,14 @@ impl Function {
     }
 }
 
-/// A form with what is known of its inputs.
+/// Form with information on its inputs.
 struct Call<'a> {
     form: &'a Form,
     shared: &'a [bool],
 }
 
 impl Call<'_> {
-    /// Evaluates some samples; those without a value are filled with NaN, if that is wanted.
+    /// Evaluates samples; those without a value become NaN if requested.
     fn stretch(
         &self,
         inputs: &[&[f64]],
@@ -273,7 +273,7 @@ impl Call<'_> {
         }
     }
 
-    /// Evaluates samples in small parts, and the samples of a part by themselves where one has no value.
+    /// Evaluates samples in small blocks, and individually where one has no value.
     fn in_parts(&self, inputs: &[&[f64]], samples: usize, start: &mut [f64], output: &mut [f64]) {
         let width = output.len() / samples.max(1);
         for first in (0..samples).step_by(TRIED) {
@@ -314,7 +314,7 @@ impl Call<'_> {
     }
 }
 
-/// The names of a robot's functions, in the order of the table of functions.
+/// Names of a robot's functions, in the order of the table of functions.
 pub(crate) fn names(model: &overact_codegen::RobotModel) -> Vec<String> {
     let all = inventory(&model.mechanism, model.selection.joints);
     all.iter()
@@ -322,8 +322,7 @@ pub(crate) fn names(model: &overact_codegen::RobotModel) -> Vec<String> {
         .collect()
 }
 
-/// A function as documentation wants it: full name, what it is evaluated from, its inputs, what counts its
-/// rows and columns, and what it computes.
+/// Function for documentation: full name, source, inputs, meaning of rows and columns, summary.
 type Known = (
     String,
     &'static str,
@@ -332,7 +331,7 @@ type Known = (
     &'static str,
 );
 
-/// All functions that robots with a platform have, in all their forms.
+/// All functions of robots with a platform, in all forms.
 #[pyfunction]
 pub(crate) fn known_functions() -> Vec<Known> {
     let sources = [
@@ -362,20 +361,20 @@ pub(crate) fn known_functions() -> Vec<Known> {
     known
 }
 
-/// Whether some robot with a platform has a function from this.
+/// Whether some robot with a platform has this form of a function.
 fn is_form(function: overact::Function, from: MotionInput) -> bool {
     let plain = match function {
         overact::Function::PoseInClosedForm => MotionInput::Actuators,
         _ if function.inputs().contains(&overact::Input::Joints) => MotionInput::Joints,
         _ => MotionInput::Pose,
     };
-    // What a name of its own says, the choice of functions has looked at.
+    // The selection of functions already excludes forms with other names.
     from == plain
         || from != MotionInput::Pose
             && function_name(function, from, false) != function_name(function, plain, false)
 }
 
-/// What counts rows or columns.
+/// Meaning of the number of rows or columns.
 const fn counted(extent: Extent) -> &'static str {
     match extent {
         Extent::Pose => "pose",

@@ -1,4 +1,4 @@
-//! Parameters from runs, and the result in all the ways in which it is told.
+//! Identification from runs, and its result in all output formats.
 
 use crate::{
     errors,
@@ -18,11 +18,11 @@ use pyo3::{
 };
 use std::{path::PathBuf, sync::Arc};
 
-/// What an identification is asked for.
+/// Options of an identification.
 struct Wishes {
     runs: Vec<(Given, bool)>,
     validation: Vec<(Given, bool)>,
-    /// Names of runs of the virtual experiment that are held out.
+    /// Names of the virtual experiment's validation runs.
     held_out: Vec<String>,
     seed: Option<u64>,
     kept: Option<Vec<String>>,
@@ -32,7 +32,7 @@ struct Wishes {
     tracking: bool,
 }
 
-/// An identification that has been made.
+/// Result of an identification.
 #[pyclass(module = "overact._overact", frozen)]
 pub(crate) struct Identified {
     robot: Arc<Robot>,
@@ -115,7 +115,7 @@ fn unknown(name: &str, found: &str, wanted: &str) -> PyErr {
     PyValueError::new_err(format!("{name}=\"{found}\" is none of {wanted}"))
 }
 
-/// The identification, as the command line makes it.
+/// Runs the identification as the command line does.
 fn identified(robot: &Robot, wishes: &Wishes, teller: &Teller) -> Result<Identification, Error> {
     let kept = wishes.kept.as_deref();
     let kept = kept.map(|names| kept_actuators(robot.model().model(), names));
@@ -142,7 +142,7 @@ fn identified(robot: &Robot, wishes: &Wishes, teller: &Teller) -> Result<Identif
     Ok(result)
 }
 
-/// Logs, or the virtual experiment where there are none.
+/// Logs, or the virtual experiment if there are none.
 fn runs(robot: &Robot, wishes: &Wishes, teller: &Teller) -> Result<Runs, Error> {
     if wishes.runs.is_empty() {
         let mut experiment = robot.experiment()?;
@@ -179,18 +179,18 @@ fn tell(teller: &Teller, doing: Progress<'_>) {
 
 #[pymethods]
 impl Identified {
-    /// All numbers as a document, that of `overact identify --json`.
+    /// All numbers as JSON, as in `overact identify --json`.
     fn json(&self) -> PyResult<String> {
         serde_json::to_string_pretty(&self.result)
             .map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// The document with all that is plotted.
+    /// All numbers and figures as JSON.
     fn json_with_figures(&self, py: Python<'_>) -> PyResult<String> {
         report::document(&self.result).map_err(|failure| errors::of_command(py, &failure))
     }
 
-    /// The report, a page for a browser.
+    /// Report as an HTML page.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
         let made = py.detach(|| {
             let info = self.robot.model().info();
@@ -205,12 +205,12 @@ impl Identified {
             .map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// What `overact identify --all` prints.
+    /// Output of `overact identify --all`.
     fn summary(&self) -> String {
         overact_report::summary(&self.result, None, Extent::Whole)
     }
 
-    /// What `overact identify --tables` prints below the summary.
+    /// Tables that `overact identify --tables` prints below the summary.
     fn tables(&self) -> String {
         let mut text = overact_report::tables(&self.result);
         text.push_str(&overact_report::beside(
@@ -220,12 +220,12 @@ impl Identified {
         text
     }
 
-    /// The physically consistent standard parameters as TOML; None where there are none.
+    /// Physically consistent standard parameters as TOML; None if there are none.
     fn parameters_toml(&self) -> Option<String> {
         overact_report::parameters_file(&self.result)
     }
 
-    /// The description with what was calibrated; None where nothing was.
+    /// Description with the calibration; None if nothing was calibrated.
     fn calibrated_description(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let calibration = self.result.calibration.as_ref();
         let text = calibration.map(|calibration| self.robot.calibrated_text(calibration));
@@ -233,7 +233,7 @@ impl Identified {
             .map_err(|error| errors::of_robot(py, &error))
     }
 
-    /// Whether nothing was found that speaks against the first case.
+    /// Whether the verdict on the first model is to use the result.
     fn trusted(&self) -> bool {
         self.result.grade() == Grade::Use
     }

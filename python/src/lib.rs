@@ -1,16 +1,17 @@
-//! The compiled half of the Python package `overact`: robots, their functions on NumPy arrays, virtual
-//! experiments and identifications. The other half, `overact/*.py`, gives them names, texts and classes.
+//! Compiled part of the Python package `overact`: robots, functions, experiments, identification.
 //!
-//! - `errors`: what is wrong, as exceptions of the package;
-//! - `arrays`: NumPy arrays as rows of numbers, without copies where they lie right;
+//! The other part, `overact/*.py`, adds names, documentation and classes.
+//!
+//! - `errors`: errors as exceptions of the package;
+//! - `arrays`: NumPy arrays as rows of numbers, without copies where possible;
 //! - `form`: a function of a robot in one of its forms, evaluated over samples;
-//! - `function`: a form as an object that is called;
-//! - `operations`: what functions cost, and their programs step by step;
+//! - `function`: a form as a callable object;
+//! - `operations`: cost of functions, and their programs step by step;
 //! - `robot`: a description as an object;
-//! - `progress`: how far long work is, told to a callable;
+//! - `progress`: progress of long work, reported to a callable;
 //! - `logs`, `simulation`, `identification`: runs in, records and results out;
-//! - `arrow`: columns of tables that speak Arrow's C interface;
-//! - `command`: the command line, which the package brings along.
+//! - `arrow`: columns of tables with Arrow's C interface;
+//! - `command`: the command line, which is part of the package.
 
 mod arrays;
 mod arrow;
@@ -27,7 +28,7 @@ mod simulation;
 
 use pyo3::prelude::*;
 
-/// The compiled half of the package.
+/// Compiled part of the package.
 #[pymodule]
 fn _overact(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

@@ -1,4 +1,4 @@
-//! Runs as Python hands them over: files, arrays by the names of columns, or samples in SI units.
+//! Runs from Python: files, arrays by column name, or samples in SI units.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use overact_identification::{Log, data::Array};
@@ -10,20 +10,20 @@ use std::path::{Path, PathBuf};
 pub(crate) enum Given {
     /// A file, or several joined by `+`.
     File(PathBuf),
-    /// Arrays whose names are those that the description gives columns of a log.
+    /// Arrays with the column names of the description.
     Arrays(String, Vec<Named>),
     /// Samples of all actuators in SI units.
     Samples(Samples),
 }
 
-/// An array with its name; its numbers stand one column after the other.
+/// Named array in column-major order.
 pub(crate) struct Named {
     name: String,
     shape: (usize, usize),
     values: Vec<f64>,
 }
 
-/// Samples x n, row after row.
+/// Row-major samples, samples x n.
 pub(crate) struct Samples {
     name: String,
     frequency: f64,
@@ -33,12 +33,13 @@ pub(crate) struct Samples {
     velocities: Vec<f64>,
 }
 
-/// A run with a word on whether the platform carried the payload: `("file", payload, path)`,
-/// `("arrays", payload, name, [(column, rows, columns, values)])` or
-/// `("samples", payload, name, frequency, positions, torques, velocities or None)`.
+/// Run and whether the platform carried the payload.
+///
+/// The tuple is `("file", payload, path)`, `("arrays", payload, name, [(column, rows, columns,
+/// values)])` or `("samples", payload, name, frequency, positions, torques, velocities or None)`.
 ///
 /// # Errors
-/// Anything else.
+/// Any other tuple.
 pub(crate) fn given(item: &Bound<'_, PyTuple>) -> PyResult<(Given, bool)> {
     let kind: String = item.get_item(0)?.extract()?;
     let payload: bool = item.get_item(1)?.extract()?;
@@ -92,10 +93,10 @@ fn samples(item: &Bound<'_, PyTuple>) -> PyResult<Samples> {
     })
 }
 
-/// The runs as logs, in their order.
+/// Converts the runs to logs, in order.
 ///
 /// # Errors
-/// What is wrong with all of them.
+/// All errors of all runs.
 pub(crate) fn logs(
     robot: &Robot,
     runs: &[(Given, bool)],

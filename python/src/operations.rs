@@ -1,4 +1,4 @@
-//! What functions cost, and their programs step by step, for those who want to look inside.
+//! Cost of functions, and their programs step by step.
 
 use overact_codegen::{
     RobotModel,
@@ -6,8 +6,8 @@ use overact_codegen::{
 };
 use pyo3::{prelude::*, types::PyDict};
 
-/// What all functions of a model cost, as a document: for each name what is done once, what each step of an
-/// iteration takes, and how many operations that is.
+/// Cost of all functions of a model by name, as JSON: single operations, iteration steps and
+/// totals.
 pub(crate) fn costs(model: &RobotModel) -> serde_json::Value {
     let cost = |function| {
         let whole = model.cost(function);
@@ -19,7 +19,7 @@ pub(crate) fn costs(model: &RobotModel) -> serde_json::Value {
         .into()
 }
 
-/// A constant, an element of an input, or the result of a step: kind, place or array, value or index.
+/// Constant, input element or result of a step: kind, position or array, value or index.
 type Term = (&'static str, usize, f64);
 
 fn term(operand: Operand) -> Term {
@@ -64,7 +64,7 @@ fn condition(condition: &Condition) -> String {
     }
 }
 
-/// A program as lists: `inputs`, `steps`, `entries`, `guards`, `shape`.
+/// Program as lists: `inputs`, `steps`, `entries`, `guards`, `shape`.
 pub(crate) fn steps<'py>(py: Python<'py>, program: &Program) -> PyResult<Bound<'py, PyDict>> {
     let listing = PyDict::new(py);
     let inputs = program.inputs.iter();

@@ -1,9 +1,9 @@
-//! How far long work is, told to a callable of Python.
+//! Reports progress of long work to a Python callable.
 
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// A callable that hears the part that is done, from 0 to 1, and a word on what is being done.
+/// Callable that receives the completed fraction, from 0 to 1, and the current work.
 pub(crate) struct Teller {
     callable: Option<Py<PyAny>>,
     failed: Mutex<Option<PyErr>>,
@@ -15,7 +15,7 @@ impl Teller {
         Self { callable, failed }
     }
 
-    /// Tells the callable, unless it has failed before.
+    /// Calls the callable, unless it has failed before.
     pub(crate) fn tell(&self, part: f64, what: &str) {
         let Some(callable) = &self.callable else {
             return;
@@ -27,10 +27,10 @@ impl Teller {
         }
     }
 
-    /// What the callable failed with.
+    /// Ends reporting.
     ///
     /// # Errors
-    /// That, if it did.
+    /// The exception of the callable, if it failed.
     pub(crate) fn end(self) -> PyResult<()> {
         let failed = self.failed.into_inner();
         let failed = failed.unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! A description as an object of Python.
+//! A description as a Python object.
 
 use crate::{
     arrays::{Rows, common_samples, output},
@@ -29,7 +29,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// A robot, compiled from its description; `overact.Robot` stands on it.
+/// A robot compiled from its description; the base of `overact.Robot`.
 #[pyclass(module = "overact._overact", frozen)]
 pub(crate) struct Handle {
     robot: Arc<Robot>,
@@ -45,7 +45,7 @@ impl Handle {
         })
     }
 
-    /// A form by its name; one that the robot has not been compiled with is compiled now.
+    /// Form by name; compiled now if the robot was compiled without it.
     fn form(&self, py: Python<'_>, name: &str) -> PyResult<Arc<Form>> {
         let forms = || self.forms.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(form) = forms().get(name) {
@@ -77,7 +77,7 @@ impl Handle {
         Ok(form)
     }
 
-    /// The model of a function alone, with what finds its pose.
+    /// Model of one function only, with the functions that compute its pose.
     fn compiled_alone(&self, name: &str) -> Result<InterpretedRobot, Error> {
         let wanted = |mechanism: &Mechanism, function, from: MotionInput| {
             InterpretedRobot::finds_pose(mechanism, function, from)
@@ -92,7 +92,7 @@ impl Handle {
         Ok(InterpretedRobot::new(compiled.model))
     }
 
-    /// The description compiled with an effort.
+    /// Compiles the description with an effort.
     fn compiled(
         &self,
         py: Python<'_>,
@@ -126,7 +126,7 @@ impl Handle {
         Self::new(py, robot)
     }
 
-    /// The robot of a description in memory; errors call it `name`.
+    /// Robot of a description in memory; `name` is its name in errors.
     #[staticmethod]
     fn from_text(py: Python<'_>, text: &str, name: &str) -> PyResult<Self> {
         let robot = py.detach(|| Robot::from_text(name, text));
@@ -139,13 +139,13 @@ impl Handle {
         &self.robot.source().text
     }
 
-    /// The path or name by which errors call the description.
+    /// Path or name of the description in errors.
     #[getter]
     fn file(&self) -> &str {
         self.robot.file()
     }
 
-    /// Names, sizes and parameters as a document.
+    /// Names, sizes and parameters as JSON.
     fn info(&self) -> String {
         info(&self.robot).to_string()
     }
@@ -160,7 +160,7 @@ impl Handle {
         self.form(py, name).map(Function::new)
     }
 
-    /// What functions cost, as a document.
+    /// Cost of functions as JSON.
     #[pyo3(signature = (functions=None, effort="quick"))]
     fn costs(
         &self,
@@ -180,7 +180,7 @@ impl Handle {
         name: &str,
         effort: &str,
     ) -> PyResult<Bound<'py, PyDict>> {
-        // Unknown names are told with those that are near.
+        // Unknown names are reported with similar ones.
         self.form(py, name)?;
         let compiled = self.compiled(py, Some(vec![name.to_owned()]), effort)?;
         let function = compiled.model.functions.iter().find(|one| one.name == name);
@@ -190,7 +190,7 @@ impl Handle {
         operations::steps(py, &function.program)
     }
 
-    /// Forward kinematics: poses from the positions of all actuators, sample after sample.
+    /// Forward kinematics: poses from the positions of all actuators, sample by sample.
     #[pyo3(signature = (actuators, start=None, out=None))]
     fn pose_from_actuators<'py>(
         &self,
@@ -231,7 +231,7 @@ impl Handle {
         Ok(array)
     }
 
-    /// Values of the base parameters, followed by the payload's, of standard parameters by name.
+    /// Values of the base parameters, the payload's last, from standard parameters by name.
     fn regrouped(&self, values: BTreeMap<String, f64>) -> Vec<f64> {
         let base = self.robot.model().model().regrouped(&values).into_iter();
         base.map(|(_, value)| value).collect()
@@ -242,7 +242,7 @@ impl Handle {
         overact_robot::drawing::svg(&self.robot.model().model().mechanism)
     }
 
-    /// Makes the virtual experiment.
+    /// Simulates the virtual experiment.
     #[pyo3(signature = (runs, seed=None, parameters=None, progress=None))]
     fn simulate<'py>(
         &self,
@@ -322,7 +322,7 @@ fn info(robot: &Robot) -> serde_json::Value {
     })
 }
 
-/// Names of the columns of a log, and expressions of such.
+/// Columns of a log, including columns in expressions.
 fn columns(robot: &Robot) -> Vec<String> {
     let mapping = robot.mapping();
     let time = match mapping.time {

@@ -1,4 +1,4 @@
-//! The virtual experiment of a robot.
+//! Virtual experiment of a robot.
 
 use crate::{errors, progress::Teller};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -7,7 +7,7 @@ use overact_simulation::Record;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 
-/// A run as Python takes it: name, payload, sampling frequency, actuators, time, positions, torques, largest
+/// Run for Python: name, payload, sampling frequency, actuators, time, positions, torques, largest
 /// tracking errors.
 type Run<'py> = (
     String,
@@ -23,16 +23,16 @@ type Run<'py> = (
 /// Runs, and names of true parameters without effect on the model.
 pub(crate) type Made<'py> = (Vec<Run<'py>>, Vec<String>);
 
-/// What is made otherwise than the description says.
+/// Overrides of the description.
 pub(crate) struct Wishes {
-    /// The runs that are made; all where there are none.
+    /// Runs to simulate; all if empty.
     pub(crate) runs: Vec<String>,
     pub(crate) seed: Option<u64>,
     /// Standard parameters of the virtual robot.
     pub(crate) parameters: Option<BTreeMap<String, f64>>,
 }
 
-/// Makes the runs.
+/// Simulates the runs.
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     robot: &Robot,

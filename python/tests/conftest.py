@@ -1,4 +1,4 @@
-"""What the tests share."""
+"""Shared test fixtures."""
 
 import json
 import pathlib
@@ -24,7 +24,7 @@ def emps():
 
 @pytest.fixture
 def command(tmp_path):
-    """The command line that the package brings along, in a folder of its own."""
+    """The package's command line, in a separate folder."""
 
     def run(*arguments, code=0):
         whole = [sys.executable, "-m", "overact", *map(str, arguments)]

@@ -1,4 +1,4 @@
-"""Python = interpreter of the command line = compiled Rust, on every robot of the library."""
+"""Python, the command line's interpreter and compiled Rust agree on every robot of the library."""
 
 import json
 import os
@@ -15,7 +15,7 @@ STEMS = sorted(path.stem for path in ROBOTS.glob("*.toml"))
 IS_FULL = os.environ.get("OVERACT_TESTS") in ("full", "night")
 #: Robots of the default tier: redundant, with one motor, with two, with chains, serial.
 FEW = {"dualv", "emps", "five_bar", "ankle", "rx90"}
-#: What the command line is asked for; it compiles the robot each time.
+#: Functions evaluated by the command line, which compiles the robot each time.
 ASKED = ["idm_red_platform_base", "inverse_dynamics"]
 SAMPLES = 70 if IS_FULL else 7
 
@@ -51,13 +51,13 @@ def inputs_of(robot, function, samples=SAMPLES):
 
 
 def allowed(robot, poses):
-    """The poses near these that the legs of a platform which moves aside allow, by Newton's steps."""
+    """Closed poses near given ones for a platform with parasitic motion, by Newton steps."""
     for _ in range(5):
         errors, jacobians = robot.blocked_error(poses), robot.blocked_jacobian(poses)
         for pose, error, jacobian in zip(poses, errors, jacobians):
             step = -np.linalg.pinv(jacobian) @ error
             pose[:3] += step[:3]
-            # The turn by half a small rotation vector, from the left: it is told in the base's frame.
+            # Left multiplication by half a small rotation vector, which is in the base frame.
             w, v, turn = pose[3], pose[4:].copy(), step[3:] / 2
             pose[3] = w - turn @ v
             pose[4:] = v + w * turn + np.cross(turn, v)
@@ -91,7 +91,7 @@ def test_the_command_line_has_the_same_values(stem, command, tmp_path):
 
 @pytest.fixture(scope="module")
 def compiled():
-    """Asks compiled robots, where they have been built."""
+    """Evaluates compiled robots, if they have been built."""
     program = os.environ.get("OVERACT_COMPILED_VALUES")
     if not program:
         pytest.skip("OVERACT_COMPILED_VALUES names no program with the compiled robots")
@@ -109,7 +109,7 @@ def test_compiled_rust_has_the_same_values(stem, compiled):
     robot = robot_of(stem)
     names, questions, found = [], [], []
     for name in robot.functions:
-        # Forms from joints and actuators are no functions of a compiled `overact::Model`.
+        # A compiled `overact::Model` does not offer forms from joints and actuators.
         if name.endswith(("_from_actuators", "_from_joints")) and name != "twist_from_actuators":
             continue
         if name in ("closure_error", "acceleration_from_actuators"):
@@ -120,7 +120,7 @@ def test_compiled_rust_has_the_same_values(stem, compiled):
         try:
             found.append(function(**inputs))
         except overact.EvaluationError as error:
-            # Parameters are drawn each for itself: not every draw is a robot that could be.
+            # Parameters are drawn independently, so not every draw is physically consistent.
             assert "positive definite" in str(error), f"{stem}.{name}: {error}"
             continue
         names.append(name)
@@ -130,8 +130,8 @@ def test_compiled_rust_has_the_same_values(stem, compiled):
     for name, own, answer in zip(names, found, answers):
         assert not answer.startswith("error"), f"{stem}.{name}: {answer}"
         expected = np.array(answer.split(), dtype=float).reshape(own.shape)
-        # Other forms of the same expressions: the search reorders sums, and legs near their limits lose
-        # digits in square roots.
+        # Other forms of the same expressions: the search reorders sums, and square roots lose digits for
+        # legs near their limits.
         agree(own, expected, TOLERANCE, f"{stem}.{name}")
 
 

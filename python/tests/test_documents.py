@@ -1,4 +1,4 @@
-"""The programs of the documents run, and say what is shown."""
+"""Programs in the documents run and print the shown output."""
 
 import pathlib
 import re

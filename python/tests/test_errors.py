@@ -1,4 +1,4 @@
-"""What is wrong comes as an exception that names the place."""
+"""Errors are exceptions with their location."""
 
 import pathlib
 import pickle
@@ -19,7 +19,7 @@ def test_every_error_of_a_description_is_told_at_its_line(dualv):
     lines = text.splitlines()
     assert len(error.problems) >= 2
     assert error.file == "mine.toml" and error.line == error.problems[0].line
-    # A wrong constant is told where it is used, a wrong word where it stands.
+    # A wrong constant is reported where it is used, a wrong word where it is written.
     for problem in error.problems[:2]:
         assert any(word in lines[problem.line - 1] for word in ('d = "l_ab"', "plannar"))
         assert problem.column >= 1

@@ -1,4 +1,4 @@
-"""The examples run, and say what they should."""
+"""The examples run with the expected results."""
 
 import pathlib
 import runpy
@@ -13,7 +13,7 @@ def test_dualv(capsys):
     said = capsys.readouterr().out
     assert "<Robot DualV: r = 3, n = 4" in said and "DualV: identified from" in said
     result, robot = found["result"], found["robot"]
-    # The estimates are those of a robot whose parameters are known.
+    # The true parameters of the robot are known.
     truth = robot.true_values
     for name, one in result.base.items():
         expected = robot.base_parameters[name].value(truth) if "payload" not in name else truth[name]

@@ -1,4 +1,4 @@
-"""Functions on arrays: shapes, kinds of numbers, outputs, errors."""
+"""Functions on arrays: shapes, number types, outputs, errors."""
 
 import pickle
 import threading
@@ -24,7 +24,7 @@ def test_a_sample_is_the_same_in_every_form(dualv):
     assert many.shape == (200, 3, 64) and many.dtype == np.float64
     one = dualv.idm_red_platform(poses[7], twists[7], accelerations[7])
     assert one.shape == (3, 64)
-    # Blocks take other polynomials of sine and cosine than single samples do.
+    # Blocks use other polynomials for sine and cosine than single samples.
     np.testing.assert_allclose(many[7], one, rtol=0, atol=1e-13 * np.abs(one).max())
     listed = dualv.idm_red_platform(poses[7].tolist(), list(twists[7]), tuple(accelerations[7]))
     np.testing.assert_array_equal(listed, one)
@@ -34,7 +34,7 @@ def test_a_sample_is_the_same_in_every_form(dualv):
         poses.reshape(10, 20, 3), twists.reshape(10, 20, 3), accelerations.reshape(10, 20, 3)
     )
     np.testing.assert_array_equal(grid, many.reshape(10, 20, 3, 64))
-    # A row serves all samples.
+    # A single row is used for all samples.
     shared = dualv.idm_red_platform(poses, TWIST, ACCELERATION)
     full = dualv.idm_red_platform(poses, np.tile(TWIST, (200, 1)), np.tile(ACCELERATION, (200, 1)))
     np.testing.assert_array_equal(shared, full)
@@ -93,7 +93,7 @@ def test_outputs_that_can_not_be_written_are_refused(dualv):
     kept.flags.writeable = False
     with pytest.raises(ValueError, match="`out` can't be written"):
         dualv.pose_from_actuators(np.zeros((4, 4)), out=kept)
-    # An output that is an input, too.
+    # An output that is also an input.
     joined = np.zeros((4, 3))
     joined[:] = poses
     torques = np.zeros((4, 4))
@@ -233,7 +233,7 @@ def test_other_threads_run_meanwhile(dualv):
         turns += 1
     seconds = time.perf_counter() - begin
     thread.join()
-    # Were the lock held, there would be a turn between calls only.
+    # If the lock were held, other threads would run between calls only.
     assert turns > 20, f"{turns} turns in {seconds} s"
 
 

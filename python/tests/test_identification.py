@@ -1,4 +1,4 @@
-"""Virtual experiments and identifications, beside those of the command line."""
+"""Virtual experiments and identifications compared with the command line."""
 
 import csv
 import json
@@ -25,7 +25,7 @@ def runs(robot):
 
 @pytest.fixture(scope="module")
 def split(robot, runs):
-    """Runs to identify from, and those that are held out."""
+    """Training and validation runs."""
     held = set(robot.held_out)
     return [one for one in runs if one.name not in held], [one for one in runs if one.name in held]
 
@@ -36,7 +36,7 @@ def result(robot):
 
 
 def numbers(document):
-    """A document without what tells where runs come from."""
+    """A document without the origin of its runs."""
     kept = ("estimates", "consistent", "base_parameters", "verdicts")
     return {name: document[name] for name in kept}
 
@@ -113,7 +113,7 @@ def test_all_kinds_of_data_give_the_same(robot, split, command, tmp_path):
         with_text = [{**run.to_dict(), "note": ["text"] * len(run)} for run in own]
         kinds[module] = [make(columns) for columns in with_text]
     for kind, data in kinds.items():
-        # The frequency that is told from times differs in its last digits.
+        # The frequency computed from times differs in its last digits.
         found = overact.identify(robot, data, validation=held)
         assert_alike(without_truth(numbers(found.to_dict())), expected, kind)
     files = ["--data", *map(str, paths)]

@@ -1,4 +1,4 @@
-"""Functions as expressions of SymPy."""
+"""Functions as SymPy expressions."""
 
 import builtins
 
@@ -32,7 +32,7 @@ def test_expressions_can_be_looked_at():
     inlined = symbolic.inlined()
     known = {one for inputs in symbolic.inputs.values() for one in inputs}
     assert inlined.free_symbols <= known
-    # The mass of the carriage times its acceleration.
+    # Mass of the carriage times its acceleration.
     acceleration = symbolic.inputs["joint_accelerations"][0]
     column = [one.name for one in robot.parameters].index("m_1")
     assert sympy.simplify(inlined[0, column] - acceleration) == 0

@@ -1,4 +1,4 @@
-//! The page of an identification, made of the virtual experiment of the EMPS.
+//! Generation of the page for the virtual experiment of the EMPS.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use overact::Model;

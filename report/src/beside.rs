@@ -1,6 +1,7 @@
-//! Own results beside published ones as text: parameters (Table 2), torque errors (Table 3) and
-//! tracking errors (Table 4). Without published results, the tables that only they complete are left
-//! out.
+//! Text tables that compare own with published results.
+//!
+//! They cover parameters (Table 2), torque errors (Table 3) and tracking errors (Table 4). Tables
+//! that need published results are omitted without these.
 
 use overact_identification::{
     CrossValidation, Estimate, Identification, ModelKind, Stage, significant,
@@ -12,7 +13,7 @@ use super::{
     published::Published,
 };
 
-/// The tables; empty where there is nothing to compare.
+/// Comparison tables; empty if there is nothing to compare.
 #[must_use]
 pub fn beside(identification: &Identification, published: Option<&Published>) -> String {
     let mut text = String::new();
@@ -38,7 +39,7 @@ pub fn beside(identification: &Identification, published: Option<&Published>) ->
     text
 }
 
-/// A table below its title; nothing without rows.
+/// Titled table; empty without rows.
 fn section(title: &str, (header, rows): (Vec<String>, Vec<Vec<String>>)) -> String {
     if rows.is_empty() {
         return String::new();
@@ -49,7 +50,7 @@ fn section(title: &str, (header, rows): (Vec<String>, Vec<Vec<String>>)) -> Stri
     text + &table(&header, rows)
 }
 
-/// What a model is called.
+/// Name of a model.
 const fn case(model: ModelKind) -> &'static str {
     match model {
         ModelKind::Platform | ModelKind::Actuators => model.case(),
@@ -57,7 +58,7 @@ const fn case(model: ModelKind) -> &'static str {
     }
 }
 
-/// What published results are compared with: the parameters that the rule of r_σ leaves, as theirs are.
+/// Estimates to compare with published ones: the essential parameters, as those are.
 fn comparable(identification: &Identification) -> Vec<&Estimate> {
     let essential = of_stage(identification, Stage::Essential);
     if essential.is_empty() {
@@ -67,7 +68,7 @@ fn comparable(identification: &Identification) -> Vec<&Estimate> {
     }
 }
 
-/// Table 2: every parameter that a published estimate has, or an own one.
+/// Table 2: every parameter of an own or published estimate.
 fn parameters(
     identification: &Identification,
     published: &Published,
@@ -97,7 +98,7 @@ fn parameters(
         for estimate in &estimates {
             let own = estimate.parameters.iter().find(|one| one.name == **name);
             row.push(own.map_or_else(nothing, |one| significant(one.value, 4)));
-            // By (47), as published ones are.
+            // Standard deviations by (47), as in the paper.
             row.push(own.map_or_else(nothing, |one| {
                 significant(one.relative_standard_deviation_percent, 3)
             }));
@@ -112,7 +113,7 @@ fn parameters(
     (header, rows.collect())
 }
 
-/// The header of a table with a column for each actuator.
+/// Header with a column for each actuator.
 fn actuator_header(first: [&str; 2], actuators: &[String]) -> Vec<String> {
     let first = first.map(str::to_owned).into_iter();
     first.chain(actuators.iter().cloned()).collect()
@@ -176,8 +177,9 @@ fn torques(
     (header, rows)
 }
 
-/// Whether a run is the one of that name: itself, or a log file that `simulate` named after it, such as
-/// `log_trajectory_1.csv` after `trajectory 1`.
+/// Whether a run has a name, or is a log file named after it.
+///
+/// `simulate` names `log_trajectory_1.csv` after `trajectory 1`.
 fn is_run(run: &str, name: &str) -> bool {
     let words = |text: &str| -> Vec<String> {
         text.split(|c: char| !c.is_alphanumeric())

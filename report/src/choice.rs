@@ -1,9 +1,8 @@
-//! Which of the estimates are shown as the answer, and what they are called.
+//! Chooses the estimates that are presented as the result, and names them.
 
 use overact_identification::{Estimate, Identification, ModelKind, Stage};
 
-/// The answer of each model: its recommended parameters; all base parameters where nothing is
-/// recommended.
+/// Result of each model: the recommended parameters, else all base parameters.
 pub(crate) fn answers(identification: &Identification) -> Vec<&Estimate> {
     let mut models: Vec<ModelKind> = Vec::new();
     for estimate in identification.by_least_squares() {
@@ -22,7 +21,7 @@ pub(crate) fn answers(identification: &Identification) -> Vec<&Estimate> {
         .collect()
 }
 
-/// The first estimate of a model at a stage.
+/// First estimate of a model at a stage.
 pub(crate) fn of(
     identification: &Identification,
     model: ModelKind,
@@ -32,7 +31,7 @@ pub(crate) fn of(
     all.find(|one| one.model == model && one.stage == stage)
 }
 
-/// The estimates of a stage, one of each model.
+/// Estimates of a stage, one for each model.
 pub(crate) fn of_stage(identification: &Identification, stage: Stage) -> Vec<&Estimate> {
     let models = answers(identification).into_iter().map(|one| one.model);
     models
@@ -40,14 +39,14 @@ pub(crate) fn of_stage(identification: &Identification, stage: Stage) -> Vec<&Es
         .collect()
 }
 
-/// Whether what is made with an estimate of a model and stage is made with the answer.
+/// Whether an estimate of a model and stage is the presented result.
 pub(crate) fn is_answer(identification: &Identification, model: ModelKind, stage: Stage) -> bool {
     answers(identification)
         .iter()
         .any(|one| one.model == model && one.stage == stage)
 }
 
-/// The case at the beginning of a sentence.
+/// Name of the projection at the beginning of a sentence.
 pub(crate) const fn case_heading(model: ModelKind) -> &'static str {
     match model {
         ModelKind::Platform => "Case 1",
@@ -56,7 +55,7 @@ pub(crate) const fn case_heading(model: ModelKind) -> &'static str {
     }
 }
 
-/// What the parameters of a stage are called.
+/// Name of the parameters of a stage.
 pub(crate) const fn stage_name(stage: Stage) -> &'static str {
     match stage {
         Stage::Base => "all base parameters",
@@ -66,7 +65,7 @@ pub(crate) const fn stage_name(stage: Stage) -> &'static str {
     }
 }
 
-/// What a model does with the inputs.
+/// Description of the model's projection.
 pub(crate) fn projection(estimate: &Estimate) -> String {
     match estimate.model {
         ModelKind::Platform => String::from("torques projected on the platform"),

@@ -1,19 +1,21 @@
-//! What is read off the 95 % interval of a parameter.
+//! Properties of the 95 % interval of a parameter.
 
 use overact_identification::ParameterEstimate;
 
-/// Whether the interval is one: an estimate without it has both ends at the estimate.
+/// Whether there is an interval; without one, both ends equal the estimate.
 fn is_known([low, high]: [f64; 2]) -> bool {
     low.is_finite() && high.is_finite() && low < high
 }
 
-/// Whether the estimate lies outside of its own interval, which is that of the model with all base
-/// parameters: cancelling has moved it there.
+/// Whether the estimate is outside its own interval.
+///
+/// The interval is that of the model with all base parameters; elimination may have moved the
+/// estimate.
 pub(crate) fn is_outside(one: &ParameterEstimate) -> bool {
     is_known(one.interval_95) && !contains(one.interval_95, one.value)
 }
 
-/// Whether the interval misses the true value, where that is known.
+/// Whether the interval excludes the true value, if that is known.
 pub(crate) fn misses_truth(one: &ParameterEstimate) -> bool {
     is_known(one.interval_95)
         && one
@@ -21,12 +23,12 @@ pub(crate) fn misses_truth(one: &ParameterEstimate) -> bool {
             .is_some_and(|truth| !contains(one.interval_95, truth))
 }
 
-/// Whether the data say that the parameter is not zero.
+/// Whether the interval excludes zero.
 pub(crate) fn excludes_zero(one: &ParameterEstimate) -> bool {
     is_known(one.interval_95) && !contains(one.interval_95, 0.0)
 }
 
-/// Half the width of the interval in percent of the estimate; none without an interval or a value.
+/// Half width of the interval in percent of the estimate; `None` without interval or value.
 pub(crate) fn half_width_percent(one: &ParameterEstimate) -> Option<f64> {
     let [low, high] = one.interval_95;
     let percent = 50.0 * (high - low) / one.value.abs();

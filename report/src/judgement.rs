@@ -1,10 +1,10 @@
-//! Verdicts and checks in words that page and terminal share.
+//! Wording of verdicts and checks for page and terminal.
 
 use overact_identification::{
     Check, CheckKind, Grade, Identification, ModelKind, Stage, significant, titled,
 };
 
-/// The grade as what to do.
+/// Grade as an advice.
 pub(crate) const fn grade_words(grade: Grade) -> &'static str {
     match grade {
         Grade::Use => "use it",
@@ -13,7 +13,7 @@ pub(crate) const fn grade_words(grade: Grade) -> &'static str {
     }
 }
 
-/// How many checks of an estimate found nothing.
+/// Number of passed checks of an estimate.
 pub(crate) fn passed(identification: &Identification, model: ModelKind, stage: Stage) -> usize {
     let checks = identification.checks.iter();
     checks
@@ -21,7 +21,7 @@ pub(crate) fn passed(identification: &Identification, model: ModelKind, stage: S
         .count()
 }
 
-/// What was checked, as a heading.
+/// Heading of a check.
 pub(crate) const fn title(kind: CheckKind) -> &'static str {
     match kind {
         CheckKind::Degrees => "unit of the positions",
@@ -42,7 +42,7 @@ pub(crate) const fn title(kind: CheckKind) -> &'static str {
     }
 }
 
-/// What a check is about, apart from its kind: models, stages, run and actuator.
+/// Scope of a check: models, stages, run and actuator.
 pub(crate) fn place(check: &Check) -> String {
     let models = check.models.iter().map(|model| model.case().to_owned());
     let stages = check
@@ -55,12 +55,12 @@ pub(crate) fn place(check: &Check) -> String {
     parts.join(", ")
 }
 
-/// What was measured, with its unit; none where nothing was.
+/// Measured statistic with its unit, if there is one.
 pub(crate) fn statistic(check: &Check) -> Option<String> {
     quantity(check.statistic, check.unit)
 }
 
-/// What the statistic was held against, with its unit; none where there is no threshold.
+/// Threshold with its unit, if there is one.
 pub(crate) fn threshold(check: &Check) -> Option<String> {
     quantity(check.threshold, check.unit)
 }

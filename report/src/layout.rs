@@ -1,32 +1,31 @@
-//! Lines and tables of plain text, for a terminal or a file. Whatever a name holds, it stays on its line
-//! and in its column.
+//! Layout of plain text: lines, paragraphs and tables that are safe for any names.
 
 use crate::text::{fitted, visible};
 
-/// Characters of a line: what the narrower terminals show.
+/// Characters per line, for narrow terminals.
 pub const WIDTH: usize = 100;
 
-/// Characters of a cell at most: two of them, and the space between, stand in a line.
+/// Largest number of characters of a cell; two cells and a gap fit in a line.
 const WIDEST: usize = 48;
 
-/// Characters at most of what stands before a text that goes on below itself.
+/// Largest number of characters of a name before its wrapped definition.
 const WIDEST_LEAD: usize = 60;
 
-/// Spaces between two columns.
+/// Spaces between columns.
 const GAP: usize = 2;
 
-/// Adds a line.
+/// Appends a line.
 pub(crate) fn line(text: &mut String, words: &str) {
     text.push_str(&visible(words));
     text.push('\n');
 }
 
-/// A paragraph of lines that are not too long, behind `lead` and indented like it.
+/// Appends a wrapped paragraph after `lead`, indented by the length of `lead`.
 pub fn paragraph(text: &mut String, lead: &str, words: &str) {
     let indent = " ".repeat(lead.chars().count());
     let mut current = lead.to_owned();
     let mut is_empty = true;
-    // A number keeps its percent sign beside it.
+    // Do not break between a number and its percent sign.
     let words = visible(words).replace(" %", "\u{a0}%");
     for word in words.split(' ').filter(|word| !word.is_empty()) {
         let word = fitted(&word.replace('\u{a0}', " "), WIDTH);
@@ -44,8 +43,9 @@ pub fn paragraph(text: &mut String, lead: &str, words: &str) {
     line(text, &current);
 }
 
-/// Rows under a header with a rule below: the first column to the left, the others to the right. Cells are shortened
-/// where they are longer than a name can be.
+/// Table with a header and a rule; the first column left-aligned, the others right-aligned.
+///
+/// Cells that are too long are shortened.
 pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     let header = header.iter().map(|cell| (*cell).to_owned()).collect();
     let shown = |row: Vec<String>| {
@@ -57,14 +57,15 @@ pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     in_parts(&all, &[true], true)
 }
 
-/// Rows in columns as wide as their widest cells; `left` tells which columns are aligned to the left. What is too wide
-/// for a line comes in parts below each other, each of which begins with the first column.
+/// Rows in columns; `left` marks the left-aligned columns.
+///
+/// Tables that are too wide are split into parts, each with the first column.
 #[must_use]
 pub fn columns(rows: &[Vec<String>], left: &[bool]) -> String {
     in_parts(rows, left, false)
 }
 
-/// Columns, with a rule below the first row or without.
+/// Columns, optionally with a rule below the first row.
 fn in_parts(rows: &[Vec<String>], left: &[bool], is_ruled: bool) -> String {
     let widths = widths(rows);
     let parts = parts(&widths);
@@ -90,7 +91,7 @@ fn in_parts(rows: &[Vec<String>], left: &[bool], is_ruled: bool) -> String {
     parts.collect::<Vec<String>>().join("\n")
 }
 
-/// The columns of each part of a table, the first one in all of them.
+/// Columns of each part of a table; the first one is in all of them.
 fn parts(widths: &[usize]) -> Vec<Vec<usize>> {
     let mut parts: Vec<Vec<usize>> = vec![vec![0]];
     let first = widths.first().copied().unwrap_or(0);
@@ -108,7 +109,7 @@ fn parts(widths: &[usize]) -> Vec<Vec<usize>> {
     parts
 }
 
-/// Names and what stands for them, all names as wide as the widest; what is too long for a line goes on below itself.
+/// Names with their definitions in two columns; long definitions are wrapped.
 #[must_use]
 pub fn definitions(rows: &[(String, String)], between: &str) -> String {
     let shown = |name: &str| fitted(&visible(name), WIDEST_LEAD);
@@ -125,7 +126,7 @@ pub fn definitions(rows: &[(String, String)], between: &str) -> String {
     text
 }
 
-/// The widest cell of each column, in characters.
+/// Width of each column in characters.
 fn widths(rows: &[Vec<String>]) -> Vec<usize> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     (0..columns)

@@ -1,9 +1,11 @@
-//! What an identification is told as: a [`summary()`] and tables for a [`terminal`], a page for a browser
-//! ([`page()`]), and a flat table of all numbers ([`numbers()`]).
+//! Reports of an identification for terminal, browser and other programs.
 //!
-//! The page is one file that needs nothing from elsewhere: plots are SVG within it, its style follows
-//! the reader's choice of light or dark, and there is no script. Its sections are in files of their
-//! own in [`page()`]; the plots' axes and lines are in the module `plot`.
+//! There are a [`summary()`] and tables for a [`terminal`], an HTML page ([`page()`]) and a flat
+//! table of all numbers ([`numbers()`]).
+//!
+//! The page is one self-contained file: plots are embedded SVG, the style follows the reader's
+//! choice of light or dark, and there is no script. Each section has a file in [`page()`]; axes and
+//! lines of plots are in the module `plot`.
 
 pub mod beside;
 mod choice;

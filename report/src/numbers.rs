@@ -1,20 +1,23 @@
-//! All numbers of an identification as one flat table: one number a row, so that any program reads it
-//! without knowing what there is. Series over time are not among them; they are in the document of
-//! [`Figures`](overact_identification::Figures).
+//! All numbers of an identification as one flat table, one number per row.
+//!
+//! Any program can read it without knowing its contents. Time series are not included; they are in
+//! the document of [`Figures`](overact_identification::Figures).
 
 use overact::Code;
 use overact_identification::{Error, Estimate, Identification, LineError, Problem, Stage};
 
-/// The names of the columns.
+/// Column names.
 const HEADER: [&str; 7] = [
     "table", "model", "stage", "run", "name", "quantity", "value",
 ];
 
-/// The table as CSV. `table` says where the number belongs; `model`, `stage`, `run` and `name` say whose
-/// it is and are empty where that makes no sense; numbers have all their digits.
+/// Flat table as CSV.
+///
+/// `table` names the source of the number. `model`, `stage`, `run` and `name` identify it and may
+/// be empty. Numbers have full precision.
 ///
 /// # Errors
-/// Never for a table in memory; the writer's error otherwise.
+/// Errors of the writer; never for a table in memory.
 pub fn numbers(identification: &Identification) -> Result<String, Error> {
     let mut rows = Rows::default();
     for run in &identification.runs {
@@ -87,7 +90,7 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
     rows.csv()
 }
 
-/// The direction of gravity.
+/// Gravity direction.
 fn add_gravity<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     if let Some(own) = &identification.gravity {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
@@ -100,7 +103,7 @@ fn add_gravity<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     }
 }
 
-/// The gains of the drives and what was estimated together with them.
+/// Drive gains, and parameters that were estimated together with them.
 fn add_gains<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     for gain in &identification.gains {
         let name = gain.actuator.as_str();
@@ -113,7 +116,7 @@ fn add_gains<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     }
 }
 
-/// The numbers of one estimate.
+/// Numbers of one estimate.
 fn add_estimate<'a>(rows: &mut Rows<'a>, estimate: &'a Estimate) {
     let table = "estimate";
     rows.add(
@@ -152,7 +155,7 @@ fn add_estimate<'a>(rows: &mut Rows<'a>, estimate: &'a Estimate) {
     add_removals(rows, estimate);
 }
 
-/// The numbers of the way to the essential parameters.
+/// Numbers of the elimination.
 fn add_removals<'a>(rows: &mut Rows<'a>, estimate: &'a Estimate) {
     for removal in &estimate.removals {
         let (table, name) = ("removal", removal.name.as_str());
@@ -187,7 +190,7 @@ fn add_removals<'a>(rows: &mut Rows<'a>, estimate: &'a Estimate) {
     }
 }
 
-/// The errors of lines or torques.
+/// Errors of the rows or torques.
 fn add_lines<'a>(rows: &mut Rows<'a>, table: &'static str, lines: &'a [LineError]) {
     for line in lines {
         let error = line.relative_error_percent;
@@ -197,7 +200,7 @@ fn add_lines<'a>(rows: &mut Rows<'a>, table: &'static str, lines: &'a [LineError
     }
 }
 
-/// Rows so far, and whose the next ones are.
+/// Rows so far, and the identification of the next ones.
 #[derive(Default)]
 struct Rows<'a> {
     model: &'a str,

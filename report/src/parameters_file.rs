@@ -1,10 +1,10 @@
-//! The consistent parameters as a file that commands and generator read back.
+//! Physically consistent parameters as a file for commands and generator.
 
 use crate::text::visible;
 use overact_identification::{Consistent, Identification, significant};
 use std::fmt::Write;
 
-/// A TOML file of the physically consistent parameters of the first model; none where there are none.
+/// TOML file of the first model's consistent parameters, if there are any.
 #[must_use]
 pub fn parameters_file(identification: &Identification) -> Option<String> {
     let consistent: &Consistent = identification.consistent.first()?;

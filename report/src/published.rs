@@ -1,19 +1,19 @@
-//! Published results of a robot, to be shown beside the own ones: data, never an input.
+//! Published results of a robot for comparison; never an input of an identification.
 //!
-//! They come from a TOML file such as `robots/published/dualv.toml`. Tables: parameters by the names
-//! of the base parameters, torque errors and tracking errors by actuator.
+//! They are read from a TOML file such as `robots/published/dualv.toml`. Its tables contain
+//! parameters by base parameter name, and torque and tracking errors by actuator.
 
 use overact_identification::ModelKind;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Results that someone published for a robot.
+/// Published results of a robot.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Published {
-    /// Where they were published.
+    /// Publication.
     pub source: String,
-    /// What a reader should know about them.
+    /// Note for readers.
     #[serde(default)]
     pub note: Option<String>,
     /// Names of the actuators, in the order of all lists.
@@ -39,7 +39,7 @@ pub struct PublishedEstimate {
     /// 100 ||ρ||/||Y||.
     #[serde(default)]
     pub relative_error_percent: Option<f64>,
-    /// The parameters by the name of the base parameter.
+    /// Parameters by base parameter name.
     pub parameters: BTreeMap<String, PublishedParameter>,
 }
 
@@ -47,7 +47,7 @@ pub struct PublishedEstimate {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PublishedParameter {
-    /// Its estimate (SI units).
+    /// Estimate (SI units).
     pub value: f64,
     /// 100 σ/|χ|.
     #[serde(default)]
@@ -85,7 +85,7 @@ impl Published {
         self.estimates.iter().find(|one| one.model == model)
     }
 
-    /// Every list that has not one number for each actuator: what it belongs to, and its length.
+    /// All lists whose length is not the number of actuators: their owner and length.
     #[must_use]
     pub fn wrong_lengths(&self) -> Vec<(String, usize)> {
         let torques = self.cross_validation.iter().map(|one| {

@@ -1,4 +1,4 @@
-//! Several charts on one sheet, as a file of its own: plots of the documentation, which examples make anew.
+//! Several charts in one SVG file, for plots of the documentation that examples generate.
 
 use std::fmt::Write;
 
@@ -7,10 +7,10 @@ use crate::{
     text::escape,
 };
 
-/// The style of the page, of which a sheet takes the colours and the rules of plots.
+/// Style sheet of the page, from which colours and plot rules are taken.
 const STYLE: &str = include_str!("page/style.css");
 
-/// Size of a chart, the height of an entry of its key, and the gap between charts.
+/// Size of a chart, height of a key entry, and gap between charts.
 const WIDTH: f64 = 400.0;
 const HEIGHT: f64 = 230.0;
 const ENTRY: f64 = 16.0;
@@ -19,17 +19,17 @@ const GAP: f64 = 12.0;
 /// A chart of a sheet.
 #[derive(Debug, Clone, Default)]
 pub struct Plot {
-    /// Written above it.
+    /// Title.
     pub title: String,
-    /// What the horizontal and the vertical axis show.
+    /// Labels of the horizontal and the vertical axis.
     pub axes: [String; 2],
     /// Whether the vertical axis is logarithmic.
     pub logarithmic: bool,
-    /// Its lines, of which seven have colours of their own: name, places and heights.
+    /// Lines with name, x and y values; seven have distinct colours.
     pub curves: Vec<(String, Vec<f64>, Vec<f64>)>,
-    /// Whether the lines are dots alone.
+    /// Whether lines are dots only.
     pub dots: bool,
-    /// Thresholds across it: height and name.
+    /// Thresholds: value and name.
     pub rules: Vec<(f64, String)>,
 }
 
@@ -58,7 +58,7 @@ impl Plot {
     }
 }
 
-/// A file with these plots, so many side by side; each has a key below it where it has several lines.
+/// SVG file with plots in `side_by_side` columns, each with a key if it has several lines.
 #[must_use]
 pub fn sheet(plots: &[Plot], side_by_side: usize) -> String {
     let entries = plots.iter().map(|plot| plot.curves.len()).max();
@@ -83,7 +83,7 @@ pub fn sheet(plots: &[Plot], side_by_side: usize) -> String {
     svg + "</svg>\n"
 }
 
-/// The key of a plot, an entry below the other.
+/// Key of a plot, one entry per line.
 fn key(plot: &Plot, x: f64, y: f64) -> String {
     let mut svg = format!("<g class=\"plot\" transform=\"translate({x} {y})\">");
     for (index, (name, ..)) in plot.curves.iter().enumerate() {
@@ -98,7 +98,7 @@ fn key(plot: &Plot, x: f64, y: f64) -> String {
     svg + "</g>"
 }
 
-/// Colours, and what concerns plots.
+/// Colours and the rules that concern plots.
 fn style() -> String {
     let end = STYLE.find("* {").unwrap_or(0);
     let (colours, rest) = STYLE.split_at(end);

@@ -1,5 +1,6 @@
-//! What a person who has just identified a robot reads in the terminal: what may be used, why, the
-//! recommended parameters, and what to do next. All tables are in `terminal`.
+//! Terminal summary of an identification: verdicts, reasons, recommended parameters and next steps.
+//!
+//! All tables are in `terminal`.
 
 mod parameters;
 
@@ -15,26 +16,27 @@ use overact_identification::{
     significant,
 };
 
-/// Lines of a short summary: what a terminal shows at once.
+/// Lines of a short summary, as a terminal shows at once.
 const LINES: usize = 50;
 
-/// Parameters that a short summary has at least, however much is to be said besides.
+/// Smallest number of parameters in a short summary.
 const FEWEST: usize = 10;
 
-/// Names in a row that a short summary lists at most.
+/// Largest number of names in a list of a short summary.
 const NAMES: usize = 24;
 
-/// How much of a result is told.
+/// Extent of a summary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
-    /// What is needed first, in 50 lines where verdicts, warnings and ten parameters leave room for it: of the
-    /// parameters those that may be used and those that are known best.
+    /// The essentials, in 50 lines if verdicts, warnings and ten parameters leave room.
+    ///
+    /// Usable and best-known parameters are shown first.
     Short,
     /// Everything.
     Whole,
 }
 
-/// The summary; `page` is where the page with all evidence has been written.
+/// Summary; `page` is the path of the page with all evidence.
 #[must_use]
 pub fn summary(identification: &Identification, page: Option<&str>, extent: Extent) -> String {
     let mut above = String::new();
@@ -69,7 +71,7 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
     above + &rows.table(count.unwrap_or(FEWEST)) + &motors + &below
 }
 
-/// What was identified from what.
+/// Headline: identified quantities and data.
 fn headline(identification: &Identification) -> String {
     let seconds = identification
         .runs
@@ -91,7 +93,7 @@ fn headline(identification: &Identification) -> String {
     )
 }
 
-/// What it costs to ask for parameters that a robot can have.
+/// Cost of physical consistency.
 fn consistent(identification: &Identification) -> String {
     let mut text = String::new();
     if let Some(one) = identification.consistent.first() {
@@ -106,7 +108,7 @@ fn consistent(identification: &Identification) -> String {
     text
 }
 
-/// What is taken as right: the faults that spoil most without being seen.
+/// Assumptions: the undetectable faults with the largest effect.
 fn unseen(identification: &Identification) -> String {
     let mut text = String::new();
     if !identification.unseen.is_empty() {
@@ -122,7 +124,7 @@ fn unseen(identification: &Identification) -> String {
     text
 }
 
-/// The verdict on one model and its reasons.
+/// Verdict on one model with its reasons.
 fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -> String {
     let mut text = String::new();
     let mut verdicts = identification.verdicts.iter();
@@ -163,8 +165,7 @@ fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -
     text
 }
 
-/// What all base parameters leave, by weighted and by ordinary least squares, and those that the rule of r_σ
-/// leaves: one line.
+/// Line on all base parameters (weighted and ordinary least squares) and on the essential ones.
 fn other_stages(identification: &Identification, shown: &Estimate) -> Option<String> {
     let percent = |one: &Estimate| format!("{} %", significant(one.relative_error_percent, 4));
     let base = of(identification, shown.model, Stage::Base)?;
@@ -194,7 +195,7 @@ fn other_stages(identification: &Identification, shown: &Estimate) -> Option<Str
     ))
 }
 
-/// How well held-out runs are predicted.
+/// Prediction errors on validation runs.
 fn held_out(identification: &Identification, estimate: &Estimate) -> String {
     let errors = identification
         .cross_validation
@@ -209,7 +210,7 @@ fn held_out(identification: &Identification, estimate: &Estimate) -> String {
     })
 }
 
-/// How well the parameters are known, where some are hardly known at all.
+/// Precision of the parameters, if some are poorly known.
 fn sureness(estimate: &Estimate) -> String {
     let all = estimate.parameters.len();
     let count = |most: f64| {
@@ -230,7 +231,7 @@ fn sureness(estimate: &Estimate) -> String {
     }
 }
 
-/// Names behind each other, the first ones of very many.
+/// Names separated by commas; a short summary lists the first ones only.
 fn list(names: &[&str], extent: Extent) -> String {
     match (extent, names.get(..NAMES)) {
         (Extent::Short, Some(first)) if names.len() > NAMES + 1 => {
@@ -240,7 +241,7 @@ fn list(names: &[&str], extent: Extent) -> String {
     }
 }
 
-/// What speaks against an estimate, or that nothing does.
+/// Objections to an estimate, or that there are none.
 fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -> String {
     let mut text = String::new();
     if verdict.grade == Grade::UseListed {
@@ -277,7 +278,7 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
     text
 }
 
-/// Warnings that no check tells of, and what to do next.
+/// Warnings that belong to no check, and next steps.
 fn next(identification: &Identification, page: Option<&str>) -> String {
     let mut text = String::new();
     let told: Vec<&str> = identification

@@ -1,4 +1,4 @@
-//! All tables of an identification as plain text, for a terminal or a file.
+//! All tables of an identification as plain text.
 
 pub(crate) mod calibration;
 pub(crate) mod gains;
@@ -14,10 +14,10 @@ use overact_identification::{
     ModelKind, ParameterEstimate, Regrouping, significant,
 };
 
-/// Largest denominator of a fraction that a coefficient is printed as.
+/// Largest denominator of a coefficient printed as a fraction.
 const LARGEST_DENOMINATOR: u32 = 10_000;
 
-/// A coefficient is printed as a decimal or a fraction that it equals to this relative tolerance.
+/// Relative tolerance for printing a coefficient as a decimal or fraction.
 const SNAP: f64 = 1e-11;
 
 /// All tables: runs, base parameters, estimates, cross-validation.
@@ -50,7 +50,7 @@ pub fn tables(identification: &Identification) -> String {
     text
 }
 
-/// The standard parameters that a robot can have.
+/// Table of physically consistent standard parameters.
 fn consistent(one: &Consistent) -> String {
     let rows = one.parameters.iter().map(|own| {
         vec![
@@ -77,7 +77,7 @@ fn consistent(one: &Consistent) -> String {
     )
 }
 
-/// The runs identified from.
+/// Table of the training runs.
 fn runs(identification: &Identification) -> String {
     let rows = identification.runs.iter().map(|run| {
         vec![
@@ -121,7 +121,7 @@ pub fn base_parameters(parameters: &[BaseParameter]) -> String {
     text
 }
 
-/// ` + 0.0784 m_2_leg1`, with a coefficient of 1 left out.
+/// ` + 0.0784 m_2_leg1`; a coefficient of 1 is omitted.
 pub(super) fn signed_term(term: &Regrouping) -> String {
     let sign = if term.coefficient < 0.0 { '-' } else { '+' };
     match coefficient(term.coefficient.abs()).as_str() {
@@ -130,7 +130,7 @@ pub(super) fn signed_term(term: &Regrouping) -> String {
     }
 }
 
-/// A positive coefficient as a short decimal or a fraction that it equals, else with six digits.
+/// Positive coefficient as an equal short decimal or fraction, else with six digits.
 #[must_use]
 pub fn coefficient(value: f64) -> String {
     let near = |candidate: f64| (candidate - value).abs() <= SNAP * value.abs();
@@ -146,8 +146,7 @@ pub fn coefficient(value: f64) -> String {
     }
 }
 
-/// The fraction of the smallest denominator that equals a positive value, by its continued
-/// fraction.
+/// Fraction of smallest denominator that equals a positive value, by continued fractions.
 fn fraction(value: f64) -> Option<(u64, u64)> {
     let (mut before, mut now) = ((0.0, 1.0), (1.0, 0.0));
     let mut rest = value;
@@ -165,7 +164,7 @@ fn fraction(value: f64) -> Option<(u64, u64)> {
     }
 }
 
-/// The table of one estimate with its quality below.
+/// Table of one estimate, followed by its quality.
 #[must_use]
 pub fn estimate(estimate: &Estimate) -> String {
     let what = match estimate.model {
@@ -229,14 +228,14 @@ pub fn estimate(estimate: &Estimate) -> String {
     text
 }
 
-/// The interval of a parameter, marked where the estimate lies outside of it.
+/// Interval; an asterisk marks estimates outside.
 fn interval(parameter: &ParameterEstimate) -> String {
     let [low, high] = parameter.interval_95;
     let mark = if is_outside(parameter) { " *" } else { "" };
     format!("{} .. {}{mark}", significant(low, 5), significant(high, 5))
 }
 
-/// Errors, condition and the path of the elimination of an estimate.
+/// Errors, condition number and elimination path of an estimate.
 fn quality(estimate: &Estimate) -> String {
     let mut text = String::new();
     paragraph(
@@ -306,7 +305,7 @@ fn quality(estimate: &Estimate) -> String {
     text
 }
 
-/// The cross-validation of all estimates.
+/// Cross-validation of all estimates.
 #[must_use]
 pub fn cross_validation(all: &[CrossValidation]) -> String {
     let list = |errors: &[LineError]| -> String {

@@ -1,13 +1,13 @@
-//! Names and sentences of others as they may stand on the page and in a terminal: names come from
-//! descriptions, from logs and from the names of files, and must neither end an element nor colour a
-//! terminal nor look like another name.
+//! Makes names and sentences from users safe for page and terminal.
 //!
-//! The generator leaves out of its comments what is not seen; here it is shown as the replacement
-//! character, so that names that differ look different. Both ask [`is_invisible`].
+//! Names come from descriptions, logs and file names. They must not end an element, colour a
+//! terminal or look like another name. Invisible characters ([`is_invisible`]) are shown as the
+//! replacement character, so that different names look different. The generator instead removes
+//! them from its comments.
 
 use overact_core::text::is_invisible;
 
-/// The text on one line: what breaks a line becomes a space, what is not seen the replacement character.
+/// Text on one line: line breaks become spaces, invisible characters the replacement character.
 pub(crate) fn visible(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -20,7 +20,7 @@ pub(crate) fn visible(text: &str) -> String {
     out
 }
 
-/// A text as it may stand in an element or an attribute of XML.
+/// Text escaped for an element or attribute of XML.
 pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in visible(text).chars() {
@@ -36,8 +36,7 @@ pub(crate) fn escape(text: &str) -> String {
     escaped
 }
 
-/// A text of so many characters at most: what is too long loses its middle, since names differ at their
-/// ends.
+/// Shortens a text to `most` characters by removing its middle, since names differ at their ends.
 pub(crate) fn fitted(text: &str, most: usize) -> String {
     let length = text.chars().count();
     if length <= most {
@@ -50,7 +49,7 @@ pub(crate) fn fitted(text: &str, most: usize) -> String {
     begin.chain(['…']).chain(end).collect()
 }
 
-/// The last part of a name that is a path: what tells runs apart in a place with little room.
+/// Last component of a path, which distinguishes runs where space is limited.
 pub(crate) fn last_part(name: &str) -> &str {
     name.rsplit(['/', '\\']).next().unwrap_or(name)
 }

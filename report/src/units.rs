@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use overact::Info;
 
-/// What kind of motion a name stands for.
+/// Physical dimension of a coordinate or actuator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// Metres, newtons.
     Length,
     /// Radians, newton metres.
     Angle,
-    /// A component of a unit quaternion; its line of Γ is a moment.
+    /// A component of a unit quaternion; its row of Γ is a moment.
     Quaternion,
 }
 
@@ -19,13 +19,15 @@ enum Kind {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Units {
     kinds: BTreeMap<String, Kind>,
-    /// Whether the robot has a platform, whose coordinates have names of their own.
+    /// Whether the robot has a platform, whose coordinates have their own names.
     has_platform: bool,
 }
 
 impl Units {
-    /// The units of a robot. A platform's coordinates are named x, y, z, phi, or qw, qx, qy, qz; those
-    /// of a robot without a platform are its joints.
+    /// Units of a robot.
+    ///
+    /// A platform's coordinates are x, y, z, phi, or qw, qx, qy, qz; those of a serial robot are
+    /// its joints.
     #[must_use]
     pub fn new(info: &Info<'_>) -> Self {
         let actuators = info.actuators.iter().zip(info.actuator_is_revolute);
@@ -44,7 +46,7 @@ impl Units {
             };
             kinds.entry((*name).to_owned()).or_insert(kind);
         }
-        // A robot without a loop has one coordinate for each actuator, in the same order.
+        // A serial robot has one coordinate per actuator, in the same order.
         if info.coordinates.len() == info.actuators.len() {
             for (name, actuator) in info.coordinates.iter().zip(info.actuators) {
                 if let Some(kind) = kinds.get(*actuator).copied() {
@@ -64,7 +66,7 @@ impl Units {
         self.has_platform
     }
 
-    /// Unit of a position or a coordinate; empty where it is not known.
+    /// Unit of a position or coordinate; empty if unknown.
     #[must_use]
     pub fn position(&self, name: &str) -> &'static str {
         match self.kinds.get(name) {
@@ -74,7 +76,7 @@ impl Units {
         }
     }
 
-    /// Unit of an actuator's torque or a line of Γ; empty where it is not known.
+    /// Unit of an actuator's torque or a row of Γ; empty if unknown.
     #[must_use]
     pub fn torque(&self, name: &str) -> &'static str {
         match self.kinds.get(name) {
@@ -85,7 +87,7 @@ impl Units {
     }
 }
 
-/// `x (m)`, or the name alone where the unit is not known.
+/// `x (m)`, or the name only if the unit is unknown.
 pub(super) fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()

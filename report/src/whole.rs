@@ -1,4 +1,4 @@
-//! The page with its numbers as files within it, and these files by themselves.
+//! The page with its numbers as attached files, and these files separately.
 
 use crate::{
     numbers::numbers,
@@ -10,22 +10,22 @@ use overact_core::Code;
 use overact_identification::{Error, Figures, Identification, Problem};
 use serde::Serialize;
 
-/// What the page says of a robot besides its identification.
+/// Information about the robot besides its identification.
 #[derive(Debug, Clone, Copy)]
 pub struct About<'a> {
     /// Units of its coordinates and actuators.
     pub units: &'a Units,
-    /// What the robot is, in a sentence; may be empty.
+    /// Summary of the robot, one sentence; may be empty.
     pub summary: &'a str,
-    /// Where its description comes from; may be empty.
+    /// Source of its description; may be empty.
     pub source: &'a str,
     /// A drawing of the robot, an SVG document.
     pub drawing: &'a str,
-    /// Published results to show beside the own ones.
+    /// Published results for comparison.
     pub published: Option<&'a Published>,
 }
 
-/// The result with what is plotted.
+/// Result with its figures.
 #[derive(Serialize)]
 struct WithFigures<'a> {
     #[serde(flatten)]
@@ -33,18 +33,18 @@ struct WithFigures<'a> {
     figures: &'a Figures,
 }
 
-/// All numbers as a document: what `overact identify --json` prints.
+/// All numbers as JSON, as printed by `overact identify --json`.
 ///
 /// # Errors
-/// Never: the keys of an identification are texts.
+/// Never: the keys of an identification are strings.
 pub fn document(identification: &Identification) -> Result<String, Error> {
     json(identification)
 }
 
-/// The document with all that is plotted.
+/// All numbers and figures as JSON.
 ///
 /// # Errors
-/// Never: the keys of an identification are texts.
+/// Never: the keys of an identification are strings.
 pub fn document_with_figures(identification: &Identification) -> Result<String, Error> {
     json(&WithFigures {
         identification,
@@ -59,10 +59,10 @@ fn json(document: &impl Serialize) -> Result<String, Error> {
     })
 }
 
-/// The page of an identification, with all numbers as CSV and as a document in it; the files are called by `stem`.
+/// Page of an identification with CSV and JSON files attached; `stem` is their file name.
 ///
 /// # Errors
-/// Never: the keys of an identification are texts.
+/// Never: the keys of an identification are strings.
 pub fn whole_page(
     identification: &Identification,
     about: &About<'_>,

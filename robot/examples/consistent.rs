@@ -1,15 +1,17 @@
-//! Physically consistent estimates beside base parameters, for virtual runs with ten times the torque noise of the
-//! descriptions: `cargo run --release -p overact-robot --example consistent -- robots/*.toml`.
+//! Compares physically consistent estimates with base parameters, with ten times the described
+//! torque noise.
+//!
+//! `cargo run --release -p overact-robot --example consistent -- robots/*.toml`.
 
 use overact::Model;
 use overact_identification::{Projection, estimate_projection, prepare};
 use overact_robot::Robot;
 use std::{error::Error, process::ExitCode, time::Instant};
 
-/// Multiple of the description's torque noise.
+/// Factor on the description's torque noise.
 const NOISE: f64 = 10.0;
 
-/// The smallest time of a few runs, ms.
+/// Smallest time of a few runs, ms.
 fn milliseconds(run: impl Fn()) -> f64 {
     let once = || {
         let start = Instant::now();

@@ -1,6 +1,8 @@
-//! Searches exciting runs and draws how well they determine the parameters, beside the description's own runs
-//! and a hundred random ones, and the runs with their limits:
-//! `cargo run --release -p overact-robot --example excitation -- robots/dualv.toml docs/excitation_dualv.svg`.
+//! Searches exciting runs and plots how well they determine the parameters.
+//!
+//! The plots compare them with the description's own runs and a hundred random ones, and show the
+//! runs with their limits: `cargo run --release -p overact-robot --example excitation --
+//! robots/dualv.toml docs/excitation_dualv.svg`.
 
 use overact::{Columns, Function, Model};
 use overact_report::{Plot, sheet};
@@ -8,7 +10,7 @@ use overact_robot::{CaseOfRuns, Error, Excitation, ExcitationEffort, LimitKind, 
 use overact_simulation::{Trajectory, sample};
 use std::process::ExitCode;
 
-/// Samples of a period that are drawn.
+/// Samples per period in the plots.
 const SAMPLES: usize = 400;
 
 fn main() -> ExitCode {
@@ -42,7 +44,8 @@ fn drawn(description: &str) -> Result<String, Error> {
     Ok(sheet(&plots, 3))
 }
 
-/// Condition number, largest and median relative deviation of a case, of all that is compared.
+/// Condition number, largest and median relative standard deviation in one projection, of all
+/// compared runs.
 fn compared(found: &Excitation, case: usize) -> Vec<Plot> {
     type Figure = fn(&CaseOfRuns) -> f64;
     let figures: [(&str, Figure); 3] = [
@@ -93,7 +96,7 @@ fn compared(found: &Excitation, case: usize) -> Vec<Plot> {
     figures.into_iter().map(plot).collect()
 }
 
-/// A run over a period: positions, speeds and torques by their limits.
+/// A run over a period: positions, speeds and torques relative to their limits.
 fn motion(robot: &Robot, found: &Excitation, run: &str) -> Vec<Plot> {
     let Ok(experiment) = robot.experiment() else {
         return Vec::new();

@@ -1,7 +1,8 @@
-//! Gains of drives that are all wrong, found by a payload that was weighed, for virtual runs of robots with a
-//! payload or serial ones: how many of their deviations the gains, and what is estimated beside them, are off.
+//! Identifies wrong drive gains by means of a weighed payload, in virtual runs.
 //!
-//! `cargo run --release -p overact-robot --example gains -- 10 robots/rx90.toml robots/dualv.toml` draws ten times.
+//! It prints the errors of the gains and of the jointly estimated parameters in standard
+//! deviations. `cargo run --release -p overact-robot --example gains -- 10 robots/rx90.toml
+//! robots/dualv.toml` draws ten times.
 
 use overact::Model;
 use overact_identification::{Identification, Log, Stage};
@@ -10,17 +11,17 @@ use rand_distr::{Distribution, StandardNormal, Uniform};
 use rand_pcg::Pcg64;
 use std::{error::Error, process::ExitCode};
 
-/// What can go wrong, in words.
+/// Any error.
 type Failure = Box<dyn Error>;
 
-/// By which part a gain is wrong.
+/// Smallest and largest relative error of a gain.
 const WRONG: [f64; 2] = [0.12, 0.33];
 
-/// The payload of a robot without platform: mass, first moments and inertias, fixed on the last body.
+/// Payload of a serial robot: mass, first moments and inertias, fixed to the last body.
 const PAYLOAD: &str = "m_payload = 5\nmx_payload = 0.25\nmy_payload = -0.1\nmz_payload = 0.9\n\
                        xx_payload = 0.18\nyy_payload = 0.2\nzz_payload = 0.03\n";
 
-/// The description with a payload, if it has none, whose mass is known.
+/// Description with a payload of known mass, which is added if there is none.
 fn with_payload(text: &str) -> Result<String, Failure> {
     let mass = |text: &str| {
         let line = text.lines().find(|line| line.starts_with("m_payload = "));
@@ -34,7 +35,7 @@ fn with_payload(text: &str) -> Result<String, Failure> {
         let [first, second, ..] = starts[..] else {
             return Err("the description needs two runs".into());
         };
-        // The first run once more, with the payload.
+        // The first run again, with the payload.
         let run = &text[first..second];
         let loaded = run.replacen("name = \"", "payload = true\nname = \"loaded_", 1);
         let body = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n\n[[place]]";
@@ -47,15 +48,15 @@ fn with_payload(text: &str) -> Result<String, Failure> {
     Ok(text.replacen("[identification]", &known, 1))
 }
 
-/// What a draw gave: how many deviations each quantity is off, and the largest part by which a gain is.
+/// Results of a draw: errors in standard deviations, and the largest relative error of a gain.
 #[derive(Default)]
 struct Misses {
     gains: Vec<f64>,
-    /// Masses that were estimated together with the gains.
+    /// Masses estimated together with the gains.
     masses: Vec<f64>,
-    /// All parameters that were.
+    /// All parameters estimated together with the gains.
     parameters: Vec<f64>,
-    /// What the weighed mass is estimated to be by the torques that the gains give, as a part of it.
+    /// Estimated relative to true mass of the payload, with the torques that the gains give.
     weighed: f64,
     largest: f64,
 }
@@ -87,7 +88,7 @@ fn misses(result: &Identification, gains: &[f64]) -> Result<Misses, Failure> {
     Ok(told)
 }
 
-/// The runs as drives of such gains log them, with torque noise of these deviations (N m).
+/// Runs as logged with such gains, with torque noise of these standard deviations (N m).
 fn logged(
     runs: &[Log],
     (gains, noise): (&[f64], &[f64]),

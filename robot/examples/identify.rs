@@ -1,4 +1,5 @@
-//! Identifies a robot from logs, or from its virtual experiment where none are given:
+//! Identifies a robot from logs, or from its virtual experiment without logs.
+//!
 //! `cargo run --release -p overact-robot --example identify -- robots/dualv.toml [LOG ...]`.
 
 use overact_robot::{Error, Identifier, Robot, Runs};

@@ -1,8 +1,9 @@
-//! Values of interpreted robots for those who ask from elsewhere, as `tests/languages/compare.py` does:
-//! `cargo run -p overact-robot --example interpreted_values -- ROBOTS < questions`.
+//! Evaluates interpreted robots for `tests/languages/compare.py`.
 //!
-//! A question is a line `STEM FUNCTION SAMPLES INPUTS` and a line of numbers for each input, sample after sample, as for
-//! `tests/compiled/examples/values.rs`. The answer is a line of numbers, or one that begins with `error`.
+//! `cargo run -p overact-robot --example interpreted_values -- ROBOTS < questions`. A question is a
+//! line `STEM FUNCTION SAMPLES INPUTS` and a line of numbers for each input, sample by sample, as
+//! for `tests/compiled/examples/values.rs`. The answer is a line of numbers, or one that begins
+//! with `error`.
 
 use overact_codegen::{Effort, Request};
 use overact_robot::{CompiledFile, InterpretedRobot, values};

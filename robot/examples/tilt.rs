@@ -1,8 +1,9 @@
-//! Whether a robot's base was tilted when its logs were made: the direction of gravity for which the model explains
-//! the torques of one run best, what tilts do to the prediction of another one, as plots:
-//! `cargo run --release -p overact-robot --example tilt -- robots/dvrk_mtm.toml TRAINING TEST docs/dvrk_mtm.svg`.
+//! Estimates whether a robot's base was tilted when its logs were recorded.
 //!
-//! The description's line `gravity = [...]` is taken to say how large it is.
+//! It finds the gravity direction with the smallest residual in one run, and plots the effect of
+//! tilts on the prediction of another: `cargo run --release -p overact-robot --example tilt --
+//! robots/dvrk_mtm.toml TRAINING TEST docs/dvrk_mtm.svg`. The magnitude of gravity is that of the
+//! description's line `gravity = [...]`.
 
 use nalgebra::{Matrix2, Vector2};
 use overact::Model;
@@ -16,10 +17,10 @@ use std::{error::Error, path::Path, process::ExitCode};
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.81;
 
-/// Steps from no tilt to twice the best one, an even number.
+/// Number of steps from no tilt to twice the best one; even.
 const STEPS: u32 = 10;
 
-/// Tilt by which the weighted residual is explored, rad.
+/// Step of the finite differences, rad.
 const STEP: f64 = 0.03;
 
 fn main() -> ExitCode {
@@ -72,7 +73,7 @@ fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn
     Ok(())
 }
 
-/// The robot with gravity turned by these angles towards x and y.
+/// Robot with gravity tilted by these angles towards x and y.
 fn tilted(text: &str, tilt: Vector2<f64>) -> Result<Robot, overact_robot::Error> {
     let [x, y] = [tilt.x, tilt.y].map(|angle| -GRAVITY * angle.sin());
     let z = -(GRAVITY * GRAVITY - x * x - y * y).sqrt();
@@ -84,8 +85,9 @@ fn tilted(text: &str, tilt: Vector2<f64>) -> Result<Robot, overact_robot::Error>
     Robot::from_text("tilted.toml", &text)
 }
 
-/// The tilt of the smallest residual, each line by its residual without tilt: Newton's steps through
-/// differences.
+/// Tilt with the smallest residual: Newton's method with finite differences.
+///
+/// Each row is weighted by its residual without tilt.
 fn best(text: &str, runs: &[Log]) -> Result<Vector2<f64>, Box<dyn Error>> {
     let residuals = |tilt: Vector2<f64>| -> Result<Vec<f64>, Box<dyn Error>> {
         let robot = tilted(text, tilt)?;
@@ -122,7 +124,7 @@ fn best(text: &str, runs: &[Log]) -> Result<Vector2<f64>, Box<dyn Error>> {
     Ok(-step)
 }
 
-/// Errors on the held-out run, percent.
+/// Errors on the validation run, percent.
 fn errors(result: &Identification, stage: Stage) -> Vec<f64> {
     let own = result
         .cross_validation
@@ -132,7 +134,7 @@ fn errors(result: &Identification, stage: Stage) -> Vec<f64> {
     torques.map(|one| one.relative_error_percent).collect()
 }
 
-/// Errors of each actuator's prediction of the held-out run over the tilt, in the direction of the best one.
+/// Validation error of each actuator over the tilt, in the direction of the best one.
 fn plots(names: &[String], tilts: &[f64], all: &[[Vec<f64>; 2]]) -> Vec<Plot> {
     let plot = |(joint, name): (usize, &String)| {
         let stages = ["base parameters", "consistent"].into_iter().enumerate();

@@ -1,9 +1,9 @@
-//! Where the bodies of a robot's standard parameters are.
+//! Maps standard parameters to the bodies that they belong to.
 
 use overact::Body;
 use overact_codegen::{derivation::BodyParameter, mechanism::Mechanism};
 
-/// The body of a standard parameter.
+/// Body of a standard parameter.
 pub(crate) fn body(mechanism: &Mechanism, parameter: BodyParameter) -> Body {
     match parameter {
         BodyParameter::Platform(_) => Body::Platform,
@@ -16,7 +16,7 @@ pub(crate) fn body(mechanism: &Mechanism, parameter: BodyParameter) -> Body {
     }
 }
 
-/// A body of a leg, by their numbers. No robot has so many legs or joints that these saturate.
+/// Body of a leg, by indices; descriptions are too small for these to saturate.
 pub(crate) fn leg_body(leg: usize, index: usize, shape: usize) -> Body {
     let small = |number: usize| u16::try_from(number).unwrap_or(u16::MAX);
     Body::Leg {

@@ -1,5 +1,7 @@
-//! A description checked as a whole: what has no model, and what the virtual experiment and the
-//! identification would refuse, all of it at once and without simulating.
+//! Complete check of a description without its model.
+//!
+//! It also reports what simulation and identification of the virtual experiment would reject,
+//! without simulating.
 
 use crate::{
     body::body,
@@ -31,14 +33,14 @@ pub struct CheckedFile {
     pub file: String,
     /// The mechanism with its home configuration.
     pub mechanism: Mechanism,
-    /// What the description says that may not be meant.
+    /// Contents that may be unintended.
     pub note: Option<String>,
 }
 
 /// Reads and checks a description.
 ///
 /// # Errors
-/// A file that can't be read, or everything that is wrong with the description.
+/// A file that cannot be read, or all errors of the description.
 pub fn check(path: &Path) -> Result<CheckedFile, Error> {
     check_text(read(path)?)
 }
@@ -53,7 +55,7 @@ pub fn check(path: &Path) -> Result<CheckedFile, Error> {
 /// ```
 ///
 /// # Errors
-/// Everything that is wrong with the description.
+/// All errors of the description.
 pub fn check_text(source: Source) -> Result<CheckedFile, Error> {
     match checked(&source) {
         Ok(checked) => Ok(CheckedFile {
@@ -69,7 +71,7 @@ pub fn check_text(source: Source) -> Result<CheckedFile, Error> {
 }
 
 impl Robot {
-    /// Refuses a table `[prior]` with bodies that nobody can build.
+    /// Rejects a `[prior]` table with bodies that are not physically consistent.
     pub(crate) fn check_prior(&self) -> Result<(), Error> {
         let mut errors = Diagnostics::new();
         let mechanism = &self.model().model().mechanism;
@@ -98,7 +100,7 @@ fn checked(source: &Source) -> Result<Checked, Diagnostics> {
     errors.into_result(checked)
 }
 
-/// Bodies of the table `[prior]` that nobody can build.
+/// Reports bodies of the `[prior]` table that are not physically consistent.
 fn check_prior(
     source: &Source,
     description: &Description,
@@ -126,7 +128,7 @@ fn check_prior(
     }
 }
 
-/// What simulation and identification of the virtual experiment would refuse.
+/// Reports what simulation and identification of the virtual experiment would reject.
 fn check_experiment(
     source: &Source,
     description: &Description,
@@ -154,8 +156,7 @@ fn check_experiment(
     }
 }
 
-/// Runs of the virtual experiment that are too short, or sampled too slowly, for the filters of the
-/// identification.
+/// Reports runs of the virtual experiment that are too short or sampled too slowly for the filters.
 fn check_filters(
     source: &Source,
     description: &Description,
@@ -213,8 +214,9 @@ fn check_filters(
     }
 }
 
-/// Calls with what an experiment is checked against: all but the parameters, whose number follows from the
-/// model and is right by construction.
+/// Calls a function with the information that an experiment is checked against.
+///
+/// Parameters are omitted: their number follows from the model.
 fn with_info<T>(mechanism: &Mechanism, then: impl FnOnce(&Info<'_>) -> T) -> T {
     let joints = mechanism.joints();
     let actuated_joints = mechanism.actuated();

@@ -1,4 +1,4 @@
-//! A description from a file, read and compiled, with what is asked for.
+//! A description read from a file and compiled for a request.
 
 use crate::error::{Error, Problem};
 use overact_codegen::diagnostic::Code;
@@ -18,29 +18,29 @@ use std::{
 pub struct CompiledFile {
     /// The path as the user gave it.
     pub file: String,
-    /// The text, in which errors that are found later have their places.
+    /// Text, to locate errors that are found later.
     pub source: Source,
-    /// What the file says.
+    /// Parsed description.
     pub description: Description,
     /// The model.
     pub model: RobotModel,
-    /// Values of a file of parameters that no body or joint has, a sentence for each.
+    /// Sentences on values of a parameter file that no body or joint has.
     pub doubts: Vec<String>,
 }
 
 impl CompiledFile {
-    /// Reads a description and compiles what is asked for.
+    /// Reads and compiles a description.
     ///
     /// # Errors
-    /// A file that can't be read, or everything that is wrong with the description.
+    /// A file that cannot be read, or all errors of the description.
     pub fn read(path: &Path, request: &Request<'_>) -> Result<Self, Error> {
         Self::new(read(path)?, request)
     }
 
-    /// Compiles what is asked for of a description.
+    /// Compiles a description.
     ///
     /// # Errors
-    /// Everything that is wrong with the description.
+    /// All errors of the description.
     pub fn new(source: Source, request: &Request<'_>) -> Result<Self, Error> {
         match compile_with(&source, request) {
             Ok(compiled) => Ok(Self {
@@ -57,14 +57,14 @@ impl CompiledFile {
         }
     }
 
-    /// What the description says that may not be meant.
+    /// Contents of the description that may be unintended.
     #[must_use]
     pub fn note(&self) -> Option<String> {
         note(&self.source, &self.description, &self.model.mechanism)
     }
 }
 
-/// What a description says that may not be meant, a line for each.
+/// Contents of a description that may be unintended, one per line.
 pub(crate) fn note(
     source: &Source,
     description: &Description,
@@ -79,12 +79,13 @@ pub(crate) fn note(
     (!notes.is_empty()).then(|| notes.join("\n"))
 }
 
-/// A motor marked by mistake looks like redundancy, so redundancy that the description does not speak of is worth a
-/// word.
+/// Note on actuation redundancy that the description does not declare.
+///
+/// A motor marked by mistake looks like redundancy.
 fn redundancy(description: &Description, mechanism: &Mechanism) -> Option<String> {
     let (n, r) = (mechanism.actuated().len(), mechanism.dof());
     let said = (description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
-    // A skeleton's description has no key to say it.
+    // Descriptions of skeletons have no key for it.
     if n <= r || said || mechanism.skeleton().is_some() {
         return None;
     }
@@ -100,7 +101,7 @@ fn redundancy(description: &Description, mechanism: &Mechanism) -> Option<String
     ))
 }
 
-/// Bytes of a description or of a file of parameters, at most; a device may have no end.
+/// Largest size of a description or parameter file, bytes; a device may have no end.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// Reads a text of at most [`MOST_BYTES`].
@@ -114,10 +115,10 @@ fn bounded(input: impl Read) -> io::Result<String> {
     Ok(text)
 }
 
-/// Reads a description's text.
+/// Reads the text of a description.
 ///
 /// # Errors
-/// A file that can't be read or is not UTF-8.
+/// A file that cannot be read or is not UTF-8.
 pub(crate) fn read(path: &Path) -> Result<Source, Error> {
     read_or(
         path,
@@ -125,10 +126,12 @@ pub(crate) fn read(path: &Path) -> Result<Source, Error> {
     )
 }
 
-/// Reads a text, from standard input where the path is `-`; `origin` says what writes such a file, where there is none.
+/// Reads a text, from standard input if the path is `-`.
+///
+/// `origin` is advice on how to create such a file if it does not exist.
 ///
 /// # Errors
-/// A file that can't be read or is not UTF-8.
+/// A file that cannot be read or is not UTF-8.
 pub(crate) fn read_or(path: &Path, origin: &str) -> Result<Source, Error> {
     let name = path.display().to_string();
     let text = match name.as_str() {

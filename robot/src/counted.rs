@@ -1,4 +1,4 @@
-//! Numbers of things in sentences.
+//! Counts with singular or plural nouns.
 
 /// `1 leg`, `2 legs`.
 ///

@@ -1,34 +1,34 @@
-//! What is wrong, all of it at once, each at its place and with a way out.
+//! Errors: all problems at once, each with location and advice.
 
 use overact_codegen::diagnostic::{Code, Diagnostic};
 use overact_codegen::diagnostic::{Diagnostics, InternalError, Located, Source, visible};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
-/// A code as its text.
+/// Serialises a code as its text.
 fn as_text<S: Serializer>(code: &Code, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(code)
 }
 
-/// One thing that is wrong.
+/// One problem.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Problem {
-    /// What kind of problem it is, under which it is explained.
+    /// Code under which the problem is explained.
     #[serde(serialize_with = "as_text")]
     pub code: Code,
-    /// What is wrong, in one sentence.
+    /// Message of one sentence.
     pub message: String,
-    /// The file, as the user named it.
+    /// File name as the user gave it.
     pub file: Option<String>,
     /// Line, counted from 1.
     pub line: Option<usize>,
-    /// Where in the line.
+    /// Position in the line.
     pub column: Option<Column>,
-    /// A way out.
+    /// Advice.
     pub help: Option<String>,
 }
 
-/// A place in a line.
+/// Position in a line.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum Column {
@@ -39,7 +39,7 @@ pub enum Column {
 }
 
 impl Problem {
-    /// A problem without a place.
+    /// Problem without a location.
     #[must_use]
     pub fn new(code: Code, message: impl Into<String>) -> Self {
         let message = message.into();
@@ -53,20 +53,20 @@ impl Problem {
         }
     }
 
-    /// With the file.
+    /// Sets the file.
     #[must_use]
     pub fn file(self, file: impl Into<String>) -> Self {
         let file = Some(file.into());
         Self { file, ..self }
     }
 
-    /// With the line, if there is one.
+    /// Sets the line, if there is one.
     #[must_use]
     pub fn line(self, line: Option<usize>) -> Self {
         Self { line, ..self }
     }
 
-    /// With a way out.
+    /// Sets the advice.
     #[must_use]
     pub fn help(self, help: impl Into<String>) -> Self {
         let help = Some(help.into());
@@ -93,10 +93,10 @@ impl fmt::Display for Problem {
     }
 }
 
-/// Why there is no robot, or nothing that it was asked for.
+/// Error of reading, compiling or using a robot.
 #[derive(Debug)]
 pub enum Error {
-    /// A description is wrong.
+    /// An invalid description.
     Description {
         /// Its text.
         source: Source,
@@ -105,7 +105,7 @@ pub enum Error {
     },
     /// Anything else.
     Problems(Vec<Problem>),
-    /// What went wrong with several files.
+    /// Errors of several files.
     Several(Vec<Self>),
 }
 
@@ -134,7 +134,7 @@ impl Error {
         }
     }
 
-    /// The first broken invariant of the program itself, if it is not the input that is wrong.
+    /// First broken invariant of the program itself, if that is the cause.
     #[must_use]
     pub fn internal(&self) -> Option<&InternalError> {
         match self {
@@ -144,7 +144,7 @@ impl Error {
         }
     }
 
-    /// All problems as text, with a terminal's colours or without.
+    /// All problems as text, with or without terminal colours.
     #[must_use]
     pub fn render(&self, styled: bool) -> String {
         match self {
@@ -176,7 +176,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// An error of the program as a problem without a place.
+/// Converts an internal error to a problem without a location.
 impl From<&InternalError> for Problem {
     fn from(error: &InternalError) -> Self {
         Self::new(Code::INTERNAL, error.to_string()).help(InternalError::HELP)

@@ -1,4 +1,4 @@
-//! A description's table `[experiment]` as a virtual experiment of the simulation.
+//! Converts the `[experiment]` table of a description to a virtual experiment.
 
 pub(crate) mod errors;
 
@@ -14,18 +14,18 @@ use overact_identification::is_carried;
 use overact_simulation::{Drives, Experiment, Record, Run, Term, Trajectory, simulate};
 use std::collections::BTreeMap;
 
-/// The virtual experiment of a robot: what would be recorded in a laboratory.
+/// Virtual experiment of a robot: the simulated counterpart of recordings in a laboratory.
 #[derive(Debug, Clone)]
 pub struct VirtualExperiment<'a> {
     robot: &'a Robot,
     plan: Experiment,
-    /// Of each payload that has a name, its parameters by their names in the model.
+    /// Parameters of each named payload, by their names in the model.
     loads: BTreeMap<String, BTreeMap<&'static str, f64>>,
     without_effect: Vec<String>,
 }
 
 impl Robot {
-    /// The virtual experiment of the description.
+    /// Virtual experiment of the description.
     ///
     /// # Errors
     /// A description without an experiment, or without a run.
@@ -61,7 +61,7 @@ impl Robot {
         })
     }
 
-    /// Names of the runs that the description holds out, to validate with.
+    /// Names of the description's validation runs.
     #[must_use]
     pub fn held_out(&self) -> Vec<String> {
         let table = self.description().experiment.as_ref();
@@ -70,22 +70,23 @@ impl Robot {
         held.map(|run| run.name.value.clone()).collect()
     }
 
-    /// Names of the payloads, where there are several.
+    /// Names of the payloads, if there are several.
     #[must_use]
     pub fn payloads(&self) -> Vec<&str> {
         let names = self.description().payloads.iter();
         names.map(|name| name.value.as_str()).collect()
     }
 
-    /// The name of the payload that a run of the virtual experiment carries, where there are several.
+    /// Name of the payload that a run of the virtual experiment carries, if there are several.
     pub(crate) fn payload_of(&self, run: &str) -> Option<&str> {
         let table = self.description().experiment.as_ref()?;
         let run = table.runs.iter().find(|one| one.name.value == run)?;
         run.payload_name.as_deref()
     }
 
-    /// True values of all parameters of the virtual robot: one that the description leaves out is zero.
-    /// None without a virtual experiment.
+    /// True values of all parameters of the virtual robot; omitted ones are zero.
+    ///
+    /// `None` without a virtual experiment.
     #[must_use]
     pub fn true_values(&self) -> Option<BTreeMap<String, f64>> {
         let table = self.description().experiment.as_ref()?;
@@ -104,13 +105,13 @@ impl Robot {
 }
 
 impl VirtualExperiment<'_> {
-    /// What will be done.
+    /// Plan of the experiment.
     #[must_use]
     pub const fn plan(&self) -> &Experiment {
         &self.plan
     }
 
-    /// The plan, to be changed.
+    /// Mutable plan of the experiment.
     pub const fn plan_mut(&mut self) -> &mut Experiment {
         &mut self.plan
     }
@@ -121,8 +122,9 @@ impl VirtualExperiment<'_> {
         self.robot
     }
 
-    /// Gives the virtual robot other standard parameters than the description's, by name; the payload keeps its
-    /// own where there are none for it.
+    /// Sets standard parameters of the virtual robot by name.
+    ///
+    /// The payload keeps its own values if `values` has none for it.
     pub fn set_parameters(&mut self, values: &BTreeMap<String, f64>) {
         let info = self.robot.model().info();
         let all = info.parameters.iter().chain(info.payload_parameters);
@@ -139,7 +141,7 @@ impl VirtualExperiment<'_> {
         &self.without_effect
     }
 
-    /// Checks names of runs.
+    /// Checks that runs exist.
     ///
     /// # Errors
     /// All names that no run has.
@@ -164,7 +166,7 @@ impl VirtualExperiment<'_> {
         }
     }
 
-    /// Looks whether runs to identify from are left beside those `held_out`.
+    /// Checks that training runs remain besides those `held_out`.
     pub(crate) fn check_some_left(&self, held_out: &[String]) -> Result<(), Error> {
         let mut runs = self.plan.runs.iter();
         if runs.any(|run| !held_out.contains(&run.name)) {
@@ -180,10 +182,12 @@ impl VirtualExperiment<'_> {
         ]))
     }
 
-    /// Makes all runs. `progress` hears the part that is done, from 0 to 1, and the name of a run.
+    /// Simulates all runs.
+    ///
+    /// `progress` is called with the completed fraction, from 0 to 1, and the name of a run.
     ///
     /// # Errors
-    /// An experiment that can't be made, all that is wrong at once, or runs that could not be finished.
+    /// An invalid experiment, with all its problems, or runs that failed.
     pub fn records(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
         let info = self.robot.model().info();
         if info.parameters.iter().any(is_carried) || !self.loads.is_empty() {
@@ -193,8 +197,10 @@ impl VirtualExperiment<'_> {
             .map_err(|error| located(self.robot, &error))
     }
 
-    /// Makes all runs one by one, each of a robot with what it carries: one of several payloads, or, of a robot
-    /// without platform, a body that is there in runs with payload alone.
+    /// Simulates all runs one by one, each with its payload.
+    ///
+    /// This is needed for several payloads, and for serial robots, where the payload is a body of
+    /// its own.
     fn records_by_load(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
         let info = self.robot.model().info();
         let of_robot = info.parameters.iter().any(is_carried);
@@ -230,8 +236,9 @@ impl VirtualExperiment<'_> {
     }
 }
 
-/// For each payload that has a name its parameters, by their names in the model; `value` gives them by their own
-/// names, or keeps one.
+/// Parameters of each named payload, by their names in the model.
+///
+/// `value` returns a parameter by its own name, or its default.
 fn loads(
     robot: &Robot,
     value: &dyn Fn(&str, f64) -> f64,
@@ -253,7 +260,7 @@ fn loads(
     names.map(|name| (name.to_owned(), of(name))).collect()
 }
 
-/// The plan of an experiment.
+/// Converts the table to a plan.
 pub(crate) fn plan(table: &description::Experiment, info: &Info<'_>) -> Experiment {
     let truth = true_values(table);
     let all = info.parameters.iter().chain(info.payload_parameters);
@@ -278,7 +285,7 @@ pub(crate) fn plan(table: &description::Experiment, info: &Info<'_>) -> Experime
     }
 }
 
-/// The drives; what the description leaves out is ideal.
+/// Converts the drives; omitted values are ideal.
 fn drives(table: &description::Drives) -> Drives {
     let list = |values: &Option<Vec<f64>>| values.clone().unwrap_or_default();
     Drives {
@@ -293,7 +300,7 @@ fn drives(table: &description::Drives) -> Drives {
     }
 }
 
-/// True values of the parameters by name, as the description gives them; the others are zero.
+/// True parameter values by name, as given in the description; others are zero.
 fn true_values(table: &description::Experiment) -> BTreeMap<String, f64> {
     table
         .parameters
@@ -304,7 +311,7 @@ fn true_values(table: &description::Experiment) -> BTreeMap<String, f64> {
 
 fn converted(run: &description::Run, info: &Info<'_>) -> Run {
     let term = |term: &description::Term| Term {
-        // The index is checked; the name is that of the file, which the model may write otherwise.
+        // The index was checked; the name in the file may differ from the model's.
         coordinate: info
             .coordinates
             .get(term.index)
@@ -324,7 +331,7 @@ fn converted(run: &description::Run, info: &Info<'_>) -> Run {
     }
 }
 
-/// The simulation's errors, each at its place in the description.
+/// Locates the simulation's errors in the description.
 fn located(robot: &Robot, error: &overact_simulation::Error) -> Error {
     let source = robot.source().clone();
     let diagnostics = errors::diagnostics(&source, robot.description(), error);

@@ -1,4 +1,4 @@
-//! Factor files of a robot: its runs as R factors, and its parameters from them.
+//! R factors of a robot's runs, and identification from them.
 
 use crate::{
     error::{Error, Problem},
@@ -12,10 +12,10 @@ use overact_identification::{
 };
 
 impl Robot {
-    /// The factors of runs; with `equations` successive equations, too.
+    /// R factors of runs; with `equations`, also for successive equations.
     ///
     /// # Errors
-    /// Runs that can't be used; a description that asks for what factors can't give.
+    /// Runs that cannot be used, or a description with settings that factors do not support.
     pub fn factors(
         &self,
         (logs, origin): (&[Log], &Origin),
@@ -34,26 +34,26 @@ impl Robot {
         )?)
     }
 
-    /// What makes factors of runs one by one, of many robots.
+    /// Factory for R factors of runs one by one, also of many robots.
     ///
     /// # Errors
-    /// Settings that do not fit; a description that asks for what factors can't give.
+    /// Settings that do not fit, or a description with settings that factors do not support.
     pub fn factory<'a>(&'a self, settings: &'a Settings) -> Result<Factory<'a>, Error> {
         self.check_factors()?;
         let text = self.source().text.as_str();
         Ok(Factory::new(self.model(), text, settings)?)
     }
 
-    /// What factors must be like to be those of this description, with these settings.
+    /// Compatibility key of factors for this description and these settings.
     #[must_use]
     pub fn likeness(&self, settings: &Settings) -> String {
         factors::likeness(&self.source().text, settings)
     }
 
-    /// The parameters from the factors of runs.
+    /// Identifies the parameters from factors of runs.
     ///
     /// # Errors
-    /// Factors that do not fit, data that determine no parameter.
+    /// Incompatible factors, or data that determine no parameter.
     pub fn identify_factors(
         &self,
         gathered: &Gathered,
@@ -73,7 +73,7 @@ impl Robot {
         Ok(found)
     }
 
-    /// What is identified before the parameters needs the logs themselves.
+    /// Rejects identification of gains and gravity, which needs the logs themselves.
     fn check_factors(&self) -> Result<(), Error> {
         let identification = &self.description().identification;
         if !identification.gains && !identification.gravity_direction {

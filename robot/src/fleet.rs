@@ -6,18 +6,20 @@ use overact_simulation::{Fleet, Member, Record};
 use rayon::prelude::*;
 
 impl VirtualExperiment<'_> {
-    /// A robot of a fleet around the parameters of the experiment.
+    /// A robot of a fleet with parameters distributed around those of the experiment.
     #[must_use]
     pub fn member(&self, fleet: &Fleet, number: usize) -> Member {
         let info = self.robot().model().info();
         fleet.member(number, &info, &self.plan().parameters)
     }
 
-    /// The run that a robot of a fleet makes on a day: the runs of the experiment in turn, with the controller of
-    /// a robot that has the parameters of the experiment.
+    /// Simulates the run of a robot of the fleet on a day.
+    ///
+    /// The runs of the experiment alternate over the days. The controller is designed for the
+    /// experiment's parameters.
     ///
     /// # Errors
-    /// An experiment that can't be made, a run that could not be finished.
+    /// An invalid experiment, or a run that failed.
     pub fn day(&self, fleet: &Fleet, member: &Member, day: usize) -> Result<Record, Error> {
         let mut own = self.clone();
         let plan = own.plan_mut();
@@ -36,7 +38,7 @@ impl VirtualExperiment<'_> {
 }
 
 impl VirtualExperiment<'_> {
-    /// What many robots record on a day, robot by robot; `made` makes something of each record.
+    /// Processes the records of many robots on a day, robot by robot; `made` converts each record.
     pub fn days<T: Send>(
         &self,
         fleet: &Fleet,

@@ -1,4 +1,4 @@
-//! What was identified, as the functions of the robot's model take it.
+//! Identified parameters as inputs of the generated base-parameter functions.
 
 use overact_codegen::RobotModel;
 use overact_identification::{
@@ -6,11 +6,13 @@ use overact_identification::{
 };
 use std::collections::BTreeMap;
 
-/// The base estimate of the first model in the base parameters of the functions, the payload's behind them.
+/// Base estimate of the first model, expressed in the base parameters of the functions.
 ///
-/// Both are sums of standard parameters that give the same torques. So the standard parameters that are kept in
-/// the estimate's sums, with the estimate's values and all others zero, give the functions' sums. Nothing is told
-/// where the estimate has parameters that the functions do not know, as friction by direction.
+/// The payload's parameters follow the robot's. Both parameter sets are sums of standard parameters
+/// that give the same torques. The standard parameters kept in the estimate's sums get the
+/// estimated values; all others are zero. These values give the functions' sums. The result is
+/// empty if the estimate has parameters that the functions do not have, such as friction by
+/// direction.
 pub(crate) fn functions_base(model: &RobotModel, found: &Identification) -> Vec<FunctionParameter> {
     let base =
         |one: &&Estimate| one.stage == Stage::Base && one.estimator == Estimator::LeastSquares;
@@ -53,13 +55,13 @@ pub(crate) fn functions_base(model: &RobotModel, found: &Identification) -> Vec<
     model.regrouped(&kept).into_iter().map(named).collect()
 }
 
-/// Suffix of a base parameter of the functions whose name is that of another sum of the estimate.
+/// Suffix of a base parameter whose name belongs to another sum in the estimate.
 const OTHER_SUM: char = 'F';
 
-/// Coefficients that differ by less are equal.
+/// Tolerance for equal coefficients.
 const EQUAL: f64 = 1e-6;
 
-/// The parameter with a name that no estimated base parameter of another sum has.
+/// Renames a parameter if an estimated parameter of another sum has its name.
 fn distinct(mut own: FunctionParameter, estimated: &[BaseParameter]) -> FunctionParameter {
     let alike = estimated.iter().find(|one| one.name == own.name);
     if alike.is_some_and(|one| !is_same_sum(&own, one)) {
@@ -68,7 +70,7 @@ fn distinct(mut own: FunctionParameter, estimated: &[BaseParameter]) -> Function
     own
 }
 
-/// Whether two base parameters are one sum of standard parameters.
+/// Whether two base parameters are the same sum of standard parameters.
 fn is_same_sum(own: &FunctionParameter, other: &BaseParameter) -> bool {
     let coefficient = |terms: &[Regrouping], name: &str| {
         let own = terms.iter().filter(|term| term.parameter == name);

@@ -1,4 +1,4 @@
-//! The direction of gravity of a described robot, identified from runs, and the robot in another one.
+//! Identification of the gravity direction, and robots with another gravity.
 
 use crate::{
     compiled_file::CompiledFile,
@@ -14,11 +14,11 @@ use overact_codegen::{
 };
 use overact_identification::{Fields, GravityDirection, Log, Settings, gravity_direction};
 
-/// Decimals of an acceleration that are kept, m/s².
+/// Resolution of an acceleration: 1 m/s² divided by this number.
 const DECIMALS: i128 = 1_000_000_000;
 
 impl Robot {
-    /// Identifies the direction of gravity together with the parameters.
+    /// Identifies the gravity direction together with the parameters.
     pub(crate) fn gravity_direction(
         &self,
         runs: &[Log],
@@ -56,13 +56,13 @@ impl Robot {
         )?)
     }
 
-    /// This robot in another gravity, m/s² in the base's frame.
+    /// This robot with another gravity, m/s² in the base frame.
     ///
     /// # Errors
     /// Numbers that are not finite.
     pub fn in_gravity(&self, gravity: [f64; 3]) -> Result<Self, Error> {
         let number = |value: f64| {
-            // A cast from a float saturates; what is so large is no ratio.
+            // The cast saturates; a value that large is not a ratio.
             let numerator = (value * DECIMALS as f64).round();
             let ratio = Ratio::new(numerator as i128, DECIMALS).filter(|_| value.is_finite());
             ratio.map(Number::ratio).ok_or_else(|| self.without_model())

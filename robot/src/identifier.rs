@@ -1,4 +1,4 @@
-//! An identification of a robot from runs, as its description asks for it.
+//! Identification of a robot from runs with the settings of its description.
 
 use crate::{
     error::{Error, Problem},
@@ -18,7 +18,7 @@ use overact_identification::{
 };
 use std::collections::BTreeMap;
 
-/// An identification that is being prepared.
+/// Builder of an identification.
 ///
 /// ```no_run
 /// use overact_robot::{Identifier, Robot};
@@ -58,8 +58,9 @@ impl std::fmt::Debug for Identifier<'_> {
 }
 
 impl<'a> Identifier<'a> {
-    /// An identification of a robot, without runs so far. Gains of drives are identified if its description
-    /// asks for them.
+    /// Creates an identification without runs.
+    ///
+    /// Whether drive gains and the gravity direction are identified follows from the description.
     #[must_use]
     pub fn new(robot: &'a Robot) -> Self {
         Self {
@@ -75,19 +76,19 @@ impl<'a> Identifier<'a> {
         }
     }
 
-    /// With the runs to identify from.
+    /// Sets the training runs.
     #[must_use]
     pub fn runs(self, runs: &'a [Log]) -> Self {
         Self { runs, ..self }
     }
 
-    /// With runs to validate with.
+    /// Sets the validation runs.
     #[must_use]
     pub fn validation(self, validation: &'a [Log]) -> Self {
         Self { validation, ..self }
     }
 
-    /// With all that is known of runs: those to identify from, those to validate with, true values.
+    /// Sets training runs, validation runs and true values.
     #[must_use]
     pub fn data(self, data: &'a Runs) -> Self {
         Self {
@@ -98,15 +99,14 @@ impl<'a> Identifier<'a> {
         }
     }
 
-    /// With settings in place of the description's, [`Robot::settings`].
+    /// Sets the settings, by default those of the description ([`Robot::settings`]).
     #[must_use]
     pub fn settings(self, settings: Settings) -> Self {
         let settings = Some(settings);
         Self { settings, ..self }
     }
 
-    /// With encoder offsets and lengths that are first calibrated from the closure of the loops in the runs
-    /// to identify from: [`Robot::calibrate`].
+    /// First calibrates encoder offsets and lengths from the training runs: [`Robot::calibrate`].
     #[must_use]
     pub fn calibrate(self, scope: CalibrationScope) -> Self {
         let calibration = Some(scope);
@@ -116,15 +116,16 @@ impl<'a> Identifier<'a> {
         }
     }
 
-    /// With gains of the drives that are first identified from the runs to identify from and from what is
-    /// known ([`Settings::known`]), or without, whatever the description says.
+    /// Sets whether drive gains are identified first, from the training runs and
+    /// [`Settings::known`].
+    ///
+    /// This overrides the description.
     #[must_use]
     pub fn gains(self, gains: bool) -> Self {
         Self { gains, ..self }
     }
 
-    /// With the direction of gravity, identified together with the parameters, or as it is described, whatever
-    /// the description says.
+    /// Sets whether the gravity direction is identified; this overrides the description.
     #[must_use]
     pub fn gravity_direction(self, gravity_direction: bool) -> Self {
         Self {
@@ -133,17 +134,19 @@ impl<'a> Identifier<'a> {
         }
     }
 
-    /// With someone who hears what is being done.
+    /// Sets the callback for progress.
     #[must_use]
     pub fn progress(self, progress: &'a dyn Fn(Progress<'_>)) -> Self {
         Self { progress, ..self }
     }
 
-    /// Estimates case 1 and case 2 of a redundant robot, or the joint model of another one, and
-    /// validates the estimates.
+    /// Estimates and validates the parameters.
+    ///
+    /// The models are both projections of an overactuated robot, or the joint model of another
+    /// robot.
     ///
     /// # Errors
-    /// Runs or settings that can't be used, data that determine no parameter.
+    /// Runs or settings that cannot be used, or data that determine no parameter.
     pub fn run(&self) -> Result<Identification, Error> {
         let Some(scope) = self.calibration else {
             return self.identified();
@@ -156,7 +159,7 @@ impl<'a> Identifier<'a> {
         Ok(result)
     }
 
-    /// The identification with calibrated offsets and lengths.
+    /// Identification with calibrated offsets and lengths.
     fn with_calibration(&self, calibration: &Calibration) -> Result<Identification, Error> {
         if !calibration.is_change() {
             return self.identified();
@@ -180,8 +183,7 @@ impl<'a> Identifier<'a> {
         own.identified()
     }
 
-    /// The identification of the robot as it is described, with the gains of its drives where they are asked
-    /// for.
+    /// Identification without calibration, with gains and gravity direction as requested.
     fn identified(&self) -> Result<Identification, Error> {
         if self.gravity_direction {
             let made = self.in_gravity(|own, found| own.estimated(Before::Gravity(found)))?;
@@ -202,7 +204,7 @@ impl<'a> Identifier<'a> {
         Ok(result)
     }
 
-    /// The gains of the drives.
+    /// Identifies the gains of the drives.
     fn drive_gains(&self) -> Result<Gains, Error> {
         let mut legs = self.robot.description().legs.iter();
         if legs.any(Leg::has_coupled_motors) {
@@ -223,7 +225,7 @@ impl<'a> Identifier<'a> {
         Ok(drive_gains(model, runs, &settings, &tell)?)
     }
 
-    /// What is made of all runs with their torques multiplied by the gains of the drives, and the gains.
+    /// Calls `make` for runs whose torques are scaled by the identified gains.
     fn with_gains<T>(
         &self,
         make: impl FnOnce(&Identifier<'_>, &Gains) -> Result<T, Error>,
@@ -243,7 +245,7 @@ impl<'a> Identifier<'a> {
         Ok((make(&own, &gains)?, gains))
     }
 
-    /// What is made of the robot in the gravity whose direction the runs tell, and the direction.
+    /// Calls `make` for the robot with the identified gravity direction.
     fn in_gravity<T>(
         &self,
         make: impl FnOnce(&Identifier<'_>, &GravityDirection) -> Result<T, Error>,
@@ -262,7 +264,7 @@ impl<'a> Identifier<'a> {
             false => None,
         };
         let robot = turned.as_ref().unwrap_or(self.robot);
-        // What is believed beforehand is told for the parameters that have an effect now.
+        // The prior must refer to the parameters that have an effect in this gravity.
         let frequency = self.runs.first().map_or(0.0, Log::sampling_frequency);
         let settings = Settings {
             prior: robot.settings(frequency).prior,
@@ -276,7 +278,7 @@ impl<'a> Identifier<'a> {
         Ok((make(&own, &found)?, found))
     }
 
-    /// The identification as everything is now, after what was identified before.
+    /// Identification in the current state, after the preceding stages.
     fn estimated(&self, before: Before<'_>) -> Result<Identification, Error> {
         self.robot.check_prior()?;
         let settings = self.with_defaults();
@@ -309,7 +311,7 @@ impl<'a> Identifier<'a> {
         Ok(result)
     }
 
-    /// Compares case 2 for all choices of kept actuators.
+    /// Compares the actuator projection for all partitions.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -327,7 +329,7 @@ impl<'a> Identifier<'a> {
         Ok(study)
     }
 
-    /// The comparison with the torques as they are.
+    /// Comparison without further preparation of the torques.
     fn studied(&self) -> Result<Study, Error> {
         let sizes = self.robot.model().info().sizes;
         let choices = partitions(sizes.actuators, sizes.dof);
@@ -346,21 +348,20 @@ impl<'a> Identifier<'a> {
         }
     }
 
-    /// The settings; the description's unless others are given.
+    /// Settings, by default those of the description.
     fn with_defaults(&self) -> Settings {
         let frequency = self.runs.first().map_or(0.0, Log::sampling_frequency);
         let own = || self.robot.settings(frequency);
         self.settings.clone().unwrap_or_else(own)
     }
 
-    /// Whether the description asks for essential parameters.
+    /// Whether the description requests essential parameters.
     fn essential(&self) -> bool {
         self.robot.description().identification.essential
     }
 }
 
-/// Settings with which the elimination ends before it starts, where no essential parameters are asked
-/// for.
+/// Settings that disable the elimination if essential parameters are not requested.
 pub(crate) fn essential_or_not(settings: &Settings, essential: bool) -> Settings {
     let r_sigma = match essential {
         true => settings.r_sigma,
@@ -372,12 +373,12 @@ pub(crate) fn essential_or_not(settings: &Settings, essential: bool) -> Settings
     }
 }
 
-/// Leaves the estimates of the base parameters only.
+/// Keeps the base and consistent estimates only.
 pub(crate) fn without_essential_estimates(estimates: &mut Vec<Estimate>) {
     estimates.retain(|one| matches!(one.stage, Stage::Base | Stage::Consistent));
 }
 
-/// Leaves the base parameters only.
+/// Removes results on essential parameters.
 fn without_essential(result: &mut Identification) {
     let is_kept = |stage: Stage| matches!(stage, Stage::Base | Stage::Consistent);
     without_essential_estimates(&mut result.estimates);

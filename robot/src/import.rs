@@ -1,4 +1,4 @@
-//! Robots of other programs as descriptions that are valid.
+//! Import of robot files, with validation of the description.
 
 use crate::{
     check::check_text,
@@ -8,8 +8,9 @@ use overact_codegen::{Source, diagnostic::Code};
 use overact_interchange::{Errors, Imported, Options};
 use std::path::Path;
 
-/// Makes a description of a robot's file (MJCF, URDF, SDFormat or .par) and checks it as [`check`](crate::check)
-/// does.
+/// Imports a robot file (MJCF, URDF, SDFormat or .par) and validates the description.
+///
+/// The validation is that of [`check`](crate::check).
 ///
 /// ```
 /// use overact_interchange::Options;
@@ -19,7 +20,7 @@ use std::path::Path;
 /// ```
 ///
 /// # Errors
-/// All that is wrong with the file, each at its line; that includes what keeps its description from being valid.
+/// All errors of the file with their lines, including those that invalidate the description.
 pub fn import(path: &Path, options: &Options) -> Result<Imported, Error> {
     let imported = overact_interchange::import(path, options).map_err(errors_of_files)?;
     let source = Source::new("import", imported.text.as_str());
@@ -33,7 +34,7 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, Error> {
     }
 }
 
-/// The errors of the files of another program.
+/// Converts the errors of imported files.
 #[must_use]
 pub fn errors_of_files(errors: Errors) -> Error {
     if errors.0.is_empty() {

@@ -1,9 +1,8 @@
-//! Instruments from the simulated robot: the motion that a robot with the estimated parameters makes under
-//! its controller, without the errors of its encoders.
+//! Instruments from simulation: the motion of the estimated robot under its controller.
 //!
-//! Instruments need not be exact, they must be free of the errors of the measured run. So the parameters
-//! by least squares are good enough for the simulation, although errors may bias them: a good controller
-//! keeps any such robot near its reference.
+//! Instruments must be independent of the measured run's errors but need not be exact. Parameters
+//! by least squares are therefore sufficient, although they may be biased. A good controller keeps
+//! any such robot near its reference.
 
 use crate::{error::Error, prior::of_load, robot::Robot};
 use overact::{Info, Model};
@@ -16,11 +15,13 @@ use overact_simulation::{
     Cascade, Drives, Experiment, Record, Recorded, follow_recorded, simulate,
 };
 
-/// The runs of a virtual experiment with the motion of the simulated robot beside each: that of the
-/// parameters by least squares, with the experiment's controller and ideal sensors.
+/// Adds simulated instruments to the runs of a virtual experiment.
+///
+/// The simulation has the parameters by least squares, the experiment's controller and ideal
+/// sensors.
 ///
 /// # Errors
-/// Data that determine no parameter, or parameters of which no robot can be made.
+/// Data that determine no parameter, or estimates that cannot be simulated.
 pub fn beside_simulated(
     model: &dyn Model,
     plan: &Experiment,
@@ -69,8 +70,10 @@ pub fn beside_simulated(
 }
 
 impl Robot {
-    /// Runs with the motion of the simulated robot beside each: along the recorded reference where a run has
-    /// one, else as the virtual experiment made it.
+    /// Adds simulated instruments to runs.
+    ///
+    /// The simulation follows the recorded references if the runs have these, else the virtual
+    /// experiment.
     pub(crate) fn simulated(&self, runs: &[Log], settings: &Settings) -> Result<Vec<Log>, Error> {
         let model = self.model();
         match &self.description().controller {
@@ -87,13 +90,13 @@ impl Robot {
                 let experiment = self.experiment()?;
                 beside_simulated(model, experiment.plan(), runs.to_vec(), settings)
             }
-            // Why there are none is told where they are missed.
+            // The reason is reported where the instruments are needed.
             _ => Ok(runs.to_vec()),
         }
     }
 }
 
-/// Replaces the references beside runs by the motion of the robot that follows them.
+/// Replaces the references of runs by the motion of the simulated robot that follows them.
 fn along_references(
     model: &dyn Model,
     cascade: &Cascade,
@@ -110,7 +113,7 @@ fn along_references(
         let mut parameters = whole(log.payload_name());
         if !log.payload() {
             parameters[robot..].fill(0.0);
-            // Of a robot without platform, where some runs carry its payload and some do not.
+            // Without payload, the body that carries it in a serial robot has zero parameters.
             let own = model.info().parameters.iter().zip(&mut parameters);
             own.filter(|(parameter, _)| loaded && is_carried(parameter))
                 .for_each(|(_, value)| *value = 0.0);
@@ -127,8 +130,9 @@ fn along_references(
     Ok(beside)
 }
 
-/// Standard parameters with the model of the base estimate by least squares, the payload's last: those of the
-/// payload that is asked for, where there are several.
+/// Standard parameters equivalent to the base estimate by least squares, the payload's last.
+///
+/// With several payloads, those of the requested one.
 fn estimated<'a>(
     model: &'a dyn Model,
     runs: &[Log],
@@ -150,7 +154,7 @@ fn estimated<'a>(
     Ok(move |load: Option<&str>| standard(&model.info(), &prepared, &outcome.base, load))
 }
 
-/// Each base parameter stands on the one that is kept, the regrouped ones are zero.
+/// Assigns each base parameter's value to its kept parameter; regrouped ones are zero.
 fn standard(
     info: &Info<'_>,
     prepared: &Prepared,
@@ -175,7 +179,7 @@ fn standard(
     .collect()
 }
 
-/// A record as a run of instruments.
+/// Converts a record to a run for instruments.
 fn as_log(record: &Record) -> Result<Log, overact_identification::Error> {
     Log::new(
         format!("{}, simulated", record.name),
@@ -187,7 +191,7 @@ fn as_log(record: &Record) -> Result<Log, overact_identification::Error> {
     )
 }
 
-/// A simulation that failed.
+/// Error of a failed simulation.
 fn failed(error: overact_simulation::Error) -> Error {
     let help = "the robot of the estimated parameters can't be simulated: set `instruments` to \"periods\" or \"none\"";
     crate::error::Problem::new(Code::ESTIMATED_ROBOT, error.to_string())

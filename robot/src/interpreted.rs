@@ -1,8 +1,6 @@
-//! A robot's description served as [`overact::Model`]: its programs are evaluated block by block,
-//! with no compiler at hand.
+//! Implements [`overact::Model`] by interpreting a robot's programs, without a compiler.
 //!
-//! A tree (a robot without platform) is served like any other: its pose are its joint positions and
-//! its twist their velocities.
+//! For serial robots, the pose consists of the joint positions and the twist of their velocities.
 
 mod follow;
 mod forward;
@@ -23,27 +21,26 @@ use overact_codegen::{
 };
 use std::sync::{Mutex, PoisonError};
 
-/// Most inputs that a program has: those of a function of [`overact::Model`], and joints that are found
-/// before it runs.
+/// Largest number of inputs of a program, including joints that are solved for first.
 const INPUTS: usize = 6;
 
-/// Where an input of a program comes from.
+/// Source of a program's input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Given {
-    /// From the function's input at this place.
+    /// Input of the function with this index.
     At(usize),
-    /// From Newton's method, which finds the joints first.
+    /// Joints from Newton's method.
     Joints,
-    /// From nowhere: the program does not read it.
+    /// The program does not read it.
     Unread,
 }
 
-/// A robot that is interpreted.
+/// A robot whose programs are interpreted.
 #[derive(Debug)]
 pub struct InterpretedRobot {
     model: RobotModel,
     names: Names,
-    /// Of a platform that moves aside, which of the six coordinates are independent.
+    /// For platforms with parasitic motion: the independent coordinates among the six.
     independent: Option<Vec<usize>>,
     functions: Vec<Served>,
     scratch: Pool<Scratch>,
@@ -55,14 +52,15 @@ struct Served {
     function: Function,
     /// Index among the model's functions.
     index: usize,
-    /// Where each input of the program comes from.
+    /// Source of each input of the program.
     inputs: Vec<Given>,
     evaluators: Pool<Evaluator>,
 }
 
-/// Memory that calls take and give back, so that a call allocates only when more threads than ever
-/// before are in it. Programs have memory of their own: sizing it anew would cost more than a sample, and so
-/// would moving it out and in, were it not boxed.
+/// Pool of working memory, reused between calls.
+///
+/// A call allocates only if more threads than ever before run at once. Resizing per call would cost
+/// more than a sample; boxes make taking and returning cheap.
 #[derive(Debug)]
 struct Pool<T>(Mutex<Vec<Box<T>>>);
 
@@ -74,7 +72,7 @@ impl<T> Default for Pool<T> {
 
 impl<T> Pool<T> {
     fn with<R>(&self, make: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
-        // What a panicking thread left behind is memory like any other.
+        // Memory that a panicking thread left behind is as good as any other.
         let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut memory = free().pop().unwrap_or_else(|| Box::new(make()));
         let result = work(&mut memory);
@@ -84,10 +82,10 @@ impl<T> Pool<T> {
 }
 
 impl InterpretedRobot {
-    /// Serves a model.
+    /// Creates an interpreter of a model.
     ///
-    /// The names that errors and parameters carry live as long as the program (`&'static str`, as in
-    /// generated code), so each robot leaks a few kilobytes once.
+    /// Names in errors and parameters are `&'static str`, as in generated code. Each robot
+    /// therefore leaks a few kilobytes once.
     #[must_use]
     pub fn new(model: RobotModel) -> Self {
         let names = Names::new(&model);
@@ -104,15 +102,17 @@ impl InterpretedRobot {
         robot
     }
 
-    /// Whether identification and simulation ask for a function, or it serves to find pose and joints. A
-    /// model of these functions alone is compiled sooner; it does not offer the others.
+    /// Whether identification, simulation or the search for pose and joints need a function.
+    ///
+    /// A model of only these functions compiles faster.
     #[must_use]
     pub fn serves(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
         overact_codegen::serves_model(mechanism, function, from)
     }
 
-    /// Whether a function serves to find pose and joints from what encoders read: those of `serves` that a
-    /// caller needs who asks for one function more.
+    /// Whether a function computes pose and joints from encoder positions.
+    ///
+    /// These are the functions of `serves` that a caller of one other function needs.
     #[must_use]
     pub fn finds_pose(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
         let finds = matches!(
@@ -137,7 +137,7 @@ impl InterpretedRobot {
         &self.model
     }
 
-    /// The name of a leg, with the life that errors need.
+    /// Name of a leg with static lifetime, for errors.
     pub(crate) fn leg_name(&self, index: usize) -> &'static str {
         let leg = self.model.mechanism.legs.get(index);
         leg.map_or("", |leg| self.names.leg(&leg.name))
@@ -166,7 +166,7 @@ impl InterpretedRobot {
             .map(place)
             .collect();
         let (rows, columns) = function.shape(&self.names.sizes);
-        // A program that does not fit the table is not offered rather than misread.
+        // Omit a program that does not match the table.
         let inputs = inputs
             .filter(|i| i.len() <= INPUTS && wanted.program.entries.len() == rows * columns)?;
         let evaluators = Pool::default();
@@ -182,7 +182,7 @@ impl InterpretedRobot {
         &self.model.functions[served.index].program
     }
 
-    /// What a failed condition of a program means.
+    /// Error for a failed guard of a program.
     #[must_use]
     pub fn error(&self, program: &Program, failed: &Failed) -> SampleError {
         let times = |home: f64| {
@@ -228,12 +228,12 @@ impl InterpretedRobot {
         }
     }
 
-    /// The first sample with an input that is not finite or too large, and the input's name.
+    /// First sample with an input that is not finite or too large, with the input's name.
     fn first_out_of_range(&self, function: Function, inputs: &[&[f64]]) -> Option<SampleError> {
         let sizes = &self.names.sizes;
         let kinds = function.inputs().iter().zip(inputs);
         let of = |(kind, values): (&Input, &&[f64])| {
-            // Seldom one is: the first is looked for where there is one, and all are asked without a branch.
+            // Such inputs are rare: test all without branches, then search only if needed.
             let input = self.called(*kind);
             let most = DOUBLE.largest.of(input);
             let is_good = |value: &f64| value.abs() <= most;
@@ -250,7 +250,7 @@ impl InterpretedRobot {
         kinds.filter_map(of).min_by_key(|error| error.sample)
     }
 
-    /// A pose as the programs take it: a quaternion at its end is scaled to length 1.
+    /// Pose for the programs: a quaternion at its end is normalised.
     ///
     /// # Errors
     /// A quaternion of length zero.
@@ -262,7 +262,7 @@ impl InterpretedRobot {
         Ok(unit)
     }
 
-    /// Poses whose quaternions have length 1, and the first one that has none.
+    /// Poses with normalised quaternions, and the first sample whose quaternion is zero.
     fn unit_quaternions(&self, poses: &[f64]) -> (Vec<f64>, Option<SampleError>) {
         let mut unit = poses.to_vec();
         let mut poses = unit.chunks_mut(self.names.sizes.pose).enumerate();
@@ -273,7 +273,7 @@ impl InterpretedRobot {
         (unit, bad)
     }
 
-    /// The name of an input as generated code has it.
+    /// Name of an input as in generated code.
     fn called(&self, input: Input) -> &'static str {
         match self.model.is_tree() {
             true => input.name_without_platform(),
@@ -286,7 +286,7 @@ impl InterpretedRobot {
         platform.is_some_and(|platform| platform.motion.has_quaternion())
     }
 
-    /// Runs a program at the first samples of a block.
+    /// Runs a program for the first samples of a block.
     fn run_samples(
         &self,
         served: &Served,
@@ -295,7 +295,7 @@ impl InterpretedRobot {
         output: &mut [f64],
     ) -> Result<(), SampleError> {
         let kinds = served.function.inputs();
-        // An input of a single row serves all samples.
+        // An input with a single row serves all samples.
         let rows = |at: usize| {
             let (values, row) = (inputs[at], self.names.sizes.of(kinds[at]));
             let shared = values.len() == row;
@@ -365,7 +365,7 @@ impl Model for InterpretedRobot {
         if samples == 0 {
             return Ok(());
         }
-        // As in compiled robots, the first sample that fails is told, whatever is wrong with it.
+        // As in compiled robots, report the first failing sample, whatever its error.
         let mut bad = self.first_out_of_range(function, inputs);
         let (mut scaled, unit);
         let mut inputs = inputs;

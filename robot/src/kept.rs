@@ -1,14 +1,13 @@
-//! Kept actuators of case 2 by their names.
+//! Kept actuators of the actuator projection by name.
 
 use crate::error::{Error, Problem};
 use overact_codegen::RobotModel;
 use overact_codegen::diagnostic::Code;
 
-/// Indices of kept actuators that are given by name: as many different ones as there are degrees of
-/// freedom.
+/// Indices of kept actuators given by name; as many as degrees of freedom, all different.
 ///
 /// # Errors
-/// Every name that no actuator has, names that are given twice, or a wrong number of them.
+/// All unknown and repeated names, or a wrong number of names.
 pub fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Error> {
     let known = model.mechanism.named_actuators();
     let mut kept = Vec::new();

@@ -1,8 +1,9 @@
-//! A robot's description as a running robot: what a Rust user and the command line stand on.
+//! Robots from descriptions: models, simulation and identification for Rust users and the command
+//! line.
 //!
-//! [`Robot`] is read from a file; it has a model, settings and a virtual experiment. [`Identifier`] finds
-//! its parameters from logs, measured or virtual. All that is wrong comes back at once, each at its
-//! place, in an [`Error`].
+//! [`Robot`] is read from a file; it has a model, settings and a virtual experiment. [`Identifier`]
+//! estimates its parameters from measured or simulated logs. An [`Error`] contains all problems at
+//! once, each with its location.
 //!
 //! ```
 //! use overact_robot::{Identifier, Robot};
@@ -20,29 +21,31 @@
 //!
 //! Modules, from the bottom up:
 //!
-//! - `counted`: numbers of things in sentences;
+//! - `counted`: counts with nouns;
 //! - [`drawing`]: a mechanism as SVG;
-//! - `error`: what is wrong;
-//! - `body`: where the bodies of standard parameters are;
-//! - `interpreted`: a model served as [`overact::Model`] without a compiler at hand;
-//! - `named`: functions called by their names;
-//! - `compiled_file`: a description read and compiled with what is asked for;
-//! - `robot`: the running robot; `settings`, `experiment`: its tables as inputs of identification and
+//! - `error`: problems with locations;
+//! - `body`: bodies of standard parameters;
+//! - `interpreted`: [`overact::Model`] by interpretation, without a compiler;
+//! - `named`: functions called by name;
+//! - `compiled_file`: a description read and compiled for a request;
+//! - `robot`: the robot; `settings`, `experiment`: its tables as inputs of identification and
 //!   simulation; `runs`: logs and virtual runs;
-//! - [`inspection`]: what a model consists of and what it costs;
-//! - `check`: everything that is wrong with a description, found without its model;
-//! - `import`: descriptions of other programs' files, checked;
-//! - `excitation`: runs that determine the parameters best inside limits;
-//! - `gravity`: the direction of gravity from runs, and the robot in another one;
-//! - `variants`: the robot with other lengths, by which wrong ones are told;
-//! - `instruments`: the motion of the simulated robot beside runs, by which errors of theirs are told;
-//! - `tracking`: identified parameters tried in the virtual robot's controller;
-//! - `motors`, `functions_base`: what was identified in front of gears, and as functions of the model take it;
-//! - `kept`: kept actuators of case 2 by name;
-//! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators;
-//! - `factors`: runs as factor files, and the parameters from them; `fleet`: runs of many virtual robots.
+//! - [`inspection`]: composition and cost of a model;
+//! - `check`: all errors of a description, found without its model;
+//! - `import`: validated descriptions of other programs' files;
+//! - `excitation`: runs that determine the parameters best within limits;
+//! - `gravity`: gravity direction from runs, and robots with another gravity;
+//! - `variants`: robots with changed lengths, to detect wrong lengths;
+//! - `instruments`: simulated motions as instruments, to detect errors in the measured motion;
+//! - `tracking`: identified parameters in the virtual robot's controller;
+//! - `motors`, `functions_base`: identified parameters on the motor side, and as inputs of
+//!   functions;
+//! - `kept`: kept actuators of the actuator projection by name;
+//! - `partitions`, `identifier`: identification, also for every partition;
+//! - `factors`: runs as factor files, and identification from them; `fleet`: runs of many virtual
+//!   robots.
 
-/// The programs of the page that shows languages side by side.
+/// Compiles the programs of the page on interfaces.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/interfaces.md")]
 mod interfaces {}

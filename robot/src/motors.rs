@@ -1,10 +1,11 @@
-//! Parameters of drives at the side of the motor, by the gear ratios of the description.
+//! Drive parameters on the motor side, from the gear ratios of the description.
 
 use overact_codegen::description::{Description, Joint};
 use overact_identification::{Estimate, Estimator, MotorParameter, ParameterEstimate, Stage};
 
-/// What base estimates are in front of the gears of the motors that are described. A parameter into which others
-/// are regrouped is none of the motor alone and left out.
+/// Base estimates of the described motors, on the motor side.
+///
+/// Parameters into which others are regrouped do not belong to the motor alone and are omitted.
 pub(crate) fn at_motors(description: &Description, estimates: &[Estimate]) -> Vec<MotorParameter> {
     let base =
         |one: &&Estimate| one.stage == Stage::Base && one.estimator == Estimator::LeastSquares;
@@ -17,7 +18,8 @@ pub(crate) fn at_motors(description: &Description, estimates: &[Estimate]) -> Ve
         .filter_map(|(joints, motor)| Some((joints, motor, motor.motor?.value())))
         .flat_map(|(joints, motor, gear)| {
             let mut all = of(motor, motor, gear, &estimate.parameters);
-            // A motor of one joint shares the joint's parameters, behind the gear of that joint.
+            // A motor of one joint shares the parameters of that joint, which are on the joint side
+            // of its gear.
             if let [(joint, factor)] = motor.variable[..] {
                 let turned = gear * factor.value();
                 let joint = joints.get(joint);
@@ -29,7 +31,7 @@ pub(crate) fn at_motors(description: &Description, estimates: &[Estimate]) -> Ve
         .collect()
 }
 
-/// The parameters of a joint or motor as they are in front of a gear of this ratio.
+/// Parameters of a joint or motor, converted to the motor side of a gear.
 fn of(
     motor: &Joint,
     owner: &Joint,

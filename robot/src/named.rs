@@ -1,10 +1,10 @@
-//! Functions called by their names, for those who ask from elsewhere: other languages, a browser.
+//! Functions called by name, for other languages and the browser.
 
 use crate::error::Problem;
 use overact::{Function, Input, Model};
 use overact_codegen::diagnostic::{Code, did_you_mean};
 
-/// The name of a function in the table of functions, with `_base` where base parameters are meant.
+/// Name of a function in the table of functions; `_base` marks functions of base parameters.
 #[must_use]
 pub fn function_of_model(function: Function) -> String {
     match function.is_of_base_parameters() {
@@ -13,8 +13,10 @@ pub fn function_of_model(function: Function) -> String {
     }
 }
 
-/// A function at samples, by its name ([`function_of_model`]). `inputs` are all inputs in their order, each sample
-/// after sample; parameters stand once. The output is sample after sample, each row by row.
+/// Evaluates a function at samples, by its name ([`function_of_model`]).
+///
+/// `inputs` contains all inputs in order, each sample by sample; parameters occur once. The output
+/// is sample by sample, each row-major.
 ///
 /// ```
 /// use overact_robot::{Robot, values};
@@ -28,7 +30,7 @@ pub fn function_of_model(function: Function) -> String {
 /// ```
 ///
 /// # Errors
-/// A function that there is not, another number of inputs, or a sample without a value.
+/// An unknown function, a wrong number of inputs, or a sample without a value.
 pub fn values(
     model: &dyn Model,
     function: &str,

@@ -1,4 +1,4 @@
-//! Standard parameters from a file, as `overact identify --parameters` writes it.
+//! Reads standard parameters from a file written by `overact identify --parameters`.
 
 use crate::{
     compiled_file::{CompiledFile, read, read_or},
@@ -15,24 +15,26 @@ use overact_codegen::{
 };
 use std::{collections::BTreeMap, path::Path};
 
-/// The table that a file has.
+/// Table of the file.
 const TABLE: &str = "[parameters]";
 
-/// Standard parameters that a file gives.
+/// Standard parameters from a file.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct GivenParameters {
     /// Values by name (SI units).
     pub values: BTreeMap<String, f64>,
-    /// Values that no body or joint has, a sentence with file and line for each.
+    /// Sentences on values that no body or joint can have, with file and line.
     pub doubts: Vec<String>,
 }
 
-/// Reads the standard parameters of a robot from the table `[parameters]` of a TOML file (SI units, or
-/// quantities with units): all of the robot's, and all or none of the payload's.
+/// Reads a robot's standard parameters from the `[parameters]` table of a TOML file.
+///
+/// Values are in SI units or have units. The file must contain all parameters of the robot, and all
+/// or none of the payload's.
 ///
 /// # Errors
-/// A file that can't be read, names that the robot does not have, parameters that are missing.
+/// A file that cannot be read, unknown names, or missing parameters.
 pub fn read_parameters(
     path: &Path,
     description: &Description,
@@ -46,11 +48,12 @@ pub fn read_parameters(
 }
 
 impl CompiledFile {
-    /// Reads a description and a file of its standard parameters (see
-    /// [`read_parameters`]), and compiles what is asked for with these as constants.
+    /// Reads a description and its standard parameters, and compiles with these as constants.
+    ///
+    /// See [`read_parameters`].
     ///
     /// # Errors
-    /// A file that can't be read, or everything that is wrong with one of them.
+    /// A file that cannot be read, or all errors of either file.
     pub fn with_parameters(
         path: &Path,
         parameters: &Path,
@@ -67,7 +70,8 @@ impl CompiledFile {
             }
         };
         let (file, given) = given(parameters, &description)?;
-        // Which parameters the robot has is known when its columns are, long before its functions.
+        // Compile the columns only: they determine the parameters and are much cheaper than the
+        // functions.
         let columns = Request {
             wanted: &|_, _, _| false,
             ..*request
@@ -93,7 +97,7 @@ impl CompiledFile {
     }
 }
 
-/// What a file says of a robot's standard parameters, by name (SI units).
+/// Standard parameters in a file, by name (SI units).
 fn given(path: &Path, description: &Description) -> Result<(Source, GivenParameters), Error> {
     let origin = "`overact identify my.toml --parameters parameters.toml` writes one";
     let source = read_or(path, origin)?;
@@ -111,7 +115,7 @@ fn given(path: &Path, description: &Description) -> Result<(Source, GivenParamet
     }
 }
 
-/// Refuses values of a file without all of the robot's parameters, or with some of the payload's.
+/// Rejects files without all of the robot's parameters, or with only some of the payload's.
 fn complete(
     source: Source,
     values: &BTreeMap<String, f64>,
@@ -119,7 +123,7 @@ fn complete(
     payload: Vec<String>,
 ) -> Result<(), Error> {
     let lacking = |mut names: Vec<String>| {
-        // Of several payloads each has its own.
+        // Several payloads have parameters of their own.
         let of_loads = |name: &String| {
             let mut given = values.keys();
             name.ends_with("_payload") && given.any(|own| own.starts_with(&format!("{name}_")))

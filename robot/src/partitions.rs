@@ -1,9 +1,9 @@
-//! All choices of kept actuators of case 2.
+//! All partitions for the actuator projection.
 
-/// More choices than this are not looked at.
+/// Largest number of partitions.
 const LARGEST_NUMBER: usize = 1000;
 
-/// The choices of `r` among `n` in lexicographic order, the first thousand of them.
+/// Choices of `r` among `n` in lexicographic order, at most a thousand.
 ///
 /// ```
 /// assert_eq!(overact_robot::partitions(3, 2), [[0, 1], [0, 2], [1, 2]]);

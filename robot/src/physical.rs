@@ -1,9 +1,9 @@
-//! Values of parameters that no body or joint has.
+//! Detects parameters that are not physically consistent.
 //!
-//! Masses, moments of inertia and frictions are not negative. The ten inertial parameters of a body are those
-//! of some positive density of mass exactly if its pseudo-inertia ∫ [p; 1] [p; 1]ᵀ dm is positive definite
-//! (Wensing, Kim, Slotine 2018); of a body that moves in a plane, whose other parameters have no column, that
-//! is zz m ≥ mx² + my². Estimates may be such, so it is no error.
+//! Masses, moments of inertia and friction are not negative. The ten inertial parameters of a body
+//! belong to a positive density exactly if the pseudo-inertia ∫ [p; 1] [p; 1]ᵀ dm is positive
+//! definite (Wensing, Kim, Slotine 2018). For a planar body, which has fewer columns, the condition
+//! is zz m ≥ mx² + my². Estimates may violate this, so it is not an error.
 
 use nalgebra::Matrix4;
 use overact_codegen::{
@@ -11,10 +11,10 @@ use overact_codegen::{
     diagnostic::Source,
 };
 
-/// How far below zero the least eigenvalue may lie, relative to the largest: numbers are rounded in files.
+/// Tolerance for negative eigenvalues relative to the largest, since files contain rounded numbers.
 const ROUNDING: f64 = 1e-6;
 
-/// A sentence with file and line for each value, or body, that there is not.
+/// Sentence with file and line for each inconsistent value or body.
 pub(crate) fn doubts(source: &Source, all: &[TrueParameter]) -> Vec<String> {
     let mut doubts: Vec<String> = all.iter().filter_map(|one| negative(source, one)).collect();
     let mut bodies: Vec<Body> = Vec::new();
@@ -46,7 +46,7 @@ fn negative(source: &Source, one: &TrueParameter) -> Option<String> {
     })
 }
 
-/// What is wrong with the inertia of a body, if its own parameters are not negative.
+/// Problem of a body's inertia, if its parameters are not negative.
 fn impossible(source: &Source, own: &[&TrueParameter]) -> Option<String> {
     if own
         .iter()
@@ -91,7 +91,7 @@ fn impossible(source: &Source, own: &[&TrueParameter]) -> Option<String> {
     ))
 }
 
-/// ∫ [p; 1] [p; 1]ᵀ dm.
+/// Pseudo-inertia ∫ [p; 1] [p; 1]ᵀ dm.
 fn pseudo_inertia(value: &dyn Fn(P) -> f64) -> Matrix4<f64> {
     let half = 0.5 * (value(P::Xx) + value(P::Yy) + value(P::Zz));
     let (xy, xz, yz) = (-value(P::Xy), -value(P::Xz), -value(P::Yz));

@@ -1,5 +1,4 @@
-//! What a description lets one believe of its bodies: values of its table `[prior]`, and bodies that are
-//! filled uniformly between their joints.
+//! Prior of the inertial parameters: the `[prior]` table, and uniform rods between joints.
 
 use std::collections::BTreeMap;
 
@@ -9,16 +8,16 @@ use overact::{Body, Info, Parameter, StandardParameter};
 use overact_codegen::description::{Description, Joint, JointKind};
 use overact_identification::{Prior, is_carried};
 
-/// A body is at least this part as long as the robot's bodies are on average.
+/// Smallest length of a rod, relative to the mean length.
 const SHORTEST: f64 = 0.3;
 
-/// Mean square half width of a body by the square of the average length.
+/// Mean square half width of a rod, relative to the square of the mean length.
 const SQUARE_WIDTH: f64 = 0.01;
 
-/// A standard parameter of a robot: its name, what it is, and of which body.
+/// A standard parameter: name, symbol and body.
 pub(crate) type Named<'a> = (&'a str, StandardParameter, Body);
 
-/// The standard parameters of a robot and its payload, and of each payload that has a name.
+/// Standard parameters of a robot and of its payloads.
 pub(crate) fn with_loads(
     description: &Description,
     info: &Info<'_>,
@@ -32,17 +31,17 @@ pub(crate) fn with_loads(
     own.chain(loads).collect()
 }
 
-/// Whether a parameter is one of the payload.
+/// Whether a parameter belongs to the payload.
 pub(crate) fn is_of_payload(parameter: &Parameter) -> bool {
     parameter.body == Body::Payload || is_carried(parameter)
 }
 
-/// The name of a parameter of the payload, as one of the payload with this name.
+/// Name of a payload's parameter for a named payload.
 pub(crate) fn of_load(parameter: &str, load: &str) -> String {
     format!("{parameter}_{load}")
 }
 
-/// The prior of a description of a robot with these standard parameters and this home configuration.
+/// Prior for a robot with these standard parameters and this home configuration.
 pub(crate) fn prior<N: AsRef<str>>(
     description: &Description,
     parameters: &[(N, StandardParameter, Body)],
@@ -73,7 +72,7 @@ pub(crate) fn prior<N: AsRef<str>>(
     prior
 }
 
-/// For each body of a leg the way from its joint to the next ones, on average, in its own frame, m.
+/// Mean vector from each body's joint to the next ones, in the body's frame, m.
 fn links(description: &Description, home_joints: &[f64]) -> BTreeMap<Body, Vector3<f64>> {
     let mut positions = home_joints.iter();
     let mut links = BTreeMap::new();
@@ -97,7 +96,7 @@ fn links(description: &Description, home_joints: &[f64]) -> BTreeMap<Body, Vecto
     links
 }
 
-/// Where a joint's frame stands in that of its antecedent, for a position of the joint.
+/// Origin of a joint's frame in that of its antecedent, at a joint position.
 fn origin(joint: &Joint, position: f64) -> Vector3<f64> {
     let slide = match joint.kind.value {
         JointKind::Prismatic => position,
@@ -109,8 +108,9 @@ fn origin(joint: &Joint, position: f64) -> Vector3<f64> {
     Rotation3::from_axis_angle(&Vector3::z_axis(), joint.gamma.value.value()) * shifted
 }
 
-/// The ten parameters of a rod from the origin to `end`, of as much mass as it is long, or a shorter one's if
-/// it has no length; the robot's bodies have the length `mean` on average.
+/// Ten parameters of a rod from the origin to `end`, with mass equal to its length.
+///
+/// Shorter rods get a smallest length relative to `mean`, the mean length of the robot's bodies.
 fn rod(end: Vector3<f64>, mean: f64) -> [f64; 10] {
     let mass = end.norm().max(SHORTEST * mean);
     let width = Matrix3::identity() * (SQUARE_WIDTH * mean * mean);

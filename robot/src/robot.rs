@@ -1,10 +1,10 @@
-//! A description as a running robot.
+//! A robot with description and model.
 
 use crate::{compiled_file::CompiledFile, error::Error, interpreted::InterpretedRobot};
 use overact_codegen::{Effort, Request, description::Description, diagnostic::Source};
 use std::path::Path;
 
-/// A robot that runs: its description, and its model served as [`overact::Model`].
+/// A robot: its description, and its model as [`overact::Model`].
 #[derive(Debug)]
 pub struct Robot {
     source: Source,
@@ -13,18 +13,18 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// The robot of a description in a file.
+    /// Reads a robot's description from a file.
     ///
-    /// Only the functions that an [`InterpretedRobot`] serves are compiled, and no search for fewer
-    /// operations is made: what it would spare takes less time than the search.
+    /// Only the functions of an [`InterpretedRobot`] are compiled. Operation counts are not
+    /// optimised, because this would take longer than it saves.
     ///
     /// # Errors
-    /// A file that can't be read, or everything that is wrong with the description.
+    /// A file that cannot be read, or all errors of the description.
     pub fn from_toml(path: impl AsRef<Path>) -> Result<Self, Error> {
         CompiledFile::read(path.as_ref(), &served()).map(Self::new)
     }
 
-    /// The robot of a description in memory; errors call it `name`.
+    /// Robot of a description in memory; `name` is its name in errors.
     ///
     /// ```
     /// use overact_robot::Robot;
@@ -34,12 +34,12 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// Everything that is wrong with the description.
+    /// All errors of the description.
     pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
         CompiledFile::new(Source::new(name, text), &served()).map(Self::new)
     }
 
-    /// The robot of a description that is compiled.
+    /// Robot of a compiled description.
     #[must_use]
     pub fn new(compiled: CompiledFile) -> Self {
         Self {
@@ -49,40 +49,42 @@ impl Robot {
         }
     }
 
-    /// What is compiled of a robot that runs: what an [`InterpretedRobot`] serves, without a search. With a
-    /// watcher in `progress` and [`CompiledFile::read`] a robot of many joints is waited for less blindly than with
+    /// Compilation request for a robot: the functions of an [`InterpretedRobot`], without
+    /// optimisation.
+    ///
+    /// With [`CompiledFile::read`], the request can have a `progress` callback, unlike
     /// [`Robot::from_toml`].
     #[must_use]
     pub fn request() -> Request<'static> {
         served()
     }
 
-    /// The path or name by which errors call the description.
+    /// Path or name of the description in errors.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.source.name
     }
 
-    /// The text of the description with its name.
+    /// Text of the description with its name.
     #[must_use]
     pub const fn source(&self) -> &Source {
         &self.source
     }
 
-    /// What the description says.
+    /// Parsed description.
     #[must_use]
     pub const fn description(&self) -> &Description {
         &self.description
     }
 
-    /// The model.
+    /// Model of the robot.
     #[must_use]
     pub const fn model(&self) -> &InterpretedRobot {
         &self.model
     }
 }
 
-/// What is compiled of a robot that runs.
+/// Compilation request for a robot.
 pub(crate) fn served() -> Request<'static> {
     Request {
         wanted: &InterpretedRobot::serves,

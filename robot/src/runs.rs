@@ -1,4 +1,4 @@
-//! The runs of an identification: measured logs, or the virtual experiment.
+//! Runs of an identification: measured logs, or the virtual experiment.
 
 use crate::{error::Error, experiment::VirtualExperiment, robot::Robot};
 use overact::Model;
@@ -11,19 +11,19 @@ use overact_identification::{
 use overact_simulation::Record;
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
-/// Runs to identify from and runs to validate with.
+/// Training and validation runs.
 #[derive(Debug, Clone, Default)]
 pub struct Runs {
-    /// Runs to identify from.
+    /// Training runs.
     pub identified: Vec<Log>,
-    /// Runs that are held out, to validate with.
+    /// Validation runs.
     pub validation: Vec<Log>,
     /// True values of the parameters of a virtual robot.
     pub true_values: Option<BTreeMap<String, f64>>,
 }
 
 impl Runs {
-    /// f_m of the first run, Hz; 0 without a run.
+    /// Sampling frequency f_m of the first training run, Hz; 0 without a run.
     #[must_use]
     pub fn sampling_frequency(&self) -> f64 {
         self.identified.first().map_or(0.0, Log::sampling_frequency)
@@ -31,11 +31,12 @@ impl Runs {
 }
 
 impl Robot {
-    /// Reads logs, each with a word on whether the platform carried the payload; their columns are those
-    /// that the description names. `progress` hears the part that is done, from 0 to 1.
+    /// Reads logs, each with a flag for the payload, with the columns of the description.
+    ///
+    /// `progress` is called with the completed fraction, from 0 to 1.
     ///
     /// # Errors
-    /// What is wrong with all of them.
+    /// All errors of all logs.
     pub fn read_logs(
         &self,
         files: &[(&Path, bool)],
@@ -62,11 +63,10 @@ impl Robot {
 }
 
 impl Robot {
-    /// A log of arrays in memory, whose columns are those that the description names; `name` is what messages
-    /// call it.
+    /// Log of arrays in memory with the columns of the description; `name` is used in messages.
     ///
     /// # Errors
-    /// Missing arrays, numbers that are not finite, a time that is not uniform.
+    /// Missing arrays, numbers that are not finite, or nonuniform time.
     pub fn log_of_arrays(
         &self,
         name: &str,
@@ -85,7 +85,7 @@ impl Robot {
         }
     }
 
-    /// A log of the bytes of a file in memory, whatever its format; `name` is what messages call it.
+    /// Log of a file's bytes in any supported format; `name` is used in messages.
     ///
     /// # Errors
     /// As [`read_logs`](Self::read_logs).
@@ -102,13 +102,13 @@ impl Robot {
         }
     }
 
-    /// A log whose columns can be what the description calls them.
+    /// Checks that a log's columns can have the meaning that the description gives them.
     fn meant(&self, log: Log) -> Result<Log, overact_identification::Error> {
         log.check_meaning(self.model().info().actuators)?;
         Ok(log)
     }
 
-    /// An error that says where the description names the columns that are wrong.
+    /// Adds the description's location of wrong columns to an error.
     fn located(&self, error: overact_identification::Error) -> overact_identification::Error {
         let mut error = error;
         for problem in &mut error.problems {
@@ -128,7 +128,7 @@ impl Robot {
         error
     }
 
-    /// Where the description names a column, or one of its lists of columns, in words.
+    /// Location in the description of a column or list of columns, in words.
     fn place_of_column(&self, column: &str) -> String {
         let Some(data) = &self.description().data else {
             return String::from(
@@ -152,14 +152,14 @@ impl Robot {
         format!("the table [data], {}:{line}", self.file())
     }
 
-    /// Where the references of runs stand, if the robot is to be simulated along them.
+    /// Columns of the runs' references, if the robot is to be simulated along them.
     fn references(&self, own: &Mapping) -> Option<Mapping> {
         let description = self.description();
         let controller = description.controller.as_ref()?;
         let wanted = description.identification.instruments == Instruments::Simulated;
         wanted.then(|| Mapping {
             positions: controller.reference.clone(),
-            // A log has two signals; the reference's second one is not looked at.
+            // A log has two signals per actuator; the second one of the reference is not used.
             torques: controller.reference.clone(),
             velocities: Vec::new(),
             torque_gain: vec![Gain::Value(1.0); controller.reference.len()],
@@ -168,7 +168,7 @@ impl Robot {
     }
 }
 
-/// Runs with the reference that they followed beside each.
+/// Adds the recorded references to runs.
 fn beside_references(
     logs: Vec<Log>,
     files: &[(&Path, bool)],
@@ -184,10 +184,10 @@ fn beside_references(
 }
 
 impl VirtualExperiment<'_> {
-    /// Makes all runs; those named in `held_out` are to validate with.
+    /// Simulates all runs; those named in `held_out` are validation runs.
     ///
     /// # Errors
-    /// Names that no run has, no run that is left to identify from, or as [`records`](Self::records).
+    /// Unknown names, no remaining training run, or as [`records`](Self::records).
     pub fn runs(&self, held_out: &[String], progress: &dyn Fn(f64, &str)) -> Result<Runs, Error> {
         self.check_runs(held_out)?;
         self.check_some_left(held_out)?;
@@ -205,7 +205,7 @@ impl VirtualExperiment<'_> {
         })
     }
 
-    /// A record as a log, with the name of the payload that its run carries.
+    /// Converts a record to a log with the name of its payload.
     ///
     /// # Errors
     /// A record with numbers that are not finite.
@@ -220,7 +220,7 @@ impl VirtualExperiment<'_> {
     }
 }
 
-/// A record as a log: positions and torques alone, as a laboratory would have them.
+/// Converts a record to a log with positions and torques only, as in a laboratory.
 fn log(record: Record) -> Result<Log, overact_identification::Error> {
     let n = record.actuators.len();
     let (positions, torques) = (record.positions, record.torques);

@@ -1,4 +1,4 @@
-//! What a description says of sizes and limits, by which the units of a log are judged.
+//! Sizes and limits of the description, to check the units of a log.
 
 use crate::robot::Robot;
 use overact::{Info, Model};
@@ -34,7 +34,7 @@ impl Robot {
     }
 }
 
-/// The largest sum of lengths along a leg, distance between bases of legs or between their ends, m.
+/// Largest of: length of a leg, distance between leg bases, distance between leg ends, m.
 fn reach(legs: &[Leg], home_joints: &[f64]) -> f64 {
     let mut home = home_joints.iter().copied();
     let sums = legs.iter().map(|leg| {
@@ -54,7 +54,7 @@ fn reach(legs: &[Leg], home_joints: &[f64]) -> f64 {
         .max(spread(&ends.collect::<Vec<_>>()))
 }
 
-/// The distance of a joint's frame from the one before, m.
+/// Distance of a joint's frame from the previous one, m.
 fn length(joint: &Joint, position: f64) -> f64 {
     let slide = if joint.kind == JointKind::Prismatic {
         position
@@ -76,7 +76,8 @@ fn spread(points: &[[f64; 3]]) -> f64 {
     pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max)
 }
 
-/// How far and how fast the drives move in the virtual experiment; empty where its coordinates are not the drives.
+/// Travel and speed of the drives in the virtual experiment; empty if its coordinates are not the
+/// drives.
 #[derive(Default)]
 struct Sweep {
     travel: Vec<f64>,

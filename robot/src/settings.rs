@@ -1,4 +1,4 @@
-//! A description's tables `[data]` and `[identification]` as settings of the identification.
+//! Converts the `[data]` and `[identification]` tables to settings of the identification.
 
 use crate::{
     prior::{prior, with_loads},
@@ -11,14 +11,13 @@ use overact_codegen::description::{
 use overact_identification::{Gain, Instruments, Mapping, Settings, Time};
 
 impl Robot {
-    /// The settings of an identification from runs sampled at `frequency` (Hz).
+    /// Settings of an identification from runs sampled at `frequency` (Hz).
     #[must_use]
     pub fn settings(&self, frequency: f64) -> Settings {
         settings(self.description(), &self.model().info(), frequency)
     }
 
-    /// Which columns of a log are what: those that the description names, or `time`, `q_<actuator>` and
-    /// `tau_<actuator>`.
+    /// Columns of a log: those of the description, or `time`, `q_<actuator>` and `tau_<actuator>`.
     #[must_use]
     pub fn mapping(&self) -> Mapping {
         let Some(data) = &self.description().data else {
@@ -46,7 +45,8 @@ impl Robot {
     }
 }
 
-/// Whether each position of a log rotates: that of a joint, or that of a motor which turns rotating joints alone.
+/// Whether each position of a log is an angle: of a joint, or of a motor that drives revolute
+/// joints only.
 fn rotating(transmission: &[Vec<f64>], joints: &[bool]) -> Vec<bool> {
     if transmission.is_empty() {
         return joints.to_vec();
@@ -58,7 +58,7 @@ fn rotating(transmission: &[Vec<f64>], joints: &[bool]) -> Vec<bool> {
     transmission.iter().map(turns).collect()
 }
 
-/// The settings of a description for runs sampled at `frequency` (Hz).
+/// Settings of a description for runs sampled at `frequency` (Hz).
 pub(crate) fn settings(description: &Description, info: &Info<'_>, frequency: f64) -> Settings {
     let table = &description.identification;
     let usual = Settings::for_sampling_frequency(frequency, info);

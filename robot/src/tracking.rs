@@ -1,16 +1,18 @@
-//! Table 4: how well the virtual robot follows held-out trajectories, with a PD controller alone and
-//! with the torques that the identified parameters ask for.
+//! Tracking of validation runs by the virtual robot (B Table 4).
+//!
+//! It compares a PD controller alone with feedforward torques of the identified parameters.
 
 use crate::{error::Error, robot::Robot};
 use overact::Model;
 use overact_identification::{Estimate, Identification, ModelKind, Stage, TrackingError};
 use overact_simulation::Experiment;
 
-/// Lets every controller follow the runs that are held out. Empty where there are none, or where the
-/// description has no virtual robot.
+/// Simulates every controller on the validation runs.
+///
+/// Empty without validation runs or without a virtual robot.
 ///
 /// # Errors
-/// A virtual experiment that can't be made.
+/// An invalid virtual experiment.
 pub fn tracking(
     robot: &Robot,
     result: &Identification,
@@ -25,7 +27,7 @@ pub fn tracking(
             names.push(one.run.clone());
         }
     }
-    // Measured runs have names of files: then those that the description holds out.
+    // Measured runs have file names; then use the validation runs of the description.
     let mut experiment = robot.experiment()?;
     let mut plain = experiment.plan().clone();
     if !plain.runs.iter().any(|run| names.contains(&run.name)) {
@@ -62,12 +64,12 @@ pub fn tracking(
             });
         }
     }
-    // Run by run, as the table has it.
+    // Sort by run, as in the table.
     all.sort_by_key(|one| names.iter().position(|name| *name == one.run));
     Ok(all)
 }
 
-/// The recommended parameters of each model; all base parameters where nothing is recommended.
+/// Recommended parameters of each model; all base parameters if there are none.
 fn answers(result: &Identification) -> Vec<&Estimate> {
     let mut answers: Vec<&Estimate> = Vec::new();
     for estimate in result.by_least_squares() {
@@ -81,8 +83,9 @@ fn answers(result: &Identification) -> Vec<&Estimate> {
     answers
 }
 
-/// Standard parameters with the same model: each base parameter stands on the one that is kept, the
-/// regrouped ones are zero.
+/// Standard parameters equivalent to an estimate.
+///
+/// Each base parameter's value is assigned to its kept parameter; regrouped ones are zero.
 fn standard(robot: &Robot, result: &Identification, estimate: &Estimate) -> Vec<f64> {
     let info = robot.model().info();
     let all = info.parameters.iter().chain(info.payload_parameters);

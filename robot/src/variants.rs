@@ -1,4 +1,4 @@
-//! A robot without loops with other lengths: what its torques say of them is all that is known of them.
+//! Serial robots with changed lengths; only their torques contain information on lengths.
 
 use crate::{calibration::of_tree, interpreted::InterpretedRobot, robot::Robot};
 use overact::{Columns, Function, Model};
@@ -6,8 +6,10 @@ use overact_codegen::{Effort, Request, derivation::MotionInput, mechanism::Mecha
 use overact_identification::Variant;
 use rayon::prelude::*;
 
-/// Part of a length by which it is changed. Torques are quadratic in a length, so that a difference over
-/// this step is off by as small a part.
+/// Relative change of a length.
+///
+/// Torques are quadratic in a length, so the relative error of the difference quotient is of the
+/// same order.
 const STEP: f64 = 1e-5;
 
 /// A robot with each of its lengths changed in turn.
@@ -22,7 +24,7 @@ struct Own {
 }
 
 impl Variants {
-    /// As an identification takes them ([`overact_identification::Dataset`]).
+    /// Variants as an identification takes them ([`overact_identification::Dataset`]).
     #[must_use]
     pub fn lent(&self) -> Vec<Variant<'_>> {
         let lent = self.0.iter().map(|own| Variant {
@@ -35,8 +37,9 @@ impl Variants {
 }
 
 impl Robot {
-    /// This robot with each of its lengths changed in turn; none of a robot with loops, whose closure tells
-    /// more of them.
+    /// This robot with each of its lengths changed in turn.
+    ///
+    /// Empty for robots with loops, whose closures determine lengths better.
     #[must_use]
     pub fn variants(&self) -> Variants {
         let described = self.model();
@@ -47,7 +50,7 @@ impl Robot {
             let mut mechanism = mechanism.clone();
             place.length.add(mechanism.legs.get_mut(place.leg)?, step);
             let model = regressor(mechanism)?;
-            // A length that makes columns appear or vanish, as two that cancel do, is left out.
+            // Omit a length whose change adds or removes columns, as for lengths that cancel.
             let same = model.info().parameters == described.info().parameters;
             same.then_some(Own {
                 length,
@@ -59,14 +62,14 @@ impl Robot {
     }
 }
 
-/// What an identification asks of a mechanism for its columns.
+/// Compiles only the functions that an identification needs for its columns.
 pub(crate) fn regressor(mechanism: Mechanism) -> Option<InterpretedRobot> {
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
         let asked = match function {
             Function::IdmRedPlatform(columns) => columns == Columns::Standard,
             Function::IdmRedPayload => true,
             Function::JointVelocities | Function::JointAccelerations => true,
-            // Where no rule finds the joints, these do.
+            // Joints without a closed form need these.
             Function::ClosureError | Function::LegsJacobian => true,
             _ => false,
         };

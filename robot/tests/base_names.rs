@@ -1,18 +1,18 @@
-//! Names of base parameters: the estimate and the functions of a model choose columns of their own, so a name that
-//! both have stands for one sum.
+//! Base parameter names: estimate and functions choose columns separately, but a common name means
+//! the same sum.
 
 use overact_identification::{Identification, Log, Stage};
 use overact_robot::{Identifier, Robot};
 use std::collections::BTreeMap;
 
-/// Robots of which the functions keep other columns than the estimate.
+/// Robots whose functions keep other columns than the estimate.
 const ROBOTS: [(&str, &str); 3] = [
     ("rx90", include_str!("../../robots/rx90.toml")),
     ("stanford", include_str!("../../robots/stanford.toml")),
     ("tx40", include_str!("../../robots/tx40.toml")),
 ];
 
-/// The identification from the beginnings of the virtual runs.
+/// Identification from the beginnings of the virtual runs.
 fn identified(name: &str, text: &str) -> Identification {
     let robot = Robot::from_text(name, text).expect("a description");
     let mut experiment = robot.experiment().expect("an experiment");

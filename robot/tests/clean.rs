@@ -1,23 +1,26 @@
-//! The virtual experiments of the library, with which nothing is wrong: identified as the command does, each
-//! has to be fit for use without a remark.
+//! Faultless virtual experiments of the library: the verdict must be to use the result, without
+//! objections.
 
 use overact_identification::{Check, Grade};
 use overact_robot::{Identifier, Robot};
 use overact_tier::is_full;
 use std::{fs, path::Path};
 
-/// Robots of the default tier, which are identified in well below a second: with and without redundancy, with
-/// gravity and without.
+/// Robots of the default tier, identified in far less than a second: with and without redundancy
+/// and gravity.
 const CHEAP: [&str; 3] = ["emps", "five_bar", "two_motor_axis"];
 
-/// Robots of the full tier that are accused still. The settings of the first are those of a slow measured run, with
-/// torques under the low-pass of the positions and no decimation, and do not suit its virtual one. The other's encoder
-/// does bias `zz_2R`, which instruments find: by about one deviation, the limit, so that the last digits of a
-/// simulation decide whether it is said. The errors of the Scotch yoke's encoder repeat with its motion, so that the test
-/// of Durbin, Wu and Hausman rejects (F = 23 on 3 and 24 degrees of freedom), though no parameter moves by 1 σ.
+/// Robots of the full tier for which checks still fail.
+///
+/// - `dvrk_mtm`: its settings are those of a slow measured run, with torques under the low-pass
+///   filter of the positions and no decimation. They do not suit its virtual run.
+/// - `kuka_lwr`: its encoder biases `zz_2R`, as instrumental variables show, by about one standard
+///   deviation, which is the limit. The last digits of a simulation therefore decide.
+/// - `scotch_yoke`: its encoder's errors repeat with the motion. The Durbin-Wu-Hausman test rejects
+///   (F = 23 on 3 and 24 degrees of freedom), though no parameter moves by 1 σ.
 const ACCUSED: [&str; 3] = ["dvrk_mtm", "kuka_lwr", "scotch_yoke"];
 
-/// What the verdict says against a robot's faultless experiment.
+/// Objections of the verdict to a robot's faultless experiment.
 fn accusations(path: &Path) -> Vec<String> {
     let robot = Robot::from_toml(path).expect("a robot");
     let experiment = robot.experiment().expect("an experiment");

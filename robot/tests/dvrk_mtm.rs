@@ -1,26 +1,29 @@
-//! The measured master arm of the dVRK: a parallelogram, a tendon, a spring in the model and a cable known
-//! beforehand, with the error of the published identification, and its processing but that the columns pass the
-//! low-pass of the torques, too.
+//! Measured master arm of the dVRK, with a parallelogram, a tendon, a spring and a known cable
+//! torque.
+//!
+//! The errors are compared with the published identification. Processing is the same, except that
+//! the columns pass the torques' low-pass filter, too.
 
 use overact_identification::Stage;
 use overact_robot::{Identifier, Robot};
 use overact_tier::is_full;
 use std::path::{Path, PathBuf};
 
-/// Published errors of the test run by weighted least squares, percent, joint by joint.
+/// Published errors of the test run by weighted least squares, percent, by joint.
 const PUBLISHED: [f64; 7] = [8.2, 16.3, 19.1, 20.9, 26.3, 23.5, 34.0];
 /// Their published mean.
 const MEAN: f64 = 21.2;
 /// The published mean of physically consistent parameters.
 const CONSISTENT_MEAN: f64 = 21.0;
-/// The better of both for each joint.
+/// The smaller of both for each joint.
 const BETTER: [f64; 7] = [7.7, 14.9, 17.0, 20.9, 26.3, 23.4, 34.0];
-/// How far the better of both of ours may be above: joint 5, by a tenth of a percent.
+/// Tolerance factor on the smaller one: joint 5 is a tenth of a percent above.
 const ABOVE: f64 = 1.01;
-/// Base parameters, with the spring and the rotor of motor 4.
+/// Number of base parameters, with the spring and the rotor of motor 4.
 const BASE: usize = 73;
 
-/// Training and test run in the folder of reference data: `OVERACT_SHARED`, or `shared` beside the repository.
+/// Training and test run in the folder of reference data: `OVERACT_SHARED`, or `shared` next to the
+/// repository.
 fn files() -> Option<[PathBuf; 2]> {
     let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
@@ -36,7 +39,7 @@ fn files() -> Option<[PathBuf; 2]> {
 
 #[test]
 fn the_test_run_is_predicted_as_published() {
-    // All samples of two runs in 73 unknowns take seconds.
+    // All samples of two runs with 73 unknowns take seconds.
     if !is_full() {
         eprintln!("skipped: a test of the full tier");
         return;
@@ -57,7 +60,7 @@ fn the_test_run_is_predicted_as_published() {
     let mut parameters = base.parameters.iter();
     let stiffness = parameters.find(|one| one.name == "k_5").expect("a spring");
     assert_eq!(stiffness.unit, "N/m");
-    // The bounds that were put on it there.
+    // The published bounds.
     assert!((250.0..300.0).contains(&stiffness.value), "{stiffness:?}");
     let held_out = |stage: Stage| {
         let mut all = result.cross_validation.iter();
@@ -76,7 +79,7 @@ fn the_test_run_is_predicted_as_published() {
     assert!(mean(&own) <= MEAN, "{own:?}");
     let counted = held_out(Stage::Base).iter().map(|one| one.equations);
     assert_eq!(counted.collect::<Vec<_>>(), [2000; 7]);
-    // Parameters that an arm can have predict at least as well.
+    // Physically consistent parameters predict at least as well.
     let consistent = errors(Stage::Consistent);
     assert!(mean(&consistent) <= CONSISTENT_MEAN, "{consistent:?}");
     let both = own.iter().zip(&consistent).zip(BETTER);

@@ -4,7 +4,7 @@ use overact_identification::{Estimator, Stage};
 use overact_robot::{Identifier, Robot};
 use std::path::{Path, PathBuf};
 
-/// The benchmark's file in the folder of reference data: `OVERACT_SHARED`, or `shared` beside the
+/// The benchmark's file in the folder of reference data: `OVERACT_SHARED`, or `shared` next to the
 /// repository.
 fn file() -> Option<PathBuf> {
     let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
@@ -41,7 +41,8 @@ fn the_closed_loop_gives_instruments_that_agree_with_least_squares() {
             let own = all.find(|one| one.stage == Stage::Base && one.estimator == how);
             own.expect("an estimate")
         });
-    // Least squares as without instruments; instruments within one percent, the published finding.
+    // Least squares as without instruments; instrumental variables within one percent, as
+    // published.
     let printed: Vec<String> = least
         .parameters
         .iter()

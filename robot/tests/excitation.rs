@@ -1,12 +1,12 @@
-//! Exciting runs keep every limit, tell more than random ones and the description's, and are written so that they
-//! can be read.
+//! Exciting runs keep every limit, have more information than random and described ones, and can be
+//! read back.
 
 use overact::{Columns, Function, Model};
 use overact_robot::{Error, Excitation, ExcitationEffort, LimitKind, Robot};
 use overact_simulation::{Run, Trajectory, sample};
 use std::time::Duration;
 
-/// A search that takes a second in a test.
+/// Search that takes about a second.
 const EFFORT: ExcitationEffort = ExcitationEffort {
     runs: None,
     seed: 3,
@@ -23,7 +23,7 @@ fn excited(robot: &Robot) -> Excitation {
     robot.excite(&EFFORT, &|_, _| ()).expect("exciting runs")
 }
 
-/// The robot of the description that was written.
+/// Robot of the written description.
 fn written(robot: &Robot, found: &Excitation) -> Robot {
     let text = robot.with_runs(found).expect("a description");
     Robot::from_text("excited.toml", &text).expect("a description without errors")
@@ -37,8 +37,9 @@ fn peaks(rows: &[f64], width: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Fails if a run of the robot goes beyond a limit anywhere on a grid much finer than that of the search. What
-/// is limited is found with the model's functions alone.
+/// Asserts that the robot's runs keep all limits on a grid much finer than that of the search.
+///
+/// Limited quantities are computed with the model's functions only.
 fn keeps_limits(robot: &Robot, found: &Excitation) {
     let experiment = robot.experiment().expect("runs");
     let plan = experiment.plan();
@@ -64,7 +65,7 @@ fn keeps_limits(robot: &Robot, found: &Excitation) {
     }
 }
 
-/// The largest magnitudes in a run of what each limit is about; nothing for travel and condition.
+/// Largest magnitudes in a run of each limited quantity; nothing for travel and condition.
 fn largest(robot: &Robot, found: &Excitation, run: &Run, parameters: &[f64]) -> Vec<Vec<f64>> {
     const SAMPLES: usize = 10_007;
     let model = robot.model();
@@ -148,7 +149,7 @@ fn a_five_bar_is_excited_within_its_limits() {
         assert!(best.log_det > other.log_det + 1.0, "{best:?} {other:?}");
     }
     assert!(found.found.limits_used.iter().all(|used| *used <= 1.0));
-    // The runs that are read are those that were judged.
+    // The runs read back are those that were judged.
     let judged = again
         .excite(
             &ExcitationEffort {
@@ -190,11 +191,11 @@ fn limits_of_the_table_are_kept_and_runs_that_are_held_out_stay() {
         .collect();
     assert_eq!(names, ["excitation 2", "excitation 3", "excitation 1"]);
     assert_eq!(again.held_out(), ["excitation 1"]);
-    // The same seed finds the same runs.
+    // Equal seeds give equal runs.
     assert_eq!(excited(&robot).tables, found.tables);
 }
 
-/// Of chains, too: their motors may come to a singularity as those of a platform.
+/// Also for chains, whose motors may reach a singularity like those of a platform.
 #[test]
 fn limits_that_no_motion_keeps_are_told_at_their_line() {
     for name in ["five_bar", "ankle"] {
@@ -254,7 +255,7 @@ fn speeds_that_nothing_limits_are_told() {
     assert!(!bare("velocity = \"9 rad/s\"\n"));
 }
 
-/// A slider on two cranks of a length, whose runs of the description it does not reach.
+/// A slider on two cranks of a length that is too short for the described runs.
 fn yoke_with_cranks_of(length: &str) -> Robot {
     let text = library("scotch_yoke").source().text.clone();
     let start = text.find("crank = \"").expect("the length of the cranks");

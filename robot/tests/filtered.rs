@@ -1,5 +1,6 @@
-//! Logs whose signals were filtered, and faultless ones that look as if: coarse encoders, whose errors come back as
-//! accelerations, and a control loop that shakes.
+//! Logs with filtered signals, and faultless logs that resemble them.
+//!
+//! The latter have coarse encoders, whose errors act as accelerations, or a vibrating control loop.
 
 use overact_identification::{Check, CheckKind, Grade, Identification, Log};
 use overact_robot::{Identifier, Robot};
@@ -9,20 +10,19 @@ const DELTA: &str = include_str!("../../robots/delta.toml");
 const FIVE_BAR: &str = include_str!("../../robots/five_bar.toml");
 const DUALV: &str = include_str!("../../robots/dualv.toml");
 
-/// A description with another text in the place of one.
+/// Description with a replaced text.
 fn with(text: &str, old: &str, new: &str) -> String {
     let changed = text.replace(old, new);
     assert_ne!(changed, text);
     changed
 }
 
-/// What is identified from the virtual runs of a description, of which positions and torques are changed, rows of so
-/// many actuators.
+/// Identification from virtual runs whose positions and torques are changed, as rows of actuators.
 fn identified(text: &str, change: impl Fn(&mut [f64], &mut [f64], usize)) -> Identification {
     identified_from(usize::MAX, text, change)
 }
 
-/// The same from no more than so many of its runs.
+/// The same from at most `most` runs.
 fn identified_from(
     most: usize,
     text: &str,
@@ -43,14 +43,14 @@ fn identified_from(
     Identifier::new(&robot).runs(&logs).run().expect("a result")
 }
 
-/// Rows behind a low-pass of first order; `part` of the way is gone in a sample.
+/// First-order low-pass filter of rows; `part` is the step response after one sample.
 fn lag(rows: &mut [f64], n: usize, part: f64) {
     for place in n..rows.len() {
         rows[place] = rows[place - n] + part * (rows[place] - rows[place - n]);
     }
 }
 
-/// Rows as means over `count` samples about each.
+/// Moving average of rows over `count` samples.
 fn mean(rows: &mut [f64], n: usize, count: usize) {
     let (all, half) = (rows.to_vec(), count / 2);
     for place in half * n..rows.len() - half * n {
@@ -59,7 +59,7 @@ fn mean(rows: &mut [f64], n: usize, count: usize) {
     }
 }
 
-/// The words of the checks of a kind that found something.
+/// Messages of the failed checks of a kind.
 fn found(result: &Identification, kind: CheckKind) -> Vec<String> {
     let own = |one: &&Check| one.kind == kind && !one.passed;
     let own = result.checks.iter().filter(own);
@@ -80,8 +80,8 @@ fn a_delta_whose_signals_passed_one_low_pass_is_not_trusted() {
 
 #[test]
 fn what_a_harmful_fault_leaves_far_beyond_the_noise_is_not_trusted_in_part() {
-    // Torques of one run of an ankle behind a low-pass of 10 ms at 1 kHz: what is seen of it, rounded friction, explains
-    // a small part.
+    // Torques of one run of an ankle through a low-pass filter of 10 ms at 1 kHz; only the smoothed
+    // friction is visible.
     let result = identified_from(1, ANKLE, |_, torques, n| {
         lag(torques, n, 1.0 - (-0.1_f64).exp());
     });
@@ -119,7 +119,7 @@ fn coarse_encoders_are_no_filter_of_the_torques() {
     assert_eq!(found(&result, CheckKind::Filters), Vec::<String>::new());
     assert_eq!(found(&result, CheckKind::Reversals), Vec::<String>::new());
     assert_eq!(result.grade(), Grade::Use);
-    // A filter is one with such encoders, too: 20 ms at 2 kHz.
+    // A filter is also detected with such encoders: 20 ms at 2 kHz.
     let result = identified(&coarse, |_, torques, n| mean(torques, n, 40));
     let words = found(&result, CheckKind::Filters).join("\n");
     assert!(words.contains("the torques are smoother"), "{words}");
@@ -135,14 +135,14 @@ fn a_loop_that_shakes_for_a_delay_of_its_drives_accuses_no_length() {
     );
     let result = identified(&shaking, |_, _, _| ());
     assert_eq!(found(&result, CheckKind::Closure), Vec::<String>::new());
-    // An encoder that is off is accused all the same.
+    // An encoder offset is still detected.
     let result = identified(&shaking, |positions, _, n| {
         positions.iter_mut().step_by(n).for_each(|q| *q += 3e-3);
     });
     assert!(!found(&result, CheckKind::Closure).is_empty());
 }
 
-/// At the edge of the workspace, where swapped positions bring a robot, a motion that is smoother leaves it.
+/// At the edge of the workspace, where swapped positions are reachable but smoother ones are not.
 #[test]
 fn swapped_positions_are_told_and_not_refused() {
     let short = with(FIVE_BAR, "duration = \"10 s\"", "duration = \"2.5 s\"");

@@ -1,10 +1,11 @@
-//! Friction by direction, friction that rises towards standstill and torques that are known, from a description
-//! through its virtual experiment to identified parameters.
+//! Direction-dependent friction, Stribeck friction and known torques, from description to
+//! identification.
 
 use overact_identification::{Estimator, Identification, Stage};
 use overact_robot::{Identifier, Robot};
 
-/// An arm in the vertical plane: each joint has friction of another kind, the last one follows the others.
+/// An arm in the vertical plane; each joint has another kind of friction, and the last one is
+/// coupled to the others.
 const ARM: &str = r#"
 name = "FrictionArm"
 
@@ -95,7 +96,8 @@ fn identified(text: &str) -> Identification {
     found.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Names of the base parameters, and the largest error of an estimate in deviations and in percent of the truth.
+/// Names of the base parameters, and the largest error of an estimate in standard deviations and
+/// percent.
 fn errors(result: &Identification) -> (Vec<String>, f64, f64) {
     let estimate = result.estimates.iter();
     let estimate = estimate.filter(|one| one.estimator == Estimator::LeastSquares);
@@ -124,15 +126,16 @@ fn friction_of_every_kind_is_identified_under_default_settings() {
     for name in ["fv_neg_1", "fst_2", "fl_2", "fv_pos_3"] {
         assert!(names.iter().any(|one| one == name), "{names:?}");
     }
-    // What is constant of the follower's friction, its coefficients' difference, is regrouped into the others'.
+    // The constant part of the coupled joint's friction, the difference of its coefficients, is
+    // regrouped.
     assert!(names.iter().any(|one| one == "fs_pos_3R"), "{names:?}");
     assert!(!names.iter().any(|one| one == "fs_neg_3"), "{names:?}");
     assert!(deviations < 4.5, "{deviations:.1} deviations");
     assert!(percent < 5.0, "{percent:.1} %");
 }
 
-/// A motor that turns both joints and one that turns the first: what is estimated behind the gears is told in
-/// front of them.
+/// A motor that drives both joints and one that drives the first: joint-side estimates are reported
+/// on the motor side.
 #[test]
 fn parameters_of_motors_are_told_in_front_of_their_gears() {
     let motors = "[[leg.arm.motor]]\nname = \"first\"\nturns = \"q1\"\nratio = -20\n\
@@ -142,7 +145,7 @@ fn parameters_of_motors_are_told_in_front_of_their_gears() {
                   fv_neg_both = 0.5\nfs_neg_both = 0.6\nfst_both = 0.4\n";
     let text = ARM.replacen("[[place]]", motors, 1);
     let text = text.replacen("[experiment.parameters]\n", values, 1);
-    // Friction of three rates is all that two joints tell.
+    // Two joints determine friction of three rates only.
     let text = text.replace("[\"m\", \"friction by direction\"]", "\"m\"");
     let own = |line: &&str| !(line.starts_with('f') && line.contains("_3 = "));
     let text: Vec<&str> = text.lines().filter(own).collect();

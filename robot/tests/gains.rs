@@ -1,4 +1,4 @@
-//! Gains of drives found from virtual experiments in which the mass of a payload is known.
+//! Drive gains identified from virtual experiments with a payload of known mass.
 
 use overact::Model;
 use overact_identification::{Gains, Identification, Log, Settings, Stage, drive_gains};
@@ -25,7 +25,7 @@ fn dualv(identification: &str) -> String {
     )
 }
 
-/// The DualV, sampled less often than that of the paper.
+/// The DualV, sampled less often than in the paper.
 fn coarse(identification: &str) -> String {
     let text = dualv(identification).replace("sampling = \"5 kHz\"", "sampling = \"1 kHz\"");
     let coarse = text.replace("decimation = 50", "decimation = 10");
@@ -35,10 +35,10 @@ fn coarse(identification: &str) -> String {
 
 const KNOWN: &str = "gains = true\nknown = { m_payload = \"5.42 kg\" }";
 
-/// What the drives of the DualV give for a unit of what the log says.
+/// True gains of the DualV's drives.
 const WRONG: [f64; 4] = [1.12, 0.83, 1.33, 0.72];
 
-/// Normal noise.
+/// Gaussian noise.
 struct Noise(u64);
 
 impl Noise {
@@ -56,7 +56,7 @@ impl Noise {
     }
 }
 
-/// The runs of the virtual experiment without noise, so long (s).
+/// Runs of the virtual experiment without noise, with a duration (s).
 fn exact(robot: &Robot, duration: f64) -> Runs {
     let mut experiment = robot.experiment().expect("an experiment");
     let plan = experiment.plan_mut();
@@ -67,7 +67,8 @@ fn exact(robot: &Robot, duration: f64) -> Runs {
     experiment.runs(&held_out, &|_, _| {}).expect("runs")
 }
 
-/// Runs as drives of such gains log them: torques with noise of deviations (N m), divided by the gains.
+/// Runs as logged with such gains: torques with noise of standard deviations (N m), divided by the
+/// gains.
 fn logged(runs: &[Log], gains: &[f64], deviations: &[f64], seed: u64) -> Vec<Log> {
     let mut noise = Noise(seed.wrapping_mul(0xd134_2543_de82_ef95));
     let log = |log: &Log| {
@@ -87,21 +88,21 @@ fn found(robot: &Robot, runs: &[Log], settings: &Settings) -> Gains {
     drive_gains(robot.model(), runs, settings, &|_, _, _| {}).expect("gains")
 }
 
-/// How many deviations each gain is off.
+/// Error of each gain in standard deviations.
 fn misses(found: &Gains, truth: &[f64]) -> Vec<f64> {
     let each = found.drives.iter().zip(truth);
     each.map(|(own, truth)| (own.factor - truth) / own.deviation)
         .collect()
 }
 
-/// What is said where no gains are found.
+/// Message if no gains are identified.
 fn refused(robot: &Robot, runs: &[Log]) -> String {
     let identifier = Identifier::new(robot).runs(runs).gains(true);
     let error = identifier.run().expect_err("no gains");
     error.render(false)
 }
 
-/// Parameters that were estimated together with gains are within three of their deviations.
+/// Asserts that jointly estimated parameters are within three standard deviations.
 fn check_joint(result: &Identification) {
     let truth: BTreeMap<&str, Option<f64>> = result
         .base_parameters
@@ -148,7 +149,7 @@ fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
             assert!(own.deviation < 0.05 * truth, "{own:?}");
         }
         check_joint(&result);
-        // The estimates with the torques that the gains give have the masses as well.
+        // Estimates with the corrected torques have these masses as well.
         let all = result
             .by_least_squares()
             .find(|one| one.stage == Stage::Base);
@@ -174,8 +175,8 @@ fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
     }
 }
 
-/// Deviations are as large as the errors, and the errors have the mean zero, where the noise of the drives
-/// differs and is large.
+/// Errors have zero mean and the stated standard deviations if the drives' noise differs and is
+/// large.
 #[test]
 fn deviations_of_gains_are_honest() {
     let robot = robot(&coarse(KNOWN));
@@ -210,7 +211,7 @@ fn deviations_of_gains_are_honest() {
     assert!(means.iter().all(|mean| mean.abs() < bias), "{means:?}");
 }
 
-/// The RX90 with a payload on its last body, of which the mass and the place of its centre are known.
+/// The RX90 with a payload on its last body, of known mass and centre of mass.
 fn rx90(known: &str) -> String {
     let text = text("rx90.toml");
     let payload = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n\n[[place]]";
@@ -260,8 +261,9 @@ fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
     }
 }
 
-/// With the mass of the payload alone: its first moments and inertias are unknown. In the default tier the runs
-/// are too short to tell all gains, and it is said of which.
+/// Only the payload's mass is known; its first moments and inertias are not.
+///
+/// In the default tier, the runs are too short to determine all gains, and those are reported.
 #[test]
 fn a_serial_robot_tells_its_gains_by_the_mass_of_a_payload_alone() {
     let wrong = [0.88, 1.2, 0.75, 1.33, 1.15, 0.8];
@@ -291,13 +293,14 @@ fn a_serial_robot_tells_its_gains_by_the_mass_of_a_payload_alone() {
     }
 }
 
-/// Intervals of parameters behind gains contain the truth: they have the part that is the gains'.
+/// Intervals of parameters estimated after gains contain the truth, because they include the gains'
+/// uncertainty.
 #[test]
 fn intervals_behind_gains_contain_the_truth() {
     let robot = robot(&coarse(KNOWN));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
     let draws = drawn([1, 20]);
-    // Of parameters that are known well beside the gains: those to which gains matter.
+    // Consider parameters that are well known compared to the gains, for which the gains matter.
     let (mut all, mut within, mut narrow) = (0, 0, 0);
     for seed in 1..=draws {
         let runs = Runs {
@@ -311,7 +314,7 @@ fn intervals_behind_gains_contain_the_truth() {
                 continue;
             }
             for own in &estimate.parameters {
-                // What is known exactly is estimated once more, with an interval that is wide.
+                // The known mass is estimated again, with a wide interval.
                 let Some(truth) = own.true_value.filter(|_| own.name != "m_payload") else {
                     continue;
                 };
@@ -330,13 +333,13 @@ fn intervals_behind_gains_contain_the_truth() {
     assert!(rates[0] >= rates[1] + gained, "{rates:?}");
 }
 
-/// Noise of torques as a measured arm has it: part of the largest torque of each joint.
+/// Torque noise as of a measured arm, relative to the largest torque of each joint.
 const ARM_NOISE: f64 = 0.015;
 
-/// A payload of which nothing is known, on a serial robot whose torques are as noisy as those of a measured one.
+/// An unknown payload on a serial robot with measured noise levels.
 #[test]
 fn an_unknown_payload_of_a_serial_robot_is_found() {
-    // Only a base parameter is looked at: none are eliminated.
+    // Only a base parameter is tested, so nothing is eliminated.
     let text = rx90("").replacen("gains = true\n", "essential = false\n", 1);
     assert!(text.contains("essential = false"));
     let robot = robot(&text);

@@ -1,11 +1,11 @@
-//! Robots whose bases stand off the vertical: the direction of gravity comes back together with the parameters.
+//! Robots with tilted bases: the gravity direction is identified together with the parameters.
 
 use overact_identification::{Estimator, Identification, Stage};
 use overact_robot::{Identifier, Robot, Runs};
 use overact_tier::by_tier;
 use std::path::Path;
 
-/// Gravity turned by 2° about y, then by 2° about x, m/s².
+/// Gravity rotated by 2° about y, then by 2° about x, m/s².
 fn turned() -> [f64; 3] {
     let (sine, cosine) = 2.0_f64.to_radians().sin_cos();
     let [x, z] = [-9.81 * sine, -9.81 * cosine];
@@ -28,10 +28,9 @@ fn replaced(text: &str, from: &str, to: &str) -> String {
 
 const DOWN: &str = "gravity = [0, 0, \"-9.81 m/s^2\"]";
 
-/// Runs of a robot of the library in some gravity, of such a duration (s) and the robot as it is
-/// described.
+/// Runs of a library robot with some gravity and duration (s), and the robot as described.
 fn runs(name: &str, gravity: [f64; 3], duration: f64) -> (Robot, Runs) {
-    // Only base parameters are compared: none are eliminated.
+    // Only base parameters are compared, so nothing is eliminated.
     let identification = "[identification]\n";
     let base_only = format!("{identification}essential = false\n");
     let described = replaced(&text(name), identification, &base_only);
@@ -53,7 +52,7 @@ fn identified(robot: &Robot, runs: &Runs, direction: bool) -> Identification {
     found.unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
-/// The largest error on held-out runs of the base parameters, percent.
+/// Largest validation error of the base parameters, percent.
 fn held_out_error(result: &Identification) -> f64 {
     let own = result.cross_validation.iter();
     let own = own.filter(|one| one.stage == Stage::Base);
@@ -61,7 +60,7 @@ fn held_out_error(result: &Identification) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Direction and base parameters are those of the robot within their deviations.
+/// Asserts that direction and base parameters are right within their standard deviations.
 fn check(result: &Identification, gravity: [f64; 3]) {
     let found = result.gravity.as_ref().expect("a direction");
     println!("{found:?}");
@@ -96,7 +95,7 @@ fn a_serial_robot_that_stands_off_the_vertical_tells_it() {
     let (robot, runs) = runs("rx90.toml", turned(), by_tier([5.0, 20.0]));
     let result = identified(&robot, &runs, true);
     check(&result, turned());
-    // What turns with the first joint has an effect only now.
+    // Parameters that rotate with the first joint have an effect only with tilted gravity.
     let has = |name: &str| {
         let mut all = result.base_parameters.iter();
         all.any(|one| one.parameter == name)
@@ -115,8 +114,9 @@ fn a_serial_robot_that_stands_off_the_vertical_tells_it() {
     );
 }
 
-/// What a tilt does to a robot with loops is mostly taken in by offsets of its drives and masses of its legs: it is
-/// told with a bias of several deviations, so it is not told.
+/// For robots with loops, drive offsets and leg masses absorb most of a tilt.
+///
+/// The direction would be biased by several standard deviations, so it is not identified.
 #[test]
 fn robots_with_loops_are_refused() {
     for name in ["delta.toml", "planar_4prr.toml", "palletiser.toml"] {
@@ -138,7 +138,7 @@ fn a_robot_that_stands_upright_is_identified_as_it_is_described() {
     println!("{found:?}");
     assert!(!found.significant);
     assert_eq!(found.used(), [0.0, 0.0, -9.81]);
-    // Parameters are less sure than they were if the direction was known.
+    // Parameters are less certain than with a known direction.
     let known = identified(&robot, &runs, false);
     let deviations = |one: &Identification| -> Vec<f64> {
         let own = one.estimates[0].parameters.iter();

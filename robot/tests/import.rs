@@ -1,9 +1,9 @@
-//! Files of other programs whose descriptions are not valid are refused in terms of the file.
+//! Files of other programs whose descriptions are invalid are rejected in terms of the file.
 
 use overact_interchange::Options;
 use overact_robot::{Error, import};
 
-/// A slider and a finger that follows it, with the motor of the one that is named.
+/// A slider and a coupled finger, with a motor on one of them.
 fn gripper(driven: &str) -> String {
     format!(
         "<mujoco><worldbody><body name='palm'><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>\n\
@@ -17,7 +17,7 @@ fn gripper(driven: &str) -> String {
     )
 }
 
-/// A crank and a slider that stands at its dead centre, where its motor moves nothing.
+/// A crank and a slider at dead centre, where its motor moves nothing.
 const DEAD_CENTRE: &str = "<mujoco><worldbody>\n\
     <body name='crank'><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><joint name='crank' axis='0 1 0'/>\n\
     <body name='rod' pos='.1 0 0'><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><joint name='rod' axis='0 1 0'/></body></body>\n\

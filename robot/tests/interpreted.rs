@@ -1,4 +1,4 @@
-//! The interpreted robot against finite differences, and its forward kinematics.
+//! The interpreted robot compared with finite differences, and its forward kinematics.
 
 use overact::{Body, Columns, Error, Function, Model, StandardParameter};
 use overact_codegen::Request;
@@ -6,7 +6,7 @@ use overact_robot::{CompiledFile, InterpretedRobot, Robot};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-/// The path of a description of `robots/`.
+/// Path of a description in `robots/`.
 fn description(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../robots")
@@ -40,7 +40,8 @@ fn evaluate(
     output
 }
 
-/// B_p of the DualV is diagonal, -d2 d3 sin(q2) of each leg; also where only what is served is compiled.
+/// B_p of the DualV is diagonal, -d2 d3 sin(q2) of each leg; also if only the model's functions are
+/// compiled.
 #[test]
 fn the_closure_is_served_from_joints() {
     let loaded =
@@ -66,7 +67,7 @@ fn the_closure_is_served_from_joints() {
     }
 }
 
-/// The pose at a time near zero, on a motion with these rates.
+/// Pose at a time near zero, on a motion with these rates.
 fn moved(time: f64) -> [f64; 3] {
     std::array::from_fn(|i| POSE[i] + TWIST[i] * time + 0.5 * ACCELERATION[i] * time * time)
 }
@@ -84,7 +85,7 @@ fn rates_are_derivatives_of_positions() {
     for i in 0..12 {
         let velocity = (after[i] - before[i]) / (2.0 * h);
         let acceleration = (after[i] - 2.0 * now[i] + before[i]) / (h * h);
-        // Central differences are off by h²/6 times the third derivative.
+        // Central differences have the error h²/6 times the third derivative.
         assert!(
             (velocity - velocities[i]).abs() < 1e-5,
             "{velocity} {}",

@@ -1,11 +1,11 @@
-//! A serial robot closes no loop, but its torques tell of a length that is not as described.
+//! Torques of a serial robot reveal a wrong length, although it closes no loop.
 
 use overact_identification::{Check, CheckKind, Identification};
 use overact_robot::{Identifier, Robot};
 
 const TEMPLATE: &str = include_str!("../../cli/templates/serial-2r.toml");
 
-/// What is identified with the description from the motion of a robot with another upper arm.
+/// Identification with the description from the motion of a robot with another upper arm.
 fn identified(upper_arm: &str) -> Identification {
     let built = TEMPLATE.replacen("upper_arm = \"0.30 m\"", upper_arm, 1);
     let built = Robot::from_text("built.toml", &built).expect("the robot that is built");

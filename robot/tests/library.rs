@@ -1,10 +1,10 @@
-//! A robot as a Rust user has it: read, simulated, identified; and what is wrong, all of it at once.
+//! A robot in the hands of a Rust user: read, simulated, identified; errors are reported at once.
 
 use overact_identification::{Estimator, ModelKind, Stage};
 use overact_robot::{Error, Identifier, Robot, Runs, tracking};
 use std::path::{Path, PathBuf};
 
-/// The path of a description of `robots/`.
+/// Path of a description in `robots/`.
 fn description(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../robots")
@@ -48,7 +48,7 @@ fn a_description_that_asks_for_base_parameters_gets_no_others() {
             .iter()
             .all(|one| matches!(one.stage, Stage::Base | Stage::Consistent))
     );
-    // The settings are those that were asked for, not those that kept the elimination away.
+    // The reported settings are the requested ones, not those that disabled the elimination.
     assert_eq!(result.settings, robot.settings(runs.sampling_frequency()));
     for parameter in &result.estimates[0].parameters {
         let error = parameter.error_percent.expect("a known value");

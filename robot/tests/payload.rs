@@ -1,17 +1,17 @@
-//! A payload whose mass nobody knows, on the last body of a serial robot.
+//! A payload of unknown mass on the last body of a serial robot.
 
 use overact_identification::{Estimator, Stage};
 use overact_robot::{Identifier, Robot};
 use overact_tier::by_tier;
 use std::path::Path;
 
-/// Noise of the torques as that of the measured TX40 is taken to be, N m.
+/// Noise of the torques, as assumed for the measured TX40, N m.
 const NOISE: &str = "torque_noise = [0.2, 0.2, 0.1, 0.05, 0.05, 0.02]";
 
-/// The mass of the payload, kg.
+/// Mass of the payload, kg.
 const MASS: f64 = 5.0;
 
-/// The RX90 with a payload on its last body, and a second run that carries it.
+/// The RX90 with a payload on its last body, and a second run with the payload.
 fn rx90(seed: u64) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/rx90.toml");
     let text = std::fs::read_to_string(path).expect("a description");
@@ -33,7 +33,7 @@ fn rx90(seed: u64) -> String {
         ("torque_noise = [1.0, 1.0, 0.5, 0.2, 0.2, 0.1]", NOISE),
         ("seed = 1", &format!("seed = {seed}")),
         ("decimation = 10", "decimation = 10\nessential = false"),
-        // A period of the run, or four of them.
+        // One period of the run, or four.
         (
             "duration = \"20 s\"",
             by_tier(["duration = \"5 s\"", "duration = \"20 s\""]),

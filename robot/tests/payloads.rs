@@ -1,4 +1,4 @@
-//! Several payloads with names: each has parameters of its own, known masses fix the gains of the drives.
+//! Several named payloads: each has its own parameters, and known masses determine the drive gains.
 
 use overact_identification::{Estimator, Identification, ParameterEstimate, Stage};
 use overact_robot::{Identifier, Robot, Runs};
@@ -23,7 +23,7 @@ fn replaced(text: &str, pairs: &[(&str, &str)]) -> String {
 
 const PAYLOADS: &str = "payloads = [\"heavy\", \"light\"]\n\n[constants]";
 
-/// The RX90 whose last body carries two payloads in turn, and nothing in `unloaded` of its runs.
+/// The RX90 with two payloads in turn; `unloaded` runs have none.
 fn rx90(unloaded: bool) -> String {
     let text = text("rx90.toml");
     let runs: Vec<usize> = text
@@ -84,7 +84,7 @@ fn base(result: &Identification) -> &[ParameterEstimate] {
     &base.expect("base parameters").parameters
 }
 
-/// Estimates with these endings of their names are those of the robot within their deviations.
+/// Asserts that estimates with these name endings are right within their standard deviations.
 fn check(result: &Identification, endings: [&str; 2]) {
     for ending in endings {
         let own = base(result).iter();
@@ -119,7 +119,7 @@ fn two_payloads_of_a_serial_robot_are_told_from_each_other() {
         let own = base(&result).iter().find(|one| one.name == name);
         assert!((own.expect(name).value / mass - 1.0).abs() < 0.02);
     }
-    // Each is a body of its own where parameters have to be those of bodies.
+    // Each payload is a body of its own for physical consistency.
     let consistent = result.consistent.first().expect("a consistent estimate");
     for name in ["m_payload_heavy", "m_payload_light"] {
         let body = consistent.bodies.iter().find(|one| one.mass == name);
@@ -160,7 +160,7 @@ fn without_an_unloaded_run_one_payload_is_told_beside_the_other() {
     );
 }
 
-/// The DualV with two payloads of its platform.
+/// The DualV with two payloads.
 fn dualv(more: &str) -> String {
     replaced(
         &text("dualv.toml"),

@@ -1,10 +1,10 @@
-//! Joints that rotate continuously: angles of many turns, and angles that were logged within one turn.
+//! Continuously rotating joints: angles over many turns, and angles logged within one turn.
 
 use overact_identification::{CheckKind, Grade, Identification, Log, data::Array};
 use overact_robot::{Identifier, Robot};
 use std::f64::consts::{PI, TAU};
 
-/// A motor that turns an unbalanced arm round and round; rows of [data] are added.
+/// A motor that rotates an unbalanced arm; rows of [data] are added.
 const ARM: &str = r#"
 name = "Pendulum"
 summary = "a motor that turns an unbalanced arm"
@@ -25,7 +25,7 @@ torques = ["tau"]
 const FREQUENCY: f64 = 500.0;
 const SAMPLES: usize = 5000;
 
-/// Angle, velocity and acceleration of the arm: ten turns and more, with an oscillation.
+/// Angle, velocity and acceleration of the arm: more than ten turns with an oscillation.
 fn motion(time: f64) -> [f64; 3] {
     let (w, v) = (2.5, 6.3);
     [
@@ -35,7 +35,7 @@ fn motion(time: f64) -> [f64; 3] {
     ]
 }
 
-/// A run whose angle is logged by `logged`.
+/// Run whose angle is converted by `logged`.
 fn log(robot: &Robot, logged: impl Fn(f64) -> f64) -> Result<Log, overact_robot::Error> {
     let mut state = 1_u64;
     let mut noise = || {
@@ -77,7 +77,7 @@ fn identified(robot: &Robot, log: Log) -> Identification {
     identifier.runs(&logs).run().expect("a result")
 }
 
-/// The inertia of a result that may be used.
+/// Estimated inertia of a result with the verdict to use it.
 fn inertia(result: &Identification) -> f64 {
     assert_eq!(result.grade(), Grade::Use, "{:?}", result.warnings);
     let all = result.estimates[0].parameters.iter();
@@ -92,7 +92,7 @@ fn angles_of_many_turns_and_wrapped_ones_give_the_same_parameters() {
     let counted = identified(&plain, log(&plain, rounded).expect("a log"));
     assert!((inertia(&counted) - 0.05).abs() < 5e-4);
     let wrapped = |angle: f64, turn: f64| angle.rem_euclid(turn);
-    // Around zero, in degrees, in turns, of a motor behind a gear and of its encoder.
+    // Around zero, in degrees, in turns, of a motor with a gear and of its encoder.
     let gear = "position_scale = 9.587379924285257e-6";
     let cases: [(&str, &dyn Fn(f64) -> f64); 5] = [
         ("", &|angle| rounded(wrapped(angle + PI, TAU) - PI)),
@@ -144,7 +144,7 @@ fn a_slide_that_jumps_by_the_length_of_a_turn_is_not_unwrapped() {
 #[test]
 fn half_a_turn_between_two_samples_is_refused() {
     let plain = robot("");
-    // A hundred times as fast: nearly half a turn in some samples.
+    // A hundred times as fast: nearly half a turn between some samples.
     let fast = |angle: f64| (100.0 * angle).rem_euclid(TAU);
     let error = log(&plain, fast).expect_err("a direction that is not known");
     let error = &error.problems()[0].message;

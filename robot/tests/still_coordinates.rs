@@ -1,11 +1,14 @@
-//! Runs in which a coordinate of the robot does not move: encoder steps alone tell some columns apart, which gives
-//! parameters that are far off with small deviations.
+//! Runs in which a coordinate does not move.
+//!
+//! Only encoder quantisation then distinguishes some columns, which would give wrong parameters
+//! with small standard deviations.
 
 use overact_identification::{Check, CheckKind, Grade, Identification};
 use overact_robot::{Identifier, Robot};
 use std::path::Path;
 
-/// What is identified from the virtual experiment of a robot of the library, shortened, without motion of a coordinate.
+/// Identification from the shortened virtual experiment of a library robot with one coordinate at
+/// rest.
 fn identified(name: &str, still: Option<&str>) -> Identification {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
     let text = std::fs::read_to_string(folder.join(name)).expect("a description");

@@ -1,4 +1,4 @@
-//! The measured TX40: its two files as its controller wrote them, with a wrist whose sixth motor turns two
+//! The measured TX40: the two files of its controller, with a wrist whose sixth motor drives two
 //! joints.
 
 use overact_identification::{Estimate, Estimator, Removal, Stage};
@@ -6,17 +6,20 @@ use overact_robot::{Identifier, Robot};
 use overact_tier::is_full;
 use std::path::{Path, PathBuf};
 
-/// Base parameters, and relative errors of ordinary and of weighted least squares in percent, as they were
-/// published with these decimated rows left out at standstill.
+/// Published number of base parameters, and relative errors of ordinary and weighted least squares
+/// in percent.
+///
+/// The decimated rows at standstill were omitted.
 const PUBLISHED: (usize, [f64; 2]) = (61, [4.989, 5.034]);
 
-/// Essential parameters at r_sigma = 30 of the published elimination.
+/// Number of essential parameters of the published elimination at r_sigma = 30.
 const ESSENTIAL: usize = 27;
 
-/// The ratio of relative deviations at which it ends.
+/// Ratio of relative standard deviations at which it ends.
 const R_SIGMA: f64 = 30.0;
 
-/// The files of the log in the folder of reference data: `OVERACT_SHARED`, or `shared` beside the repository.
+/// Files of the log in the folder of reference data: `OVERACT_SHARED`, or `shared` next to the
+/// repository.
 fn files() -> Option<PathBuf> {
     let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
@@ -31,7 +34,7 @@ fn files() -> Option<PathBuf> {
     None
 }
 
-/// The estimates of the log by ordinary or weighted least squares.
+/// Estimates from the log by ordinary or weighted least squares.
 fn estimates(robot: &Robot, log: &Path, weighted: bool) -> Vec<Estimate> {
     let logs = robot.read_logs(&[(log, false)], &|_| {}).expect("a log");
     let mut settings = robot.settings(logs[0].sampling_frequency());
@@ -40,7 +43,7 @@ fn estimates(robot: &Robot, log: &Path, weighted: bool) -> Vec<Estimate> {
     identifier.run().expect("a result").estimates
 }
 
-/// In the full tier: the log is the longest of all that are measured.
+/// Full tier only: it is the longest measured log.
 #[test]
 fn errors_are_those_that_were_published() {
     if !is_full() {
@@ -64,7 +67,7 @@ fn errors_are_those_that_were_published() {
         assert_eq!(base.parameters.len(), count);
         let error = base.relative_error_percent;
         assert!((error - published).abs() < 0.1, "{error} {published}");
-        // Ordinary least squares stand beside weighted ones in one result.
+        // One result contains both ordinary and weighted least squares.
         let ordinary = estimates
             .iter()
             .find(|one| one.estimator == Estimator::OrdinaryLeastSquares);
@@ -76,14 +79,17 @@ fn errors_are_those_that_were_published() {
                 "{error}"
             );
         }
-        // Joint 6 has little friction of its own: nearly all of it is the motor's, at the sum of both rates.
+        // Joint 6 has little friction of its own; nearly all of it is the motor's, at the sum of
+        // both rates.
         let value = |name: &str| {
             let mut all = base.parameters.iter();
             all.find(|one| one.name == name).expect("a parameter").value
         };
         assert!(value("fs_m6") > 5.0 * value("fs_6"));
-        // Where the published elimination ends with two parameters more, the ratio of deviations is a few
-        // percent above 30: a log that is filtered a little differently ends on either side.
+        // The published elimination ends with two parameters more.
+        //
+        // There the ratio of standard deviations is a few percent above 30; slightly different
+        // filtering decides on which side it is.
         let essential = stage(Stage::Essential);
         let beyond = ESSENTIAL - essential.parameters.len();
         assert!(beyond <= 2, "{beyond}");

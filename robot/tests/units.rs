@@ -1,5 +1,5 @@
-//! Logs whose time, positions or torques are in another unit than the description says: the fit is as good as
-//! with the right one, only physical scales contradict it.
+//! Logs in other units than described: the fit does not change, and only physical scales contradict
+//! it.
 
 use overact_identification::{Check, CheckKind, Grade, Identification, Log};
 use overact_robot::{Identifier, Robot};
@@ -7,14 +7,14 @@ use overact_robot::{Identifier, Robot};
 const ARM: &str = include_str!("../../cli/templates/serial-2r.toml");
 const AXIS: &str = include_str!("../../robots/emps.toml");
 
-/// The signals of a log.
+/// Signals of a log.
 struct Signals {
     frequency: f64,
     positions: Vec<f64>,
     torques: Vec<f64>,
 }
 
-/// What is identified with a description from runs of its virtual robot, with the signals changed.
+/// Identification with a description from its virtual runs with changed signals.
 fn identified(description: &str, change: impl Fn(&mut Signals)) -> Identification {
     let robot = Robot::from_text("robot.toml", description).expect("a description");
     let mut experiment = robot.experiment().expect("an experiment");
@@ -51,13 +51,13 @@ fn identified(description: &str, change: impl Fn(&mut Signals)) -> Identificatio
     Identifier::new(&robot).runs(&logs).run().expect("a result")
 }
 
-/// The checks of units that found something.
+/// Failed checks of units.
 fn of_units(result: &Identification) -> Vec<&Check> {
     let is_own = |one: &&Check| one.kind == CheckKind::Unit && !one.passed;
     result.checks.iter().filter(is_own).collect()
 }
 
-/// Signal, factor and drive of the only check of units, of a result that may not be used.
+/// Signal, factor and drive of the only failed check of units, of a result that must not be used.
 fn slip(result: &Identification) -> (&str, f64, Option<&str>) {
     assert_eq!(result.grade(), Grade::DoNotUse);
     let checks = of_units(result);

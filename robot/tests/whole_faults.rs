@@ -1,5 +1,6 @@
-//! What is wrong as a whole, so that no single column or drive stands out: joints that are exchanged, gravity
-//! that points the other way, one column that stands for two. The torques tell all the same.
+//! Global faults that no single column or drive reveals; the torques do.
+//!
+//! They are swapped joints, inverted gravity and one column used for two signals.
 
 use overact_identification::{Check, CheckKind, Grade, Identification, Log};
 use overact_robot::{Identifier, Robot};
@@ -7,7 +8,7 @@ use std::cell::Cell;
 
 const TEMPLATE: &str = include_str!("../../cli/templates/serial-2r.toml");
 
-/// What is identified, with the description, from runs of the robot that is built and changed thereafter.
+/// Identification with the description from changed runs of the robot that was built.
 fn identified(built: &str, change: impl Fn(&mut [f64], &mut [f64])) -> Identification {
     let built = Robot::from_text("built.toml", built).expect("the robot that is built");
     let robot = Robot::from_text("described.toml", TEMPLATE).expect("the robot as described");
@@ -28,7 +29,7 @@ fn identified(built: &str, change: impl Fn(&mut [f64], &mut [f64])) -> Identific
     Identifier::new(&robot).runs(&logs).run().expect("a result")
 }
 
-/// The words of the checks of a kind that found something, of a result that may not be used.
+/// Messages of the failed checks of a kind, of a result that must not be used.
 fn refused(result: &Identification, kind: CheckKind) -> Vec<&str> {
     assert_eq!(result.grade(), Grade::DoNotUse);
     let own = |one: &&Check| one.kind == kind && !one.passed;
@@ -71,7 +72,7 @@ fn the_torque_of_one_drive_in_another_unit_is_named() {
     assert!(words.contains("about 0.001 times as large"), "{words}");
 }
 
-/// The check of a kind that found something.
+/// Failed check of a kind.
 fn found(result: &Identification, kind: CheckKind) -> &Check {
     let mut own = result.checks.iter().filter(|one| !one.passed);
     let told = || format!("{:?}", result.warnings);
@@ -106,7 +107,7 @@ fn what_all_drives_have_in_common_is_told_of_each() {
 
 #[test]
 fn a_filter_that_all_signals_have_passed_is_told_by_dry_friction() {
-    // A lag of the first order of 10 ms at 1 kHz.
+    // First-order lag of 10 ms at 1 kHz.
     let last = Cell::new(None::<[f64; 4]>);
     let result = identified(TEMPLATE, |positions, torques| {
         let now = [positions[0], positions[1], torques[0], torques[1]];
@@ -146,12 +147,12 @@ fn nothing_of_this_is_said_of_the_robot_as_it_is() {
     assert_eq!(result.grade(), Grade::Use, "{:?}", result.warnings);
 }
 
-/// Inverse dynamics of base parameters, whose columns are chosen for the fewest operations, from what was
-/// identified in other sums.
+/// Inverse dynamics of base parameters, whose columns minimise operations, from estimates of other
+/// sums.
 #[test]
 fn functions_take_what_was_identified() {
     use overact::{Function, Model};
-    // A period of its run, and no elimination of parameters: the base parameters are what is compared.
+    // One period of its run, without elimination: only base parameters are compared.
     let text = include_str!("../../robots/rx90.toml")
         .replace("duration = \"20 s\"", "duration = \"5 s\"")
         .replace("decimation = 10", "decimation = 10\nessential = false");
@@ -169,7 +170,7 @@ fn functions_take_what_was_identified() {
             .find(|one| one.name == name)
             .map(|one| one.value)
     };
-    // W χ with the estimate's own columns is what the functions give.
+    // W χ with the estimate's columns equals the functions' result.
     let (q, v, a) = (
         [0.3, -0.4, 0.5, -0.6, 0.7, -0.8],
         [0.1, 0.2, -0.3, 0.4, -0.5, 0.6],
@@ -194,7 +195,7 @@ fn functions_take_what_was_identified() {
             *torque += regressor[row * columns + at] * value;
         }
     }
-    // A base column is that of the parameter which is kept.
+    // A base column is that of the kept parameter.
     let model = robot.model().model();
     let mut torques = [0.0; 6];
     for (base, value) in model.base.iter().zip(&values) {

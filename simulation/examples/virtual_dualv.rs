@@ -1,6 +1,7 @@
-//! A virtual DualV under PD control without and with feed-forward, like the paper's Table 4: prints
-//! the largest tracking errors of each motor.
-//! `cargo run --release -p overact-simulation --example virtual_dualv`
+//! Virtual DualV under PD control with and without feed-forward, as in the paper's Table 4.
+//!
+//! Prints the largest tracking errors of each motor. Run it with `cargo run --release -p
+//! overact-simulation --example virtual_dualv`.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -10,7 +11,7 @@ use std::time::Instant;
 use overact_simulation::{Experiment, Run, Term, Trajectory, simulate};
 use support::{Robot, mechanisms::DualV};
 
-/// A smooth motion; `shift` makes each run another one.
+/// A smooth motion; `shift` makes each run different.
 fn trajectory(shift: f64) -> Trajectory {
     let term = |coordinate: &str, harmonic, amplitude, phase_rad| Term {
         coordinate: coordinate.into(),
@@ -32,7 +33,7 @@ fn trajectory(shift: f64) -> Trajectory {
 }
 
 fn main() -> Result<(), overact_simulation::Error> {
-    // Table 2, case 1, and friction of the motors: ia, fv, fs of each leg; m, mx, my, zz.
+    // Parameters of Table 2 (case 1) and motor friction: ia, fv, fs of each leg; m, mx, my, zz.
     let mut parameters = Vec::new();
     for inertia in [4.45e-2, 4.81e-2, 4.81e-2, 5.07e-2] {
         parameters.extend([inertia, 0.02, 0.2]);

@@ -1,4 +1,4 @@
-//! A robot under the position and velocity loops of an industrial drive, along a recorded reference.
+//! Robot under the position and velocity loops of industrial drives, along a recorded reference.
 //!
 //! At each sample the drive of every actuator computes
 //!
@@ -6,10 +6,10 @@
 //! u = k_v (k_p (q_d - q) - q̇),   |u| <= u_max,   τ = g u
 //! ```
 //!
-//! from the exact position and velocity, and holds the torque until the next sample. Between samples the
-//! plant is integrated by the Runge-Kutta method of fourth order, one step for each sampling period; the
-//! robot starts at rest where the reference starts. Sensors are ideal: what comes out is the motion that a
-//! robot with these parameters makes, without the errors of a measured one.
+//! from the exact position and velocity, and holds the torque until the next sample. Between
+//! samples the plant is integrated by the fourth-order Runge-Kutta method, one step per sampling
+//! period. The robot starts at rest at the start of the reference. Sensors are ideal: the result is
+//! the robot's motion without measurement errors.
 
 use overact::{Function, Model};
 
@@ -20,19 +20,19 @@ use crate::{
     run::Record,
 };
 
-/// An actuator that is off by more than this (rad or m) has left its reference.
+/// Tracking error (rad or m) at which an actuator has left its reference.
 const LOST: f64 = 1.0;
 
-/// The loops of all drives; a value for each actuator.
+/// Loops of all drives, with one value per actuator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cascade {
     /// k_p, 1/s.
     pub position_gain: Vec<f64>,
     /// k_v, units of u in (m/s) or (rad/s).
     pub velocity_gain: Vec<f64>,
-    /// g, N or N m in a unit of u.
+    /// g, N or N m for each unit of u.
     pub drive_gain: Vec<f64>,
-    /// u_max; none is no limit.
+    /// u_max; `None` for no limit.
     pub limit: Option<Vec<f64>>,
 }
 
@@ -49,11 +49,13 @@ pub struct Recorded<'a> {
     pub positions: &'a [f64],
 }
 
-/// The motion of a robot with the given parameters (the payload's last, zero in an unloaded run) along
-/// a reference.
+/// Motion of a robot along a reference.
+///
+/// The payload's parameters come last and are zero in a run without payload.
 ///
 /// # Errors
-/// A reference that the robot can't start from, a robot that leaves it, parameters of no mass.
+/// A reference that the robot cannot start from, a robot that leaves it, or parameters without
+/// mass.
 pub fn follow_recorded(
     model: &dyn Model,
     cascade: &Cascade,
@@ -106,7 +108,7 @@ pub fn follow_recorded(
 }
 
 impl Cascade {
-    /// τ of an actuator.
+    /// Torque τ of an actuator.
     fn torque(&self, actuator: usize, error: f64, velocity: f64) -> f64 {
         let wanted = self.position_gain[actuator] * error - velocity;
         let signal = self.velocity_gain[actuator] * wanted;
@@ -157,7 +159,7 @@ mod tests {
     use crate::support::{Robot, mechanisms::TwoMotors};
     use overact::{Error, Function, Info, Model, SampleError};
 
-    /// Two motors on one mass, whose pose is the position of the first.
+    /// Two motors on one mass; the pose is the position of the first motor.
     struct Slide(Robot<TwoMotors>);
 
     impl Model for Slide {
@@ -183,7 +185,7 @@ mod tests {
     #[test]
     fn two_drives_bring_a_mass_to_its_reference_as_the_loops_say() {
         let model = Slide(Robot::new(TwoMotors));
-        // 2 kg altogether, no friction: each drive sees half of it.
+        // 2 kg in total, no friction: half of it for each drive.
         let parameters = [0.3, 0.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.4];
         let cascade = Cascade {
             position_gain: vec![10.0; 2],
@@ -201,7 +203,7 @@ mod tests {
             positions: &step,
         };
         let record = follow_recorded(&model, &cascade, &parameters, reference).unwrap();
-        // At first the limit: 2 N of each drive, 2 m/s².
+        // At first limited: 2 N from each drive, 2 m/s².
         assert!((record.torques[2] - 2.0).abs() < 1e-12);
         assert!((record.positions[2 * 51] - 0.5 * 2.0 * 0.05_f64.powi(2)).abs() < 1e-9);
         let last = record.positions[record.positions.len() - 1];

@@ -1,21 +1,23 @@
-//! The controller of Fig. 4: independent PD on every actuator, a filtered derivative, feed-forward of
-//! the inverse dynamics, removal of internal torques by eq. (50), and the torque limit.
+//! Controller of Fig. 4: PD control of every actuator with filtered derivative, and feed-forward.
 //!
-//! **Gains.** The error of a controlled mass m obeys m (ë + 2ξω_c ė + ω_c² e) = 0 with K_p = ω_c² m and
-//! K_d = 2ξω_c m, ω_c = 2πf_c. A parallel robot has no mass per actuator but the mass matrix M on the
-//! platform. With J = J_p^inv, least squares gives the actuators' inertia matrix J^{+T} M J^+; its
-//! diagonal at home, d, shares the inertia among the actuators, and m_i = c d_i scales it. Small errors
-//! of the platform obey M δẍ + Jᵀ K_d J δẋ + Jᵀ K_p J δx = 0, whose squared natural frequencies are ω_c²
-//! times the eigenvalues of M^-1 Jᵀ diag(m) J. The factor c makes the largest of them, over poses
-//! spread along the run, equal to 1: no mode anywhere is faster than the chosen bandwidth. This
-//! matters because the derivative's filter (70 Hz, like the bandwidth) leaves a phase margin of some
-//! 15 degrees only, which a mode of twice the frequency would lose. For the paper's Fig. 1 (two motors
-//! on one mass) it gives each motor half of the mass.
+//! It also removes internal torques by eq. (50) and limits the torques.
+//!
+//! **Gains.** The error of a controlled mass m obeys m (ë + 2ξω_c ė + ω_c² e) = 0 with K_p = ω_c²
+//! m, K_d = 2ξω_c m and ω_c = 2πf_c. A parallel robot has no mass per actuator but the mass matrix
+//! M on the platform. With J = J_p^inv, least squares gives the actuators' inertia matrix J^{+T} M
+//! J^+. Its diagonal d at home distributes the inertia over the actuators, scaled as m_i = c d_i.
+//!
+//! Small errors of the platform obey M δẍ + Jᵀ K_d J δẋ + Jᵀ K_p J δx = 0. Its squared natural
+//! frequencies are ω_c² times the eigenvalues of M^-1 Jᵀ diag(m) J. The factor c makes the largest
+//! of them, over poses along the run, equal to 1: no mode is faster than the chosen bandwidth. This
+//! matters because the derivative filter (70 Hz, like the bandwidth) leaves a phase margin of about
+//! 15 degrees. A mode of twice the frequency would have none. For the paper's Fig. 1 (two motors on
+//! one mass) each motor gets half of the mass.
 //!
 //! **Derivative.** d_k = a d_{k-1} + (1 - a)(e_k - e_{k-1})/T with a = exp(-2π f_d T).
 //!
-//! **Projection.** (50) is evaluated at the desired pose, which the controller knows without forward
-//! kinematics. The limit comes last, as an amplifier's would.
+//! **Projection.** (50) is evaluated at the desired pose, which needs no forward kinematics. The
+//! torque limit comes last, as in an amplifier.
 
 use nalgebra::{DMatrix, Matrix4, SymmetricEigen};
 use overact::{Columns, Function, Model};
@@ -23,9 +25,9 @@ use std::f64::consts::TAU;
 
 use crate::{error::Cause, experiment::Experiment};
 
-/// A controller in the loop: the simulation's own, or one that is to be tried on the virtual robot.
+/// Controller in the loop: the simulation's own, or one under test.
 pub trait Control {
-    /// Writes the n torques for one sample from what the trajectory asks for and the measured positions.
+    /// Writes the n torques of one sample from the desired motion and the measured positions.
     ///
     /// # Errors
     /// A motion for which the controller's model has no value; the run ends there.
@@ -37,7 +39,7 @@ pub trait Control {
     ) -> Result<(), overact::Error>;
 }
 
-/// Controller of one run; nothing is allocated after `new`.
+/// Controller of one run; allocates in `new` only.
 pub(crate) struct Controller<'a> {
     model: &'a dyn Model,
     stiffness: Vec<f64>,
@@ -47,7 +49,7 @@ pub(crate) struct Controller<'a> {
     smoothing: f64,
     project: bool,
     limit: Option<&'a [f64]>,
-    /// Errors of the previous sample; none before the first.
+    /// Errors of the previous sample, unused before the first.
     previous: Vec<f64>,
     started: bool,
     derivative: Vec<f64>,
@@ -55,7 +57,7 @@ pub(crate) struct Controller<'a> {
 }
 
 impl<'a> Controller<'a> {
-    /// A controller for actuators of the given effective inertias (kg m² or kg) of a robot.
+    /// Controller for actuators with given effective inertias (kg m² or kg).
     pub(crate) fn new(model: &'a dyn Model, experiment: &'a Experiment, inertia: &[f64]) -> Self {
         let dof = model.info().sizes.dof;
         let rate = TAU * experiment.bandwidth_hz;
@@ -115,7 +117,7 @@ impl Control for Controller<'_> {
     }
 }
 
-/// What the trajectory asks for at one sample.
+/// Desired motion at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Desired<'a> {
     /// Platform pose.
@@ -124,9 +126,9 @@ pub struct Desired<'a> {
     pub twist: &'a [f64],
     /// Its derivative, m/s² or rad/s².
     pub acceleration: &'a [f64],
-    /// Positions of the n actuators, m or rad, without jumps of a turn.
+    /// Positions of the n actuators, m or rad, unwrapped.
     pub positions: &'a [f64],
-    /// Feed-forward torques, N m or N; zero where the experiment has none.
+    /// Feed-forward torques, N m or N; zero without feed-forward.
     pub torques: &'a [f64],
 }
 
@@ -135,8 +137,9 @@ fn smoothing(experiment: &Experiment) -> f64 {
     (-TAU * experiment.derivative_cutoff_hz / experiment.sampling_hz).exp()
 }
 
-/// Largest modulus of the poles of one mode at the chosen bandwidth, sampled, with held torques: below
-/// one the loop is stable. The state is (x, v, x_{k-1}, d_{k-1}) of a unit mass.
+/// Spectral radius of one mode at the chosen bandwidth, sampled with held torques.
+///
+/// The loop is stable below one. The state is (x, v, x_{k-1}, d_{k-1}) of a unit mass.
 pub(crate) fn spectral_radius(experiment: &Experiment) -> f64 {
     let (t, a) = (1.0 / experiment.sampling_hz, smoothing(experiment));
     let rate = TAU * experiment.bandwidth_hz;
@@ -179,7 +182,7 @@ pub(crate) fn effective_inertia<'p>(
     let shares = inertia.diagonal();
     let mut largest = highest_ratio(&jacobian, &mass, shares.as_slice())?;
     for pose in poses {
-        // A pose out of reach is left to the reference, which tells the exact time.
+        // The reference reports unreachable poses with their exact time.
         let Ok((jacobian, mass)) = jacobian_and_mass(model, parameters, pose) else {
             continue;
         };
@@ -188,7 +191,7 @@ pub(crate) fn effective_inertia<'p>(
     Ok(shares.iter().map(|share| share / largest).collect())
 }
 
-/// J_p^inv and M of a pose.
+/// J_p^inv and M at a pose.
 fn jacobian_and_mass(
     model: &dyn Model,
     parameters: &[f64],
@@ -246,7 +249,7 @@ mod tests {
     fn two_motors_on_one_mass_share_it() {
         let parameters = [0.3, 0.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.4];
         let inertia = effective_inertia(&Robot::new(TwoMotors), &parameters, std::iter::empty());
-        // 2.0 kg altogether.
+        // 2.0 kg in total.
         for m in inertia.unwrap() {
             assert!((m - 1.0).abs() < 1e-14);
         }
@@ -314,8 +317,8 @@ mod tests {
     #[test]
     fn the_papers_loop_is_stable_at_5_khz_and_not_at_600_hz() {
         let paper = Experiment::default();
-        // The slowest pole of the continuous loop s³ + s² + 2.4 s + 1 (in units of ω_c) is its complex
-        // pair with real part -0.267; sampling at 5 kHz adds delay but keeps it stable.
+        // The slowest pole of the continuous loop s³ + s² + 2.4 s + 1 (in units of ω_c) has the
+        // real part −0.267. Sampling at 5 kHz adds delay but keeps the loop stable.
         let radius = spectral_radius(&paper);
         assert!(
             radius < 1.0 && radius > (-0.267 * TAU * 70.0 / 5000.0_f64).exp(),

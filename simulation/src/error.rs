@@ -1,49 +1,49 @@
-//! What can go wrong in a virtual experiment, in words that name the place and a way out.
+//! Errors of a virtual experiment, with location and advice.
 
 use std::fmt;
 
-/// Why there are no records.
+/// Error of a virtual experiment.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// Values of the experiment (or the search) that make no sense for this robot, all of them.
+    /// All invalid values of the experiment or the search for this robot.
     Experiment(Vec<Problem>),
-    /// Runs that could not be finished, in the order of the experiment.
+    /// Runs that failed, in the order of the experiment.
     Runs(Vec<RunError>),
     /// The search for exciting trajectories found none.
     NoTrajectory {
-        /// Candidates that were tried.
+        /// Number of candidates tried.
         candidates: usize,
-        /// Of these, candidates that the robot can reach everywhere.
+        /// Number of candidates that the robot can follow completely.
         reachable: usize,
     },
     /// The model has no value at the home pose, so nothing can be scaled there.
     Home(overact::Error),
 }
 
-/// A value that makes no sense, and what would.
+/// An invalid value, with advice.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
     /// Path of the value, such as `runs[1].trajectory.terms[0].coordinate`.
     pub field: String,
-    /// What is wrong and what would be right.
+    /// Problem and advice.
     pub message: String,
 }
 
-/// A run that could not be finished.
+/// A run that failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunError {
     /// Name of the run.
     pub run: String,
     /// Time in the run, s.
     pub time_s: f64,
-    /// Where in the loop.
+    /// Stage of the loop.
     pub stage: Stage,
-    /// What happened.
+    /// Cause.
     pub cause: Cause,
 }
 
-/// A place in the control loop.
+/// Stage of the control loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     /// The desired motion.
@@ -54,7 +54,7 @@ pub enum Stage {
     Plant,
 }
 
-/// What happened in a run.
+/// Cause of a failed run.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
@@ -66,7 +66,7 @@ pub enum Cause {
     Lost {
         /// Name of the actuator.
         actuator: String,
-        /// How far it is off, m or rad.
+        /// Tracking error, m or rad.
         error: f64,
     },
 }
@@ -126,7 +126,7 @@ impl fmt::Display for Error {
     }
 }
 
-/// Writes one item a line.
+/// Writes one item per line.
 fn lines(f: &mut fmt::Formatter<'_>, items: &[impl fmt::Display]) -> fmt::Result {
     for (i, item) in items.iter().enumerate() {
         if i > 0 {

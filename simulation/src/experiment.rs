@@ -1,7 +1,8 @@
-//! An experiment as plain data: what is controlled, how it is measured, and which runs are made.
+//! Experiment as plain data: control, measurement and runs.
 //!
-//! The defaults are those of the DualV in section 5.1 of the paper: a PD controller of 70 Hz and
-//! damping 0.7 whose derivative is filtered at 70 Hz, with feed-forward and projection (50), at 5 kHz.
+//! The defaults are those of the DualV in section 5.1 of the paper: PD control of 70 Hz bandwidth
+//! and damping 0.7 at 5 kHz. The derivative is filtered at 70 Hz; feed-forward and projection (50)
+//! are on.
 
 use overact::Sizes;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ use crate::{drives::Drives, trajectory::Trajectory};
 pub struct Experiment {
     /// Sampling frequency of controller and sensors, Hz.
     pub sampling_hz: f64,
-    /// Duration of the runs that give none of their own, s.
+    /// Default duration of a run, s.
     pub duration_s: f64,
     /// Natural frequency of the controlled robot f_c, Hz: ω_c = 2π f_c.
     pub bandwidth_hz: f64,
@@ -28,23 +29,23 @@ pub struct Experiment {
     pub project_internal: bool,
     /// Encoder resolution of each of the n actuators, rad or m; 0 is ideal. Empty: all ideal.
     pub encoder_resolution: Vec<f64>,
-    /// Time by which the positions that controller and log see are late, s, rounded to samples.
+    /// Delay of the positions for controller and log, s, rounded to samples.
     pub encoder_delay_s: f64,
     /// Standard deviation of the torque measurement of each of the n actuators, N m or N. Empty: 0.
     pub torque_noise: Vec<f64>,
     /// Largest absolute torque of each of the n actuators, N m or N.
     pub torque_limit: Option<Vec<f64>>,
-    /// What the drives make of the controller's torques.
+    /// Non-ideal drives.
     pub drives: Drives,
     /// Seed of all noise.
     pub seed: u64,
     /// True parameters of the robot in the model's column order, the payload's last (SI units).
     pub parameters: Vec<f64>,
-    /// Parameters that the controller believes in, in the same order; the true ones if absent.
+    /// Parameters of the controller's model, in the same order; by default the true ones.
     pub nominal_parameters: Option<Vec<f64>>,
     /// The runs.
     pub runs: Vec<Run>,
-    /// Steps of the integrator in one sampling period.
+    /// Integration steps per sampling period.
     pub integration_steps: usize,
 }
 
@@ -57,7 +58,7 @@ pub struct Run {
     /// Whether the payload is on the platform.
     #[serde(default)]
     pub payload: bool,
-    /// Duration, s; that of the experiment if absent.
+    /// Duration, s; by default that of the experiment.
     #[serde(default)]
     pub duration_s: Option<f64>,
     /// The desired motion of the platform.
@@ -96,19 +97,19 @@ impl Experiment {
         (run.duration_s.unwrap_or(self.duration_s) * self.sampling_hz).round() as usize
     }
 
-    /// True parameters of the robot as it is in a run: the payload's are zero without payload.
+    /// True parameters in a run; the payload's are zero without payload.
     pub(crate) fn true_parameters(&self, run: &Run, sizes: &Sizes) -> Vec<f64> {
         loaded(&self.parameters, run.payload, sizes)
     }
 
-    /// Parameters that the controller uses in a run.
+    /// Parameters of the controller's model in a run.
     pub(crate) fn controller_parameters(&self, run: &Run, sizes: &Sizes) -> Vec<f64> {
         let nominal = self.nominal_parameters.as_ref().unwrap_or(&self.parameters);
         loaded(nominal, run.payload, sizes)
     }
 }
 
-/// The parameters with the payload's set to zero where there is none.
+/// Parameters with the payload's set to zero in runs without payload.
 fn loaded(parameters: &[f64], payload: bool, sizes: &Sizes) -> Vec<f64> {
     let mut parameters = parameters.to_vec();
     if !payload {

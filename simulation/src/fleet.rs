@@ -1,11 +1,9 @@
-//! Many robots of one description over many days: no two are alike, some change, and some are not what their
-//! papers say.
+//! Fleet of different robots of one description over many days, with faults.
 //!
-//! A robot's bodies have masses of their own, with their moments and inertias in proportion, so that each stays
-//! a body that can be; its friction is its own, and that of a day is not that of the day before. Of two builds,
-//! taken in turn, the second has the last body of its first leg 3 % heavier. A given share of the robots suffers
-//! from each [`Fault`]. All of it follows from the seed, the number of the robot and the day, whatever else is
-//! simulated.
+//! The masses of a robot's bodies vary, with moments and inertias in proportion, so that bodies
+//! stay physically consistent. Friction varies between robots and from day to day. Two builds
+//! alternate; in the second, the last body of the first leg is 3 % heavier. A given share of the
+//! robots has each [`Fault`]. Everything follows from the seed, the robot's number and the day.
 
 use overact::{Body, Info, StandardParameter as P};
 use rand::RngExt;
@@ -14,50 +12,50 @@ use rand_pcg::Pcg64;
 
 use crate::run::Record;
 
-/// Deviation of the masses of bodies, as a part of them.
+/// Relative standard deviation of body masses.
 const MASS_SPREAD: f64 = 0.02;
 
-/// Deviation of the logarithm of friction from robot to robot, and from day to day.
+/// Standard deviation of the logarithm of friction, between robots and between days.
 const FRICTION_SPREAD: [f64; 2] = [0.15, 0.01];
 
-/// By how much a body of the second build is heavier.
+/// Relative excess mass of a body of the second build.
 const SECOND_BUILD: f64 = 0.03;
 
-/// By how much the mass of a platform is off that is not what the order says.
+/// Relative mass error of a wrong payload.
 const WRONG_PAYLOAD: f64 = 0.20;
 
-/// A fleet.
+/// Settings of a fleet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fleet {
-    /// Days, of which each robot makes a run.
+    /// Number of days, with one run per robot and day.
     pub days: usize,
-    /// Seed of everything.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Part of the robots that suffer from each fault.
+    /// Fraction of the robots with each fault.
     pub share: f64,
-    /// By how much viscous friction grows, as a part of it.
+    /// Relative growth of viscous friction.
     pub friction_drift: f64,
-    /// By how much a first moment of mass grows, as a part of it.
+    /// Relative growth of a first moment.
     pub moment_drift: f64,
 }
 
-/// What is wrong with a robot.
+/// Fault of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
     /// Nothing.
     None,
-    /// Viscous friction of a joint grows, within a third of the days.
+    /// Viscous friction of a joint grows, over a third of the days.
     Friction,
-    /// A first moment of mass of a link grows, within a third of the days.
+    /// A first moment of a link grows, over a third of the days.
     Moment,
-    /// The platform's mass is another one from the first day on.
+    /// The platform has another mass from the first day on.
     Payload,
-    /// An encoder shows the same position from a day on.
+    /// An encoder is stuck from a day on.
     Encoder,
 }
 
 impl Fault {
-    /// All of them.
+    /// All faults.
     pub const ALL: [Self; 5] = [
         Self::None,
         Self::Friction,
@@ -66,7 +64,7 @@ impl Fault {
         Self::Encoder,
     ];
 
-    /// A word for it.
+    /// Name of the fault.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -83,19 +81,19 @@ impl Fault {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Member {
-    /// Its number, from 0.
+    /// Number, from 0.
     pub number: usize,
-    /// Its build, `A` or `B`.
+    /// Build, `A` or `B`.
     pub build: char,
-    /// What is wrong with it.
+    /// Fault.
     pub fault: Fault,
-    /// The column of the parameter that is concerned, or the number of the actuator whose encoder is.
+    /// Column of the affected parameter, or number of the actuator with the affected encoder.
     pub place: usize,
-    /// The day from which on it is wrong, from 0.
+    /// First day of the fault, from 0.
     pub begin: usize,
-    /// Its parameters on the first day, without friction's daily part and without the fault.
+    /// Parameters on the first day, without daily friction changes and the fault.
     pub parameters: Vec<f64>,
-    /// Columns of friction.
+    /// Columns of friction parameters.
     friction: Vec<usize>,
 }
 
@@ -128,7 +126,7 @@ impl Fleet {
         }
     }
 
-    /// By how much the parameter that is concerned is larger on a day, as a part of it.
+    /// Relative change of the affected parameter on a day.
     #[must_use]
     pub fn size(&self, member: &Member, day: usize) -> f64 {
         let whole = match member.fault {
@@ -142,7 +140,7 @@ impl Fleet {
         whole * days as f64 / ramp as f64
     }
 
-    /// The parameters of a robot on a day.
+    /// Parameters of a robot on a day.
     #[must_use]
     pub fn on(&self, member: &Member, day: usize) -> Vec<f64> {
         let mut random = self.random(member.number, 1 + day);
@@ -156,13 +154,13 @@ impl Fleet {
         own
     }
 
-    /// The seed of the noise of a robot on a day.
+    /// Noise seed of a robot on a day.
     #[must_use]
     pub fn noise(&self, member: &Member, day: usize) -> u64 {
         self.random(member.number, (1 << 20) + day).random()
     }
 
-    /// What a dead encoder makes of a record: of its actuator the first position.
+    /// Applies a stuck encoder: the actuator keeps its first position.
     pub fn spoil(&self, member: &Member, day: usize, record: &mut Record) {
         if member.fault != Fault::Encoder || day < member.begin {
             return;
@@ -180,7 +178,7 @@ impl Fleet {
     }
 }
 
-/// Parameters of a robot of a build around nominal ones, and the columns of its friction.
+/// Parameters of a robot around nominal ones, and the columns of friction.
 fn spread(
     (info, nominal): (&Info<'_>, &[f64]),
     build: char,
@@ -192,7 +190,7 @@ fn spread(
         _ => None,
     });
     let last = last.max();
-    // The factor of each body, in the order in which bodies come.
+    // Mass factor of each body, in order of appearance.
     let mut bodies: Vec<(Body, f64)> = Vec::new();
     let mut parameters = nominal.to_vec();
     let mut friction = Vec::new();
@@ -217,7 +215,9 @@ fn spread(
     (parameters, friction)
 }
 
-/// The column, or the actuator, that a fault concerns, by a number from 0 to 1; no fault where there is none.
+/// Column or actuator that a fault affects, chosen by a number from 0 to 1.
+///
+/// The fault becomes `None` if the robot has no such parameter.
 fn concerned(fault: Fault, (info, nominal): (&Info<'_>, &[f64]), drawn: f64) -> (Fault, usize) {
     let of = |wanted: &dyn Fn(P, &Body) -> bool| -> Vec<usize> {
         let all = info.parameters.iter().chain(info.payload_parameters);
@@ -235,7 +235,7 @@ fn concerned(fault: Fault, (info, nominal): (&Info<'_>, &[f64]), drawn: f64) -> 
         Fault::None => None,
         Fault::Encoder => Some((drawn * info.sizes.actuators as f64) as usize),
         Fault::Friction => any(of(&|symbol, _| symbol == P::Fv)),
-        // The largest: what a body of some size has.
+        // The largest first moment, that of a body of some size.
         Fault::Moment => largest(
             &of(&|symbol, _| matches!(symbol, P::Mx | P::My | P::Mz)),
             nominal,

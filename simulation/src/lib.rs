@@ -1,9 +1,9 @@
-//! Virtual experiments of parallel robots, overactuated or not: what a laboratory would record when
-//! the robot with known parameters follows given trajectories.
+//! Virtual experiments of parallel and serial robots, overactuated or not.
 //!
-//! An [`Experiment`] is plain data: controller, sensors, true parameters and [`Run`]s with their
-//! [`Trajectory`]. [`simulate`] closes the loop of the paper's Fig. 4 around a robot that is known
-//! only by the trait [`overact::Model`], so compiled and interpreted robots serve alike:
+//! They produce what a laboratory would record when a robot with known parameters follows given
+//! trajectories. An [`Experiment`] is plain data: controller, sensors, true parameters and [`Run`]s
+//! with their [`Trajectory`]. [`simulate`] closes the loop of the paper's Fig. 4 around a robot
+//! that implements [`overact::Model`], compiled or interpreted:
 //!
 //! ```text
 //!  trajectory --x_d, v_d, v̇_d--> inverse dynamics --τ_ff--+
@@ -42,9 +42,8 @@
 //! }
 //! ```
 //!
-//! Results are the same to the last bit whenever the same model, on the same machine, is given the
-//! same experiment: every noise stream is seeded by run name and actuator, and no result depends on
-//! the order in which threads finish.
+//! Results of the same model and experiment on the same machine are bitwise equal. Every noise
+//! stream is seeded by run name and actuator, and no result depends on the order of threads.
 
 pub mod cascade;
 mod controller;

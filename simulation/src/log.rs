@@ -1,7 +1,7 @@
-//! A record as CSV, as the identification reads it.
+//! Writes a record as CSV, in the format that the identification reads.
 //!
-//! The header is `time,q_<actuator>,…,tau_<actuator>,…`; times in s, positions in rad or m, torques in
-//! N m or N. Numbers are written with the fewest digits that read back as the same `f64`.
+//! The header is `time,q_<actuator>,…,tau_<actuator>,…`; times in s, positions in rad or m, torques
+//! in N m or N. Numbers have the fewest digits that read back as the same `f64`.
 
 use std::{
     fmt::Write as _,
@@ -13,7 +13,7 @@ use crate::run::Record;
 /// Writes a record.
 ///
 /// # Errors
-/// What the writer refuses.
+/// Errors of the writer.
 pub fn write_csv(record: &Record, writer: impl Write) -> io::Result<()> {
     let n = record.actuators.len();
     let mut csv = csv::Writer::from_writer(writer);

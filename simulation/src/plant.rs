@@ -1,22 +1,24 @@
-//! The robot under given torques: v̇ = M(x)^-1 (Γ¹(τ) - h(x, v)), with Γ¹ = (J_p^inv)ᵀ τ of eq. (30)
-//! and h the bias (Coriolis, gravity, friction, offsets), all with the true parameters: the model's
-//! forward dynamics.
+//! Forward dynamics of the robot under given torques, with the true parameters.
 //!
-//! Torques are held between samples and the state advances by the classical Runge-Kutta method of
-//! fourth order with a fixed step. Where the platform coordinates add, ẋ = v and the method is of
-//! fourth order; with a quaternion the stages and the step are displacements along the mean twist, so
-//! the pose is of second order in rotations whose axis turns (the error of a step is |ω x ω̇| h³ / 12,
-//! about 1e-12 rad for ω = 1 rad/s, ω̇ = 10 rad/s², h = 0.1 ms).
+//! v̇ = M(x)^-1 (Γ¹(τ) - h(x, v)), with Γ¹ = (J_p^inv)ᵀ τ of eq. (30) and the bias h (Coriolis,
+//! gravity, friction, offsets).
 //!
-//! Coulomb friction is fs sign(q̇) with sign(0) = 0, not regularised. A joint that ought to stick is
-//! decelerated across zero within a step and back in the next: its velocity chatters within about
-//! (friction force / inertia) h around zero, and the mean of the friction force is that of sticking.
+//! Torques are held between samples, and the state advances by the classical fourth-order
+//! Runge-Kutta method with a fixed step. If the platform coordinates are additive, ẋ = v and the
+//! method is of fourth order. With a quaternion, the stages and the step are displacements along
+//! the mean twist. The pose is then of second order in rotations about a turning axis. The error of
+//! a step is |ω x ω̇| h³ / 12, for example about 1e-12 rad for ω = 1 rad/s, ω̇ = 10 rad/s², h = 0.1
+//! ms.
+//!
+//! Coulomb friction is fs sign(q̇) with sign(0) = 0, without regularisation. A joint that should
+//! stick is decelerated across zero within a step and back in the next. Its velocity chatters
+//! within about (friction force / inertia) h around zero, with the mean friction force of sticking.
 
 use overact::{Columns, Error as ModelError, Function, Model};
 
 use crate::error::Cause;
 
-/// The state of the robot and the memory of one step; nothing is allocated after `new`.
+/// State of the robot and memory of one step; allocates in `new` only.
 pub(crate) struct Plant<'a> {
     model: &'a dyn Model,
     parameters: &'a [f64],
@@ -28,7 +30,7 @@ pub(crate) struct Plant<'a> {
     stage_twist: Vec<f64>,
     /// Sum of the stages' twists with the weights 1, 2, 2, 1.
     twist_sum: Vec<f64>,
-    /// The same of their accelerations.
+    /// Sum of the stages' accelerations with the same weights.
     acceleration_sum: Vec<f64>,
     acceleration: Vec<f64>,
     step: Vec<f64>,
@@ -64,7 +66,7 @@ impl<'a> Plant<'a> {
         Ok(())
     }
 
-    /// The pose after `time` seconds of the present twist.
+    /// Pose after `time` seconds with the current twist.
     pub(crate) fn ahead(&self, time: f64) -> Vec<f64> {
         let mut pose = self.pose.clone();
         let step: Vec<f64> = self.twist.iter().map(|twist| time * twist).collect();
@@ -155,7 +157,8 @@ mod tests {
         0.5 * (0..r).map(|a| plant.twist[a] * moment(a)).sum::<f64>()
     }
 
-    /// Kinetic energy gained less the work of the torques, over 0.2 s. Held torques do the work τ Δq.
+    /// Gain of kinetic energy minus the work of the torques over 0.2 s; held torques do the work τ
+    /// Δq.
     fn energy_residual(h: f64, steps: usize) -> f64 {
         let model = Robot::new(Tripod);
         let mut plant = Plant::new(&model, &TRIPOD, &[0.05, -0.02], &[0.7, -0.4]);
@@ -187,9 +190,9 @@ mod tests {
 
     #[test]
     fn the_work_of_the_torques_is_the_gain_of_kinetic_energy() {
-        // At the step of a 5 kHz experiment with two steps a sample, energies being about 1 J.
+        // The step of a 5 kHz experiment with two steps per sample; energies are about 1 J.
         assert!(energy_residual(1e-4, 200) < 1e-13);
-        // Fourth order: a step ten times as long has an error about 1e4 times as large.
+        // Fourth order: a step ten times as long has about 1e4 times the error.
         let (long, short) = (energy_residual(2e-2, 1), energy_residual(2e-3, 10));
         assert!(
             (3.0..5.0).contains(&(long / short).log10()),
@@ -224,7 +227,7 @@ mod tests {
             plant.pose[0]
         );
         assert!(plant.twist[0].abs() < 3.0 / 2.0 * 1e-4 * 2.0);
-        // A force below friction does not move it more than chatter would.
+        // A force below friction moves it no more than chatter.
         let held = plant.pose[0];
         plant.advance(&[1.0, 1.0], 1e-4, 10_000).unwrap();
         assert!(
@@ -232,7 +235,7 @@ mod tests {
             "{}",
             plant.pose[0] - held
         );
-        // A force above it does: (4 - 3) / 2 m/s² for 1 s.
+        // A force above friction moves it: (4 - 3) / 2 m/s² for 1 s.
         plant.advance(&[2.0, 2.0], 1e-4, 10_000).unwrap();
         assert!((plant.pose[0] - held - 0.25).abs() < 5e-4);
     }

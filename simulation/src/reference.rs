@@ -1,12 +1,16 @@
-//! The desired motion of platform and actuators, block by block, so that a model works on many
-//! samples in one call and memory does not grow with the run.
+//! Desired motion of platform and actuators, block by block.
 //!
-//! Where the platform coordinates add, twist and acceleration are the derivatives of the trajectory's
-//! displacement. With a quaternion they are found from the motion of the actuators, whatever chart the
-//! model's `displace` defines: q(t) by inverse kinematics, its derivatives by central differences of
-//! sixth order, then v by eq. (21) and v̇ by eq. (24), which hold exactly for a consistent q̇ and q̈.
-//! The differences are exact to about 1e-9 relative for periodic trajectories; for point-to-point
-//! motions of a quaternion robot they are less exact near the points, where the jerk jumps.
+//! In blocks, a model evaluates many samples in one call, and memory does not grow with the run.
+//!
+//! If the platform coordinates are additive, twist and acceleration are the derivatives of the
+//! trajectory's displacement. With a quaternion they are computed from the actuators' motion,
+//! whatever chart the model's `displace` defines. q(t) comes from inverse kinematics and its
+//! derivatives from central differences of sixth order. Then v follows from eq. (21) and v̇ from
+//! eq. (24), which are exact for consistent q̇ and q̈.
+//!
+//! For periodic trajectories the relative error of the differences is about 1e-9. For
+//! point-to-point motions of a robot with a quaternion, it is larger near the points, where the
+//! jerk jumps.
 
 use overact::{Columns, Function, Info, Model, math::wrap_angle};
 
@@ -15,13 +19,13 @@ use crate::{
     trajectory::{Displacement, Trajectory},
 };
 
-/// Samples of one block.
+/// Samples per block.
 pub(crate) const BLOCK: usize = 256;
 
-/// An error of the model, and the sample of the run at which it occurred.
+/// Sample of the run and error of the model there.
 pub(crate) type AtSample = (usize, overact::Error);
 
-/// A desired motion at equal steps of time: one row of numbers for each sample.
+/// A desired motion at equal time steps, with one row of numbers per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sampled {
     /// Poses.
@@ -30,11 +34,11 @@ pub struct Sampled {
     pub twist: Vec<f64>,
     /// Their derivatives, r numbers each, m/s² or rad/s².
     pub acceleration: Vec<f64>,
-    /// Positions of the n actuators, m or rad, without jumps of a turn.
+    /// Positions of the n actuators, m or rad, unwrapped.
     pub positions: Vec<f64>,
 }
 
-/// The first `samples` samples of a trajectory, `1 / sampling_hz` seconds apart.
+/// First `samples` samples of a trajectory, `1 / sampling_hz` seconds apart.
 ///
 /// # Errors
 /// The model's error at the first sample that the robot does not reach.
@@ -67,7 +71,7 @@ pub(crate) struct Reference<'a> {
     info: Info<'a>,
     trajectory: &'a Trajectory,
     sampling_hz: f64,
-    /// Parameters of the feed-forward, if it is on.
+    /// Parameters for feed-forward, if it is on.
     parameters: Option<&'a [f64]>,
     /// Poses of the block.
     pub(crate) pose: Vec<f64>,
@@ -105,7 +109,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Fills the block with the samples `first .. first + count`; blocks follow one another.
+    /// Fills the block with the samples `first .. first + count`; blocks must be consecutive.
     pub(crate) fn fill(&mut self, first: usize, count: usize) -> Result<(), AtSample> {
         let sizes = self.info.sizes;
         self.pose.resize(count * sizes.pose, 0.0);
@@ -137,7 +141,7 @@ impl<'a> Reference<'a> {
         Ok(())
     }
 
-    /// What the trajectory asks for at one sample of the block.
+    /// Desired motion at one sample of the block.
     pub(crate) fn row(&self, row: usize) -> Desired<'_> {
         let sizes = self.info.sizes;
         let actuators = row * sizes.actuators..(row + 1) * sizes.actuators;
@@ -221,7 +225,7 @@ impl<'a> Reference<'a> {
         Ok(positions)
     }
 
-    /// Takes jumps of a turn out of the angles of the actuators.
+    /// Unwraps the angles of the actuators.
     fn make_continuous(&mut self) {
         let n = self.info.sizes.actuators;
         let mut last = self.last.take();
@@ -254,12 +258,12 @@ pub(crate) fn pose_at(model: &dyn Model, trajectory: &Trajectory, t: f64) -> Vec
     pose
 }
 
-/// Replaces each angle by the one of its turns that is nearest to the previous value.
+/// Shifts each angle by full turns to be nearest to the previous value.
 pub(crate) fn follow(positions: &mut [f64], previous: &[f64], revolute: &[bool]) {
     for ((position, previous), revolute) in positions.iter_mut().zip(previous).zip(revolute) {
         if *revolute {
             let step = *position - previous;
-            // An angle that did not jump keeps all its digits.
+            // An angle without jump keeps all its digits.
             if step.abs() > std::f64::consts::PI {
                 *position = previous + wrap_angle(step);
             }
@@ -267,7 +271,7 @@ pub(crate) fn follow(positions: &mut [f64], previous: &[f64], revolute: &[bool])
     }
 }
 
-/// Difference of two positions, of angles modulo a turn.
+/// Difference of two positions; angles modulo a turn.
 fn difference(a: f64, b: f64, revolute: bool) -> f64 {
     if revolute { wrap_angle(a - b) } else { a - b }
 }

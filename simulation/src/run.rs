@@ -1,11 +1,11 @@
-//! The closed loop over all runs of an experiment.
+//! Closed loop over all runs of an experiment.
 //!
-//! At each sample t_k the encoder is read, the controller computes torques from it at once, and the
-//! robot moves under what the drives make of them until t_{k+1}. The torque that is recorded for t_k is
-//! the mean of the currents (in units of torque) before and after t_k, so that positions and torques belong to one instant; with either of the two
-//! alone the record would be half a sample early or late.
+//! At each sample t_k the encoder is read, and the controller computes torques from it without
+//! delay. The robot then moves under the drives' torques until t_{k+1}. The recorded torque at t_k
+//! is the mean of the currents (in units of torque) before and after t_k. Positions and torques
+//! thus belong to one instant; otherwise the record would be half a sample early or late.
 //!
-//! Runs are independent and go to as many threads as the machine has; progress is told on the caller's
+//! Runs are independent and use all threads of the machine. Progress is reported on the caller's
 //! thread.
 
 use std::{
@@ -30,13 +30,13 @@ use crate::{
     train::Train,
 };
 
-/// An actuator that is off by more than this (rad or m) has left its trajectory.
+/// Tracking error (rad or m) at which an actuator has left its trajectory.
 const LOST: f64 = 1.0;
 
 /// Poses along a run at which the gains are checked.
 const GAIN_POSES: usize = 64;
 
-/// What one run records.
+/// Record of one run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Name of the run.
@@ -57,11 +57,13 @@ pub struct Record {
     pub tracking_error: Vec<f64>,
 }
 
-/// Makes all runs of an experiment. `progress` hears the fraction of the work that is done, from 0 to
-/// 1, and the name of the run that has just advanced.
+/// Simulates all runs of an experiment.
+///
+/// `progress` is called with the completed fraction, from 0 to 1, and the name of the run that
+/// advanced.
 ///
 /// # Errors
-/// All problems of the experiment, or all runs that could not be finished.
+/// All problems of the experiment, or all runs that failed.
 pub fn simulate(
     model: &dyn Model,
     experiment: &Experiment,
@@ -82,7 +84,7 @@ pub fn simulate(
         progress(done.get() as f64 / total as f64, &runs[index].name);
     };
     let results = match workers {
-        // Where there is one core alone there may be no threads at all, as in a browser.
+        // With a single core, threads may not exist, as in a browser.
         1 => (runs.iter().enumerate())
             .map(|(index, run)| simulate_run(model, experiment, run, &|n| tell(index, n)))
             .collect(),
@@ -102,7 +104,7 @@ pub fn simulate(
     }
 }
 
-/// Makes the runs in several threads; `tell` hears on this one which run has advanced by how many samples.
+/// Simulates the runs in several threads; `tell` receives on this thread a run and its new samples.
 fn in_threads(
     model: &dyn Model,
     experiment: &Experiment,
@@ -117,7 +119,7 @@ fn in_threads(
         for _ in 0..workers {
             let (sender, next) = (sender.clone(), &next);
             scope.spawn(move || {
-                // Sending fails only when the receiver has gone with its thread.
+                // Sending fails only if the receiver has gone with its thread.
                 while let index = next.fetch_add(1, Ordering::Relaxed)
                     && let Some(run) = runs.get(index)
                 {
@@ -140,12 +142,13 @@ fn in_threads(
     results.into_iter().flatten().collect()
 }
 
-/// Makes one run with a controller of the caller's in the place of the simulation's own. Of the experiment's
-/// controller only the feed-forward is computed, for those who take it from [`Desired::torques`]; what the torque
-/// limit is to the controller is its own affair.
+/// Simulates one run with the caller's controller.
+///
+/// Of the experiment's controller, only the feed-forward is computed, for [`Desired::torques`]. The
+/// caller's controller must apply the torque limit itself.
 ///
 /// # Errors
-/// All problems of the experiment with this run, or what ended the run.
+/// All problems of the experiment with this run, or the cause that ended the run.
 pub fn simulate_controlled(
     model: &dyn Model,
     experiment: &Experiment,
@@ -156,12 +159,13 @@ pub fn simulate_controlled(
     controlled(model, experiment, run, control, &|_| {}).map_err(|error| Error::Runs(vec![error]))
 }
 
-/// Effective inertias of the actuators (kg m² or kg) from which the gains of the simulation's controller are
-/// computed for a run: K_p = ω_c² m and K_d = 2ξω_c m. With them no mode of the controlled robot is faster than
-/// the bandwidth anywhere along the run.
+/// Effective inertias of the actuators (kg m² or kg) for the controller gains of a run.
+///
+/// K_p = ω_c² m and K_d = 2ξω_c m. With these, no mode of the controlled robot is faster than the
+/// bandwidth anywhere along the run.
 ///
 /// # Errors
-/// All problems of the experiment with this run, or a robot that has no such inertias at home.
+/// All problems of the experiment with this run, or a robot without such inertias at home.
 pub fn actuator_inertias(
     model: &dyn Model,
     experiment: &Experiment,
@@ -179,7 +183,7 @@ pub fn actuator_inertias(
     })
 }
 
-/// Refuses an experiment of this run alone that makes no sense.
+/// Validates an experiment with this run only.
 fn checked(model: &dyn Model, experiment: &Experiment, run: &Run) -> Result<(), Error> {
     let alone = Experiment {
         runs: vec![run.clone()],
@@ -192,15 +196,15 @@ fn checked(model: &dyn Model, experiment: &Experiment, run: &Run) -> Result<(), 
     }
 }
 
-/// What a worker tells of a run.
+/// Message of a worker about a run.
 enum News {
-    /// So many samples more are done.
+    /// Number of samples that were just completed.
     Samples(usize),
-    /// The run is over.
+    /// Result of the run.
     Finished(Result<Record, RunError>),
 }
 
-/// Makes one run with the experiment's controller; `tell` hears the number of samples that have just been done.
+/// Simulates one run with the experiment's controller; `tell` receives the number of new samples.
 fn simulate_run(
     model: &dyn Model,
     experiment: &Experiment,
@@ -208,7 +212,7 @@ fn simulate_run(
     tell: &dyn Fn(usize),
 ) -> Result<Record, RunError> {
     let nominal = experiment.controller_parameters(run, &model.info().sizes);
-    // A trajectory out of reach is told before what it makes of the controller.
+    // Report an unreachable trajectory before its effects on the controller.
     let mut reference = Reference::new(model, &run.trajectory, experiment.sampling_hz, None);
     let samples = experiment.samples(run);
     reference
@@ -220,7 +224,7 @@ fn simulate_run(
     controlled(model, experiment, run, &mut controller, tell)
 }
 
-/// What went wrong at sample k of a run.
+/// Error at sample k of a run.
 fn at<'a>(
     experiment: &'a Experiment,
     run: &'a Run,
@@ -234,7 +238,7 @@ fn at<'a>(
     }
 }
 
-/// Makes one run; `tell` hears the number of samples that have just been done.
+/// Simulates one run; `tell` receives the number of new samples.
 fn controlled(
     model: &dyn Model,
     experiment: &Experiment,
@@ -288,7 +292,7 @@ struct Loop<'a> {
 }
 
 impl<'a> Loop<'a> {
-    /// The loop with the robot in the state in which the reference starts.
+    /// Closed loop with the robot in the initial state of the reference.
     fn new(
         model: &'a dyn Model,
         experiment: &'a Experiment,
@@ -316,7 +320,7 @@ impl<'a> Loop<'a> {
         }
     }
 
-    /// Reads, controls and records sample k, then moves the robot to the next.
+    /// Measures, controls and records sample k, then moves the robot to the next sample.
     fn sample(&mut self, k: usize, desired: &Desired<'_>) -> Result<(), (Stage, Cause)> {
         let n = self.last.len();
         let measured = &mut self.record.positions[k * n..(k + 1) * n];
@@ -348,7 +352,7 @@ impl<'a> Loop<'a> {
         let mut torques = std::mem::take(&mut self.drives.torques);
         for torques in torques.chunks_exact_mut(n) {
             if self.drives.cogs() {
-                // Teeth go by within a step: those in its middle count.
+                // Cogging periods pass within a step; use the pose at its middle.
                 let pose = self.plant.ahead(0.5 * h);
                 let mut positions = self.last.clone();
                 self.model
@@ -395,7 +399,7 @@ impl Record {
         }
     }
 
-    /// Keeps the largest tracking errors; fails when an actuator is far off.
+    /// Updates the largest tracking errors; fails if an actuator has left its trajectory.
     fn track(&mut self, k: usize, desired: &Desired<'_>) -> Result<(), Cause> {
         let n = self.actuators.len();
         for (i, largest) in self.tracking_error.iter_mut().enumerate() {
@@ -411,7 +415,7 @@ impl Record {
         Ok(())
     }
 
-    /// Writes the measured torques of sample k between the torques held before and after it.
+    /// Records the measured torques of sample k as the mean of the torques before and after it.
     fn torques(&mut self, k: usize, before: &[f64], after: &[f64], sensors: &mut Sensors<'_>) {
         let n = self.actuators.len();
         let row = &mut self.torques[k * n..(k + 1) * n];

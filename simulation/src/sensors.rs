@@ -1,9 +1,9 @@
-//! What the controller and the log see of the robot: late and quantised positions, noisy torques.
+//! Sensors: delayed and quantised positions, noisy torques.
 //!
-//! An encoder of resolution δ shows δ round(q / δ): an error uniform in ±δ/2 with standard deviation
-//! δ/√12. The torque measurement adds white Gaussian noise. Each pair of run and actuator has a random
-//! stream of its own, chosen by the run's name, so a run's noise depends on neither the other runs nor
-//! their order.
+//! An encoder of resolution δ shows δ round(q / δ): an error uniform in ±δ/2 with standard
+//! deviation δ/√12. The torque measurement adds white Gaussian noise. Each pair of run and actuator
+//! has its own random stream, seeded by the run's name. The noise of a run therefore does not
+//! depend on the other runs or their order.
 
 use std::collections::VecDeque;
 
@@ -14,17 +14,17 @@ use crate::experiment::Experiment;
 
 /// The sensors of one run.
 pub(crate) struct Sensors<'a> {
-    /// Empty where all encoders are ideal; likewise the deviations.
+    /// Empty if all encoders are ideal; likewise the standard deviations.
     resolution: &'a [f64],
     deviation: &'a [f64],
     streams: Vec<Pcg64>,
-    /// Positions that are not seen yet, the oldest first, and how many samples they are late.
+    /// Delayed positions, the oldest first, and the delay in samples.
     late: VecDeque<Vec<f64>>,
     delay: usize,
 }
 
 impl<'a> Sensors<'a> {
-    /// The sensors of `actuators` actuators in the run of that name.
+    /// Sensors of a run with `actuators` actuators.
     pub(crate) fn new(experiment: &'a Experiment, actuators: usize, run: &str) -> Self {
         let name = u128::from(fnv1a(run.as_bytes()));
         let streams = (0..actuators)
@@ -40,8 +40,8 @@ impl<'a> Sensors<'a> {
         }
     }
 
-    /// Replaces positions by those of some samples before; once per sample. Before the first sample the
-    /// robot was where it started.
+    /// Delays positions; called once per sample. Before the first sample, the robot is at its
+    /// start.
     pub(crate) fn delay(&mut self, positions: &mut [f64]) {
         while self.late.len() < self.delay {
             self.late.push_back(positions.to_vec());
@@ -74,7 +74,7 @@ impl<'a> Sensors<'a> {
     }
 }
 
-/// The hash FNV-1a, which is the same on every machine and in every version.
+/// FNV-1a hash, equal on all machines and in all versions.
 fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)

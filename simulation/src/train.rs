@@ -1,8 +1,8 @@
-//! The drives of one run, stepped with the controller.
+//! Drives of one run, simulated in step with the controller.
 //!
-//! The linear part is integrated exactly: commands are held over a sampling period, so the matrix
-//! exponential of a step takes the states and the integrals of i and τ to its end, and the robot gets
-//! the mean torque of each step.
+//! The linear part is integrated exactly. Commands are held over a sampling period, so the matrix
+//! exponential of a step gives the states and the integrals of i and τ. The robot receives the mean
+//! torque of each step.
 
 use std::{collections::VecDeque, f64::consts::TAU};
 
@@ -10,7 +10,8 @@ use nalgebra::{Matrix6, Vector6};
 
 use crate::{drives::Drives, experiment::Experiment};
 
-/// Places in the state of a drive: current i, torque τ and its rate, command, integrals of i and τ.
+/// Indices in the state of a drive: current i, torque τ and its rate, command, integrals of i and
+/// τ.
 const CURRENT: usize = 0;
 const TORQUE: usize = 1;
 const RATE: usize = 2;
@@ -18,19 +19,19 @@ const COMMAND: usize = 3;
 const CURRENT_SUM: usize = 4;
 const TORQUE_SUM: usize = 5;
 
-/// One drive over a step of the integration.
+/// One drive with its transition over an integration step.
 #[derive(Debug, Clone)]
 struct Drive {
-    /// Where the current and the torque are in the state: ideal ones are the command.
+    /// State indices of current and torque; for ideal ones, that of the command.
     places: (usize, usize),
-    /// The state's transition over a step.
+    /// Transition of the state over a step.
     transition: Matrix6<f64>,
     state: Vector6<f64>,
     is_ideal: bool,
 }
 
 impl Drive {
-    /// A drive with a current loop and a mode, each of a frequency (Hz) above zero if there is one.
+    /// Drive with a current loop and a mode; a frequency (Hz) of zero omits either.
     fn new(loop_hz: f64, (mode_hz, damping): (f64, f64), step: f64) -> Self {
         let current = if loop_hz > 0.0 { CURRENT } else { COMMAND };
         let torque = if mode_hz > 0.0 { TORQUE } else { current };
@@ -56,7 +57,7 @@ impl Drive {
         }
     }
 
-    /// At rest under a command.
+    /// Sets the state to rest under a command.
     fn settle(&mut self, command: f64) {
         self.state = Vector6::new(command, command, 0.0, command, 0.0, 0.0);
     }
@@ -76,7 +77,7 @@ impl Drive {
         )
     }
 
-    /// The torque that the drive passes on, before its gain.
+    /// Torque of the drive, before its gain.
     fn torque(&self) -> f64 {
         self.state[self.places.1]
     }
@@ -86,22 +87,22 @@ impl Drive {
 pub(crate) struct Train<'a> {
     drives: &'a Drives,
     each: Vec<Drive>,
-    /// Commands that wait, the oldest first.
+    /// Delayed commands, the oldest first.
     waiting: VecDeque<Vec<f64>>,
     delay: usize,
     started: bool,
-    /// Length of a step, s, and their number in a sampling period.
+    /// Length of a step, s, and number of steps per sampling period.
     step: (f64, usize),
-    /// Cogging periods in a radian or metre, times 2π.
+    /// Cogging periods per radian or metre, times 2π.
     waves: Vec<f64>,
     /// Mean currents over the next sampling period, n.
     pub(crate) currents: Vec<f64>,
-    /// Mean torques over each of its steps, steps x n.
+    /// Mean torques over each step of the period, steps x n.
     pub(crate) torques: Vec<f64>,
 }
 
 impl<'a> Train<'a> {
-    /// The drives of actuators, of which some are revolute.
+    /// Drives of the actuators; `revolute` marks revolute ones.
     pub(crate) fn new(experiment: &'a Experiment, revolute: &[bool]) -> Self {
         let drives = &experiment.drives;
         let steps = experiment.integration_steps;
@@ -129,8 +130,9 @@ impl<'a> Train<'a> {
         }
     }
 
-    /// Takes the commands of a sample, and tells currents and torques of the period that follows. The
-    /// drives start at rest under the first commands.
+    /// Takes the commands of a sample and computes currents and torques of the next period.
+    ///
+    /// The drives start at rest under the first commands.
     pub(crate) fn take(&mut self, commands: &[f64]) {
         if !self.started {
             self.started = true;
@@ -153,7 +155,7 @@ impl<'a> Train<'a> {
         }
     }
 
-    /// What encoders on the motors' side show of the joints' positions.
+    /// Converts joint positions to those of encoders on the motor side.
     pub(crate) fn deflect(&self, positions: &mut [f64]) {
         for (i, position) in positions.iter_mut().enumerate() {
             let stiffness = value(&self.drives.flexible_stiffness, i, 0.0);
@@ -180,7 +182,7 @@ impl<'a> Train<'a> {
     }
 }
 
-/// An actuator's value, or that of an ideal drive where none are given.
+/// Value of an actuator; that of an ideal drive if the list is empty.
 fn value(values: &[f64], actuator: usize, ideal: f64) -> f64 {
     values.get(actuator).copied().unwrap_or(ideal)
 }
@@ -189,7 +191,7 @@ fn value(values: &[f64], actuator: usize, ideal: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The torques of one actuator after each sample of a step from 0 to 1 at 10 kHz, and the train.
+    /// Torques of one actuator after each sample of a step from 0 to 1 at 10 kHz, and the drives.
     fn step_response(drives: Drives, samples: usize) -> (Vec<f64>, Vec<f64>) {
         let experiment = Experiment {
             sampling_hz: 1e4,
@@ -232,7 +234,7 @@ mod tests {
         let (currents, torques) = step_response(drives, 20);
         let rate = TAU * 500.0;
         for (k, (current, torque)) in currents.iter().zip(torques).enumerate() {
-            // The mean of 1 - exp(-ω t) over the period.
+            // Mean of 1 - exp(-ω t) over the period.
             let at = |t: f64| t + (-rate * t).exp() / rate;
             let (from, to) = (k as f64 * 1e-4, (k + 1) as f64 * 1e-4);
             let expected = (at(to) - at(from)) / 1e-4;

@@ -1,13 +1,13 @@
-//! Desired motions of the platform: a displacement s(t) from the home pose with analytic derivatives.
+//! Desired motions of the platform: displacement s(t) from home with analytic derivatives.
 //!
-//! The pose is x(t) = displace(x_home, s(t)). Where all platform coordinates add (every motion but
-//! those with a quaternion) the twist is v = ds/dt and its derivative d²s/dt². With a quaternion, s is
-//! whatever chart the model's `displace` defines about home, and the twist is found numerically from
-//! the motion of the actuators (see the module `reference`).
+//! The pose is x(t) = displace(x_home, s(t)). If all platform coordinates are additive (every
+//! motion without quaternion), the twist is v = ds/dt and its derivative d²s/dt². With a
+//! quaternion, s is in the chart that the model's `displace` defines about home. The twist is then
+//! computed numerically from the actuators' motion (module `reference`).
 //!
-//! Periodic trajectories are finite Fourier series: s_c(t) = Σ a sin(2π h f t + φ). They are smooth,
-//! band limited and can be averaged over periods, which is why they are used for identification. A
-//! run starts in the state of the series at t = 0, so no transient has to be cut off.
+//! Periodic trajectories are finite Fourier series: s_c(t) = Σ a sin(2π h f t + φ). They are
+//! smooth, band-limited and can be averaged over periods, which suits identification. A run starts
+//! in the state of the series at t = 0, so there is no transient.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -27,7 +27,7 @@ pub enum Trajectory {
     PointToPoint {
         /// Displacements from the home pose, r numbers each (m, rad).
         points: Vec<Vec<f64>>,
-        /// Time at which each point is reached, increasing, s. The platform rests at the first
+        /// Times at which the points are reached, increasing, s. The platform rests at the first
         /// point before the first time and at the last point after the last.
         times: Vec<f64>,
     },
@@ -60,9 +60,10 @@ pub struct Displacement<'a> {
 }
 
 impl Trajectory {
-    /// Writes the displacement at time `t` (s) of a robot with the given coordinate names.
-    /// Terms of unknown coordinates and surplus numbers of points are left out; a validated
-    /// experiment has none.
+    /// Writes the displacement at time `t` (s).
+    ///
+    /// Terms of unknown coordinates and surplus points are ignored; a validated experiment has
+    /// none.
     pub fn evaluate(&self, coordinates: &[&str], t: f64, out: &mut Displacement<'_>) {
         out.position.fill(0.0);
         out.velocity.fill(0.0);
@@ -86,8 +87,8 @@ impl Trajectory {
         }
     }
 
-    /// Time in which the motion changes noticeably, s: one radian of the fastest harmonic, or half of
-    /// the shortest way between two points.
+    /// Time scale of the motion, s: one radian of the fastest harmonic, or half of the shortest
+    /// segment.
     #[must_use]
     pub fn time_scale(&self) -> f64 {
         match self {
@@ -112,7 +113,7 @@ impl Trajectory {
         }
     }
 
-    /// The trajectory as a TOML table's lines, as they stand in a robot's description.
+    /// Trajectory as lines of a TOML table.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
@@ -131,7 +132,7 @@ impl Trajectory {
                     phase_rad,
                 } in terms
                 {
-                    // A name is quoted with the escapes that Rust and TOML have in common.
+                    // The name is quoted with escapes common to Rust and TOML.
                     text += &format!(
                         "  {{ coordinate = {coordinate:?}, harmonic = {harmonic}, amplitude = {amplitude:?}, phase_rad = {phase_rad:?} }},\n"
                     );
@@ -151,7 +152,7 @@ impl Trajectory {
 /// The quintic with zero velocity and acceleration at both ends: with u from 0 to 1,
 /// s = a + (b - a)(10 u³ - 15 u⁴ + 6 u⁵).
 fn point_to_point(points: &[Vec<f64>], times: &[f64], t: f64, out: &mut Displacement<'_>) {
-    // The number of points already reached tells the segment.
+    // The number of points already reached selects the segment.
     let reached = times
         .iter()
         .take_while(|time| **time <= t)

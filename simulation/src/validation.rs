@@ -1,4 +1,4 @@
-//! Checks of an experiment against a robot: all problems at once, each with what would be right.
+//! Validation of an experiment for a robot: all problems at once, each with advice.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +11,10 @@ use crate::{
     trajectory::{Term, Trajectory},
 };
 
-/// Most samples of one run: a record of that length takes about a gigabyte.
+/// Largest number of samples of a run; such a record takes about a gigabyte.
 const SAMPLES: f64 = 1e7;
 
-/// Longest delay of drives and encoders, s: no loop is closed over more.
+/// Longest delay of drives and encoders, s.
 const LONGEST_DELAY: f64 = 0.1;
 
 /// Collects problems.
@@ -37,7 +37,7 @@ impl Problems {
         good
     }
 
-    /// One number per actuator, each of which `good` accepts; `empty` tells whether none is fine too.
+    /// Checks one number per actuator with `good`; `empty`: whether an empty list is valid.
     fn per_actuator(
         &mut self,
         field: &str,
@@ -92,7 +92,7 @@ impl Problems {
 }
 
 impl Experiment {
-    /// Every value that makes no sense for the robot that `info` describes; none if it can be run.
+    /// All invalid values for the robot that `info` describes; empty if the experiment is valid.
     #[must_use]
     pub fn problems(&self, info: &Info<'_>) -> Vec<Problem> {
         let mut found = Problems::default();
@@ -135,7 +135,7 @@ impl Experiment {
     }
 }
 
-/// The drives' numbers, and how late they and the encoders may be.
+/// Checks the drives, and the delays of drives and encoders.
 fn drives(found: &mut Problems, experiment: &Experiment, info: &Info<'_>) {
     let drives = &experiment.drives;
     let lists = [
@@ -170,7 +170,7 @@ fn drives(found: &mut Problems, experiment: &Experiment, info: &Info<'_>) {
     }
 }
 
-/// The controller's numbers, and whether they give a stable loop.
+/// Checks the controller's settings and the stability of the loop.
 fn control(found: &mut Problems, experiment: &Experiment) {
     let mut good = found.positive("sampling_hz", experiment.sampling_hz, " of hertz");
     found.positive("duration_s", experiment.duration_s, " of seconds");
@@ -198,7 +198,7 @@ fn control(found: &mut Problems, experiment: &Experiment) {
     }
 }
 
-/// Duration and trajectory of a run.
+/// Checks duration and trajectory of a run.
 fn check_run(
     found: &mut Problems,
     experiment: &Experiment,

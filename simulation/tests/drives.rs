@@ -1,4 +1,4 @@
-//! What drives that are not ideal leave in the log of a run: each option has the effect that it claims.
+//! Effect of each non-ideal drive option on the log of a run.
 
 mod support;
 
@@ -8,7 +8,7 @@ use nalgebra::Complex;
 use overact_simulation::{Drives, Error, Experiment, Record, Run, Term, Trajectory, simulate};
 use support::{Robot, mechanisms::TwoMotors};
 
-/// Two motors that push one mass of 2 kg to and fro, 30 mm at 2 Hz, without friction.
+/// Two motors that move one mass of 2 kg, 30 mm at 2 Hz, without friction.
 const MASS: f64 = 2.0;
 const AMPLITUDE: f64 = 0.03;
 const RATE: f64 = TAU * 2.0;
@@ -44,7 +44,7 @@ fn record(change: impl FnOnce(&mut Experiment)) -> Record {
     records.remove(0)
 }
 
-/// The second half of the run: sample, torques, and the force that the motion takes.
+/// Second half of the run: sample, torques, and the force of the motion.
 fn settled(record: &Record) -> impl Iterator<Item = (usize, [f64; 2], f64)> {
     (record.time.len() / 2..record.time.len()).map(|k| {
         let force = -MASS * AMPLITUDE * RATE * RATE * (RATE * record.time[k]).sin();
@@ -73,10 +73,10 @@ fn the_controller_fights_the_cogging() {
         experiment.drives.cogging = vec![amplitude, 0.0];
         experiment.drives.cogging_periods = vec![periods; 2];
     });
-    // What the torques in the log lack follows the teeth: τ = m a - A sin(2πN q).
+    // The torque missing from the log is the cogging: τ = m a - A sin(2πN q).
     let (mut product, mut square) = (0.0, 0.0);
     for (k, [a, b], force) in settled(&record) {
-        // Slow teeth only: the controller can follow those.
+        // Only slow cogging, which the controller can follow.
         let speed = AMPLITUDE * RATE * (RATE * record.time[k]).cos().abs();
         let tooth = (TAU * periods * record.positions[2 * k]).sin();
         if speed * periods < 8.0 {
@@ -92,12 +92,12 @@ fn the_controller_fights_the_cogging() {
 fn an_encoder_on_the_motor_shows_the_spring() {
     let stiffness = 1e5;
     let record = record(|experiment| {
-        // The spring answers the controller at once, which a fast one would not survive.
+        // The spring acts on the controller without delay, which would destabilise a fast one.
         experiment.bandwidth_hz = 10.0;
         experiment.derivative_cutoff_hz = 20.0;
         experiment.drives.flexible_stiffness = vec![stiffness, 0.0];
     });
-    // The other encoder is at the joint. The torque in the log is half a sample older.
+    // The other encoder is at the joint. The logged torque is half a sample older.
     for (k, [torque, _], _) in settled(&record) {
         let spring = record.positions[2 * k] - record.positions[2 * k + 1];
         assert!((spring - torque / stiffness).abs() < 0.05 * FORCE / stiffness);
@@ -133,7 +133,7 @@ fn the_mode_stands_between_torque_and_motion() {
     };
     let torque = amplitude(|two| two[0] + two[1], &record.torques);
     let force = amplitude(|two| two[0], &record.positions) * (-MASS * rate * rate);
-    // The torque in the log is (1 - u² + 2jζu) times what moves the mass.
+    // The logged torque is (1 - u² + 2jζu) times the torque on the mass.
     let u = 8.0 / mode;
     let expected = Complex::new(1.0 - u * u, 2.0 * damping * u);
     let found = torque / force;
@@ -142,7 +142,7 @@ fn the_mode_stands_between_torque_and_motion() {
 
 #[test]
 fn late_encoders_and_drives_spoil_the_tracking() {
-    // Slow enough for a millisecond to be no danger.
+    // Slow enough for a delay of a millisecond to be harmless.
     let record = |change: fn(&mut Experiment)| {
         record(|experiment| {
             experiment.bandwidth_hz = 20.0;
@@ -158,7 +158,7 @@ fn late_encoders_and_drives_spoil_the_tracking() {
         let error = record.tracking_error[0];
         assert!(error > 2.0 * plain, "{error:e} {plain:e}");
     }
-    // The log has the current that has moved the mass, but positions that are late.
+    // The log has the current that moved the mass, but delayed positions.
     assert!(settled(&slow).all(|(_, [a, b], force)| (a + b - force).abs() < 0.05 * FORCE));
     let phase = |record: &Record| {
         let (mut position, mut torque) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));

@@ -1,4 +1,4 @@
-//! Whole experiments against analytic solutions and against what the log ought to contain.
+//! Complete experiments compared with analytic solutions and the expected log.
 
 mod support;
 
@@ -61,7 +61,7 @@ fn tripod() -> Experiment {
 
 #[test]
 fn pd_control_has_the_error_of_its_transfer_function() {
-    // e / x_d = s² / (s² + 2ξω_c s F + ω_c²) with F = 1 / (1 + s / ω_f), of a mass without friction.
+    // e / x_d = s² / (s² + 2ξω_c s F + ω_c²) with F = 1 / (1 + s / ω_f), for a frictionless mass.
     let model = Robot::new(TwoMotors);
     let experiment = Experiment {
         feed_forward: false,
@@ -77,7 +77,7 @@ fn pd_control_has_the_error_of_its_transfer_function() {
     let real = 1.0 - u * u + 1.4 * u * u / (1.0 + u * u);
     let imaginary = 1.4 * u / (1.0 + u * u);
     let expected = 0.01 * u * u / real.hypot(imaginary);
-    // The last second, long after the transient has decayed; the delay of sampling costs below 1 %.
+    // The last second, long after the transient; the sampling delay changes it by less than 1 %.
     let error = (5000..10_000)
         .map(|k| (0.01 * (rate * record.time[k]).sin() - record.positions[2 * k]).abs())
         .fold(0.0, f64::max);
@@ -85,7 +85,7 @@ fn pd_control_has_the_error_of_its_transfer_function() {
         (error / expected - 1.0).abs() < 0.01,
         "{error:e} {expected:e}"
     );
-    // The transient of a start in the trajectory's state is small too.
+    // The initial transient is small too, because the run starts in the trajectory's state.
     assert!(record.tracking_error[0] < 3.0 * expected);
 }
 
@@ -108,7 +108,7 @@ fn feed_forward_cuts_the_tracking_error() {
     }
 }
 
-/// The largest part of the torques in the null space of J^T at the desired pose.
+/// Largest component of the torques in the null space of J^T at the desired pose.
 fn internal_torque(model: &Robot<Tripod>, experiment: &Experiment) -> f64 {
     let record = &records(model, experiment)[0];
     let home = model.kinematics.home();
@@ -152,7 +152,7 @@ fn projection_removes_the_internal_torque_that_encoders_cause() {
         internal_torque(&model, &with),
         internal_torque(&model, &without),
     );
-    // The recorded torque is the mean over two samples, so that a little remains with projection.
+    // The recorded torque is the mean over two samples, so a small part remains with projection.
     assert!(with < 0.02 * without, "{with:e} {without:e}");
     assert!(without > 0.5);
 }
@@ -171,7 +171,7 @@ fn sensors_have_the_stated_resolution_and_noise() {
     };
     let (ideal, noisy) = (records(&model, &ideal), records(&model, &noisy));
     for (ideal, noisy) in ideal.iter().zip(&noisy) {
-        // Noise of the torque measurement does not reach the robot.
+        // Noise of the torque measurement does not affect the robot.
         assert_eq!(ideal.positions, noisy.positions);
         for (i, resolution) in [(0, 1e-5), (2, 1e-4)] {
             let steps = noisy
@@ -299,7 +299,7 @@ fn the_log_of_a_dual_v_gives_its_parameters_back() {
 #[test]
 fn a_pose_that_does_not_add_is_followed() {
     // The chart is not the angle, so twist and feed-forward come from the actuators' motion. The
-    // second actuator turns past half a turn.
+    // second actuator passes half a turn.
     let model = Robot::new(Shaft);
     let experiment = Experiment {
         parameters: vec![0.1, 0.2, 0.0, 0.2, 0.1, 0.0, 0.1, 0.3],

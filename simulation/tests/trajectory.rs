@@ -1,4 +1,4 @@
-//! Trajectories: derivatives against finite differences, end conditions, text.
+//! Trajectories: derivatives compared with finite differences, end conditions, text.
 
 use std::f64::consts::PI;
 
@@ -85,7 +85,7 @@ fn point_to_point_motions_rest_at_their_points() {
     ] {
         assert_eq!(at(&quintic, t), [point, [0.0; 2], [0.0; 2]]);
     }
-    // Half-way in time is half-way, at the largest velocity, 15/8 of the mean.
+    // At half time it is half way, at the largest velocity, 15/8 of the mean.
     let [position, velocity, _] = at(&quintic, 0.875);
     assert!((position[0] - 0.2).abs() < 1e-15);
     assert!((velocity[0] - 15.0 / 8.0 * 0.2 / 0.75).abs() < 1e-15);

@@ -1,10 +1,12 @@
-//! Generates what the tests need compiled and `generated/` does not keep as text: the other robots of
-//! `robots/`, robots with every kind of friction and with screws, the DualV in each of its four partitions, and the RX90 with
-//! known parameters, the way a user's build script does.
+//! Generates modules for the tests that `generated/` does not keep as text, as a user's build
+//! script does.
 //!
-//! Operations are searched quickly: the modules in `generated/` are those of a thorough search, and how far it went
-//! makes no difference to what is tested here. The partitions differ in one line of the description, so the variants are made
-//! from the one description here and not kept as copies.
+//! These are the other robots of `robots/`, robots with all kinds of friction and with screws, the
+//! DualV in each of its four partitions, and the RX90 with known parameters.
+//!
+//! The search for fewer operations is quick: the modules in `generated/` have a thorough one, which
+//! does not affect these tests. The partitions differ in one line, so the variants are generated
+//! from one description.
 
 use overact_codegen::{Effort, Request, Source, compile_with, description, emission};
 use std::collections::BTreeMap;
@@ -13,10 +15,10 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::{env, fs, thread};
 
-/// A module and the text of the description that it is made from.
+/// A module and the text of its description.
 struct Module {
     name: String,
-    /// The description's file in `robots/`, without its extension.
+    /// Stem of the description's file in `robots/`.
     stem: String,
     text: String,
     effort: Effort,
@@ -33,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     known_parameters()
 }
 
-/// The robots of the library that `generated/` does not keep as text.
+/// Robots of the library that `generated/` does not keep as text.
 fn robots() -> Result<Vec<Module>, Box<dyn Error>> {
     let mut modules = Vec::new();
     for entry in fs::read_dir("../../robots")? {
@@ -48,7 +50,7 @@ fn robots() -> Result<Vec<Module>, Box<dyn Error>> {
     Ok(modules)
 }
 
-/// Robots with every kind of friction and with screws.
+/// Robots with all kinds of friction and with screws.
 fn friction() -> Result<Vec<Module>, Box<dyn Error>> {
     let mut modules = Vec::new();
     for stem in ["friction_arm", "friction_bar", "screw_arm"] {
@@ -63,7 +65,7 @@ fn partitions() -> Result<Vec<Module>, Box<dyn Error>> {
     let dualv = fs::read_to_string("../../robots/dualv.toml")?;
     let partition = |kept: [usize; 3]| {
         let [a, b, c] = kept;
-        // The description's own partition is compared, token by token, with the checked-in module.
+        // The description's own partition is compared with the checked-in module, token by token.
         let effort = match kept {
             [1, 2, 3] => Effort::Thorough,
             _ => Effort::Quick,
@@ -121,7 +123,7 @@ fn write_all(modules: Vec<Module>) -> Result<(), Box<dyn Error>> {
     Err(failed.join("\n").into())
 }
 
-/// Writes the module of what is asked for of a description's text.
+/// Writes the module of a description for a request.
 fn write_as(
     module: &str,
     stem: &str,
@@ -162,7 +164,7 @@ fn known_parameters() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The description with other actuators kept in case 2.
+/// Description with other kept actuators.
 fn with_kept(text: &str, kept: [usize; 3]) -> String {
     let names = kept.map(|leg| format!("\"leg{leg}\"")).join(", ");
     let line = |line: &str| {

@@ -1,4 +1,5 @@
-//! Writes how many digits the regressors keep near singular configurations, as a table in Markdown:
+//! Writes a Markdown table of the digits that the regressors keep near singular configurations.
+//!
 //! `cargo run --release -p overact-tests --example accuracy [ROBOT ...]`.
 
 use overact_codegen::Effort;

@@ -24,9 +24,9 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROBOTS = ROOT / "robots"
 SAMPLES = 20
-#: Parameters that are told by columns or drawn: each robot has its own.
+#: Parameters that are computed from columns or drawn, because each robot has its own.
 DRAWN = {"parameters", "base_parameters"}
-#: Functions that a compiled `overact::Model` does not have under their names.
+#: Functions that a compiled `overact::Model` does not offer by these names.
 OTHERS = {"closure_error", "acceleration_from_actuators"}
 COLUMNS = ["interpreter", "Python", "C", "WebAssembly"]
 
@@ -43,7 +43,7 @@ BINARY = TARGET / "debug/overact"
 
 
 def asked(program, questions):
-    """The answers of a program of values; None where a state has no value."""
+    """Answers of a program of values; None for a state without a value."""
     done = subprocess.run(program, input="\n".join(questions) + "\n", capture_output=True, text=True)
     if done.returncode != 0:
         raise RuntimeError(done.stderr)
@@ -86,14 +86,14 @@ class Robot:
                 self.states[name] = asked(compiled, [question(stem, function, [poses])])[0]
 
     def allowed(self, compiled, poses):
-        """The poses near these that the legs of a platform which moves aside allow, by Newton's steps."""
+        """Closed poses near given ones for a platform with parasitic motion, by Newton steps."""
         for _ in range(5):
             questions = [question(self.stem, one, [poses]) for one in ("blocked_error", "blocked_jacobian")]
             errors, jacobians = (one.reshape((SAMPLES, -1)) for one in asked(compiled, questions))
             for pose, error, jacobian in zip(poses, errors, jacobians):
                 step = -np.linalg.pinv(jacobian.reshape((len(error), -1))) @ error
                 pose[:3] += step[:3]
-                # The turn by half a small rotation vector, from the left: it is told in the base's frame.
+                # Left multiplication by half a small rotation vector, which is in the base frame.
                 w, v, turn = pose[3], pose[4:].copy(), step[3:] / 2
                 pose[3] = w - turn @ v
                 pose[4:] = v + w * turn + np.cross(turn, v)
@@ -103,7 +103,7 @@ class Robot:
         return poses
 
     def inputs(self, name):
-        """The inputs of a function by their names, in their order."""
+        """Inputs of a function by name, in order."""
         found = {}
         names = [one["name"] for one in self.functions[name]["inputs"]]
         for one in self.functions[name]["inputs"]:
@@ -119,7 +119,7 @@ class Robot:
 
 
 def library(robot, folder):
-    """The robot's C as a library; None without gcc."""
+    """C of the robot as a library; None without gcc."""
     if not shutil.which("gcc"):
         return None
     path = ROBOTS / f"{robot.stem}.toml"
@@ -132,7 +132,7 @@ def library(robot, folder):
 
 
 def in_c(built, robot, name, inputs, width):
-    """A function's values by its C; None where a state has no value."""
+    """Values of a function by its C; None for a state without a value."""
     own, header, stem = built
     found = re.search(rf"\b{stem}_{name}\(([^)]*)\);", header)
     if not found:
@@ -152,7 +152,7 @@ def in_c(built, robot, name, inputs, width):
 
 
 def in_python(robot, names):
-    """Values by the package `overact`, function after function; None without it."""
+    """Values by the package `overact`, function by function; None without it."""
     try:
         import overact
     except ImportError:
@@ -171,7 +171,7 @@ def in_python(robot, names):
 
 
 def compare(stem, compiled, languages):
-    """Of each language, how many numbers were compared and the largest difference; the number of functions."""
+    """For each language the number of compared values and the largest difference; the number of functions."""
     robot = Robot(stem, compiled)
     names = list(robot.functions)
     questions = [question(stem, name, robot.inputs(name).values()) for name in names]

@@ -1,11 +1,12 @@
-"""Imported robots against the engines that their files were written for.
+"""Compares imported robots with the engines of their file formats.
 
     python tests/peers/compare.py OVERACT FILE...
 
-Each file is imported by the command OVERACT; positions of the bodies' centres, closures and inverse dynamics of the
-description are compared with MuJoCo (MJCF) or Pinocchio (URDF) at random states. Constraints of the engines are left
-out of the comparison: torques of the tree without them, projected on the motions that the description leaves, have to
-be those of the motors. Prints a line for each robot; exit code 1 if one differs, 0 with a word if an engine is absent.
+Each file is imported by the command OVERACT. Positions of the bodies' centres, closures and inverse
+dynamics of the description are compared with MuJoCo (MJCF) or Pinocchio (URDF) at random states. Constraint
+forces of the engines are not compared: unconstrained torques of the tree, projected on the description's
+motions, must equal those of the motors. Prints a line for each robot; the exit code is 1 if one differs,
+and 0 with a message without an engine.
 """
 
 import json
@@ -39,13 +40,13 @@ def evaluate(overact, toml, function, states, *more):
 
 
 def without_dry_friction(toml, folder):
-    """The file's parameters but for dry friction, whose sign at a state is a convention of its own."""
+    """The file's parameters without dry friction, whose sign at a state is a matter of convention."""
     values = tomllib.loads(Path(toml).read_text())["experiment"]["parameters"]
     return {name: (0.0 if name.startswith("fs_") else value) for name, value in values.items()}
 
 
 def sample(overact, toml, folder, size, count=5):
-    """States of a description: everything that the comparison needs of overact."""
+    """States of a description with all outputs of overact that the comparison needs."""
     sheet = json.loads(run(overact, "inspect", toml, "--json", "--effort", "none"))
     values = without_dry_friction(toml, folder)
     parameters = folder / "parameters.toml"
@@ -85,7 +86,7 @@ def compare(overact, file, folder):
     toml = folder / "robot.toml"
     run(overact, "import", file, "-o", toml)
     description = Description(toml)
-    # Robots with little room to move are compared nearer to home.
+    # Robots with a small workspace are compared nearer to home.
     for size in (0.08, 0.02, 0.005):
         try:
             sheet, values, states = sample(overact, toml, folder, size)

@@ -1,4 +1,4 @@
-"""A description as imported, moved by its modified Denavit-Hartenberg constants alone."""
+"""An imported description, moved by its modified Denavit-Hartenberg constants only."""
 
 import re
 import tomllib
@@ -10,7 +10,7 @@ UNITS = {"deg": np.pi / 180, "": 1.0}
 
 
 def number(value):
-    """A number, or a text with one and its unit."""
+    """A number, or a text with a number and its unit."""
     if not isinstance(value, str):
         return float(value)
     value, _, unit = value.partition(" ")
@@ -34,7 +34,7 @@ def frame(at=(0, 0, 0), rotation=None):
 
 
 def placed(table):
-    """The frame of `at` and `rotation`."""
+    """Frame given by `at` and `rotation`."""
     rx, ry, rz = (number(v) for v in table.get("rotation", [0, 0, 0]))
     return frame([number(v) for v in table.get("at", [0, 0, 0])], about(2, rz) @ about(1, ry) @ about(0, rx))
 
@@ -55,7 +55,7 @@ class Description:
         text = Path(path).read_text()
         self.toml = tomllib.loads(text)
         self.legs = [place["name"] for place in self.toml["place"]]
-        # The comment of each joint says between which bodies of the file it is.
+        # The comment of each joint names the bodies of the file that it connects.
         self.between = {}
         for block in re.split(r"\n(?=\n)", text):
             joint = re.search(r"\[\[leg\.(\w+)\.joint\]\]\nname = \"(\w+)\"", block)
@@ -63,26 +63,26 @@ class Description:
             if joint and said:
                 self.between[joint.groups()] = said.groups()
 
-        # Joints without a coordinate of their own: where they stand at home.
+        # Home positions of joints without a coordinate of their own.
         joined = re.sub(r"\n# ?", " ", text)
         self.home = {}
         for name, value in re.findall(r"Home: `([^`]*)` = (\[[^\]]*\]|\S+)", joined):
             self.home[name] = np.array([float(v) for v in value.strip("[]").split(",")])
-        # The head says which bodies are fixed together; the first names them.
+        # The head of the file lists the bodies that are fixed together; the first gives the name.
         head = text.split("\nname =")[0].replace("\n# ", " ")
         self.together = {}
         for own, others in re.findall(r"one body here: `([^`]*)` and ((?:`[^`]*`(?:, )?)*)", head):
             self.together[own] = re.findall(r"`([^`]*)`", others)
 
     def joints(self):
-        """The joints with a variable of their own, in their order."""
+        """Joints with a variable of their own, in order."""
         for leg in self.legs:
             for joint in self.toml["leg"][leg]["joint"]:
                 if joint["type"] != "fixed" and "q_" not in str(joint.get("theta", "")) + str(joint.get("r", "")):
                     yield leg, joint["name"]
 
     def motion(self, q, rates, accelerations):
-        """All bodies by leg and joint."""
+        """Motions of all bodies by leg and joint."""
         own = {key: (q[i], rates[i], accelerations[i]) for i, key in enumerate(self.joints())}
         still = Body(np.eye(4), np.zeros(3), np.zeros(3))
         bodies = {}
@@ -132,7 +132,7 @@ class Description:
         return Body(whole, carrier.rate + z * rate, carrier.acceleration + z * acceleration + turning)
 
     def carried(self):
-        """The body of the file that each joint of the description carries, by that body's name."""
+        """Body of the file that each joint of the description carries, by name."""
         found, known = {}, {"ground": None}
         groups = {}
         for leg in self.legs:

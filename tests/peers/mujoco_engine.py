@@ -10,7 +10,7 @@ class Engine:
         self.model = mujoco.MjModel.from_xml_string(*without_pictures(file))
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         self.model.dof_frictionloss[:] = 0
-        # Balls have no torques of their own in descriptions, which the import says.
+        # Ball joints of descriptions have no torques, as import reports.
         for dof in range(self.model.nv):
             if self.model.jnt_type[self.model.dof_jntid[dof]] == mujoco.mjtJoint.mjJNT_BALL:
                 self.model.dof_damping[dof] = self.model.dof_armature[dof] = 0
@@ -20,7 +20,8 @@ class Engine:
         self.at_home(home)
 
     def at_home(self, home):
-        """Where the engine's bodies are when the description is at home: balls turn until the loops are closed."""
+        """Poses of the engine's bodies at the description's home: ball joints rotate until the loops are
+        closed."""
         model, data = self.model, self.data
         still = self.description.motion(home, 0 * home, 0 * home)
         data.qpos[:] = model.qpos0
@@ -49,7 +50,7 @@ class Engine:
         return mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
 
     def closure(self):
-        """Gaps of all connects and what coordinates do to them."""
+        """Residuals of all connect constraints and their Jacobian."""
         model, data = self.model, self.data
         gaps, rows = [], []
         for at in range(model.neq):
@@ -87,7 +88,7 @@ class Engine:
         return moved.frame[:3, :3] @ self.offset[name], moved.rate, moved.acceleration
 
     def moved(self, q, rates, accelerations):
-        """Positions of the joints themselves, which slides are read from."""
+        """Positions of the joints themselves, needed for slides."""
         self.scalar = {name: (q[i], rates[i], accelerations[i]) for i, (_, name) in enumerate(self.description.joints())}
 
     def state(self, bodies):
@@ -118,7 +119,7 @@ class Engine:
         return q, v, a
 
     def centres(self, position, description, bodies, values):
-        """The largest distance between centres of mass, and of the closures' ends."""
+        """Largest distance between centres of mass, and between closure points."""
         model, data = self.model, self.data
         data.qpos[:] = position
         mujoco.mj_forward(model, data)
@@ -167,7 +168,7 @@ def actuated(description):
 
 
 def without_pictures(file):
-    """The model without meshes, which need not be there, and the folder's other files for its includes."""
+    """The model without meshes, which may be missing, and the folder's other files for its includes."""
     from pathlib import Path
     import re
 

@@ -8,7 +8,7 @@ from description import relative_turn
 
 
 class Engine:
-    """The tree of a URDF. Rotations that the description has as balls stand here as three joints about x, y and z."""
+    """Tree of a URDF. Ball joints of the description are three joints about x, y and z here."""
 
     def __init__(self, file, description, home):
         self.model = pinocchio.buildModelFromUrdf(str(file))
@@ -28,7 +28,7 @@ class Engine:
         self.at_home(home)
 
     def at_home(self, home):
-        """Turns between the frames of description and engine."""
+        """Rotations between the frames of description and engine."""
         still = self.description.motion(home, 0 * home, 0 * home)
         q = pinocchio.neutral(self.model)
         values = {name: value for (_, name), value in zip(self.description.joints(), home)}
@@ -39,7 +39,7 @@ class Engine:
             if self.model.existJointName(name):
                 self.place(q, name, value[0])
                 continue
-            # A ball stands for three joints about x, y and z that have its name in theirs.
+            # A ball joint corresponds to three joints about x, y and z whose names contain its name.
             row = [n for n in self.model.names if n.startswith(name + "_") and "_" not in n[len(name) + 1 :]]
             turn = pinocchio.exp3(value)
             angles = np.arctan2(-turn[1, 2], turn[2, 2]), np.arcsin(turn[0, 2]), np.arctan2(-turn[0, 1], turn[0, 0])
@@ -147,7 +147,7 @@ class Engine:
             v[own.idx_v], a[own.idx_v] = speed, change
 
     def moved(self, q, rates, accelerations):
-        """Positions of the joints themselves, which slides are read from."""
+        """Positions of the joints themselves, needed for slides."""
         self.scalar = {name: (q[i], rates[i], accelerations[i]) for i, (_, name) in enumerate(self.description.joints())}
 
     def centres(self, position, description, bodies, values):

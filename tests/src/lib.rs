@@ -1,7 +1,7 @@
-//! Tests of the workspace against numbers that were found independently.
+//! Tests of the workspace against independently computed numbers.
 //!
-//! - [`mod@reference`] computes everything numerically, by other means than the generator;
-//! - [`support`] brings descriptions, generated code and reference together.
+//! - [`mod@reference`] computes everything numerically, with other methods than the generator;
+//! - [`support`] combines descriptions, generated code and reference.
 
 pub mod reference;
 pub mod support;

@@ -1,11 +1,13 @@
-//! Fewer operations do not mean fewer digits: searched forms against arithmetic of 128 bits, beside the
-//! forms as derived. `docs/accuracy.md` has the numbers of the whole library.
+//! The search for fewer operations does not cost digits: searched and derived forms compared with
+//! 128-bit arithmetic.
+//!
+//! `docs/accuracy.md` has the numbers of the whole library.
 
 use overact_codegen::Effort;
 use overact_tests::support::{Failure, accuracy};
 use overact_tier::by_tier;
 
-/// Digits that a form may lose to the other: states are few, and rounding is a matter of luck.
+/// Factor by which the errors of the forms may differ; few states make rounding a matter of chance.
 const FACTOR: f64 = 10.0;
 /// Relative errors below this are rounding.
 const ROUNDING: f64 = 1e-12;

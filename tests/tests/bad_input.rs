@@ -1,4 +1,4 @@
-//! Damaged descriptions are answered with located errors or a model, never with a panic.
+//! Damaged descriptions give located errors or a model, never a panic.
 
 use overact_codegen::{Diagnostics, Effort, Request, RobotModel, Source, compile_with};
 use overact_tests::support::description;
@@ -8,10 +8,10 @@ use proptest::test_runner::RngSeed;
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// An answer is due in this time; a sound description takes a small part of it.
+/// Time limit of an answer; valid descriptions need a small part of it.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// What stands in descriptions, to be put where it does not belong.
+/// Fragments of descriptions, inserted in wrong places.
 const FRAGMENTS: [&str; 40] = [
     "",
     "\"",
@@ -55,7 +55,7 @@ const FRAGMENTS: [&str; 40] = [
     "9007199254740993",
 ];
 
-/// A damage: at which part of the text, which kind, how long, which fragment.
+/// A damage: position in the text, type, length and fragment.
 #[derive(Clone, Debug)]
 struct Damage {
     at: f64,
@@ -75,7 +75,7 @@ fn damage() -> impl Strategy<Value = Damage> {
     })
 }
 
-/// The text with one damage: characters or lines dropped, doubled, swapped, or replaced.
+/// Text with one damage: characters or lines dropped, doubled, swapped, or replaced.
 fn damaged(text: &str, damage: &Damage) -> String {
     let fragment = FRAGMENTS[damage.fragment];
     let lines: Vec<&str> = text.split('\n').collect();
@@ -113,21 +113,22 @@ fn damaged(text: &str, damage: &Damage) -> String {
     }
 }
 
-/// The description without the parts that no mechanism depends on: damage shall meet the rest.
+/// Description without the parts that do not affect the mechanism, so that damage affects the rest.
 fn text() -> String {
     let source = description("dualv").map(|s| s.text).unwrap_or_default();
     let end = source.find("[experiment]").unwrap_or(source.len());
     source[..end].to_owned()
 }
 
-/// The answer of the generator; none if it panicked or takes too long. Where the damage did none, the
-/// default tier derives the model and does not search its operations.
+/// Answer of the generator; `None` after a panic or timeout.
+///
+/// If the damage has no effect, the default tier derives the model without searching operations.
 fn answer(source: &Source) -> Option<Result<Box<RobotModel>, Diagnostics>> {
     let (sender, receiver) = mpsc::channel();
     let source = source.clone();
-    // A thread that never ends is left behind: the test fails then anyway.
+    // A thread that never ends is abandoned; the test then fails anyway.
     std::thread::spawn(move || {
-        // Nobody may be waiting any more.
+        // The receiver may already be gone.
         let request = Request::with_effort(by_tier([Effort::None, Effort::Quick]));
         let compiled = compile_with(&source, &request);
         let _ = sender.send(compiled.map(|compiled| Box::new(compiled.model)));
@@ -135,8 +136,8 @@ fn answer(source: &Source) -> Option<Result<Box<RobotModel>, Diagnostics>> {
     receiver.recv_timeout(PATIENCE).ok()
 }
 
-/// The same cases on every run, unless `PROPTEST_RNG_SEED` asks for others. Shrinking would repeat a
-/// case that takes too long many times.
+/// The same cases on every run, unless `PROPTEST_RNG_SEED` is set; no shrinking, which would repeat
+/// slow cases.
 fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {

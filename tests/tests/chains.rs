@@ -1,8 +1,10 @@
-//! Chains between any two bodies of a branched skeleton agree with the numeric reference: from the ground and
-//! from moving bodies, along a branch, from branch to branch, and against slides; with ends that coincide in a
-//! point and with rigid ones; more than one at once, and motors too many.
+//! Chains between any bodies of a branched skeleton agree with the numeric reference.
 //!
-//! The reference cuts every loop, keeps all joints of the tree free and closes the cuts by Lagrange multipliers.
+//! Chains start on the ground or on moving bodies, run along a branch or between branches, and end
+//! on slides. Ends are points or rigid. Some robots have several chains and redundant motors.
+//!
+//! The reference cuts every loop, keeps all joints of the tree free and closes the cuts by Lagrange
+//! multipliers.
 
 use overact_codegen::Source;
 use overact_tests::support::tree::{self, SKELETON};
@@ -70,7 +72,8 @@ fn two_at_once() -> Result<(), Failure> {
     compare("two chains", text)
 }
 
-/// Chains on the bodies of a chain that stands on the ground: from it, and in the full tier to it and in between.
+/// Chains on the bodies of a chain on the ground: from it, and in the full tier to it and in
+/// between.
 #[test]
 fn on_a_chain_from_the_ground() -> Result<(), Failure> {
     let first = drive("one", "ground", "c");
@@ -82,7 +85,7 @@ fn on_a_chain_from_the_ground() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A chain on a chain that moves, and in the full tier a third one on both.
+/// A chain on a moving chain, and in the full tier a third one on both.
 #[test]
 fn on_a_chain_that_is_carried() -> Result<(), Failure> {
     let drives = [
@@ -94,7 +97,7 @@ fn on_a_chain_that_is_carried() -> Result<(), Failure> {
     compare("chains on a chain", format!("{SKELETON}{drives}"))
 }
 
-/// A branch of two driven joints on a body of a chain.
+/// A branch of two actuated joints on a body of a chain.
 fn branch(name: &str, body: &str) -> String {
     format!(
         r#"[leg.{name}]
@@ -118,8 +121,8 @@ home = {{ turn = "15 deg", slide = "0.1 m" }}
     )
 }
 
-/// Branches on bodies of chains: one on which a chain ends, and in the full tier one from which a chain starts and one
-/// that carries no chain.
+/// Branches on bodies of chains: with a chain's end, and in the full tier with a chain's start and
+/// with no chain.
 #[test]
 fn branches_on_chains() -> Result<(), Failure> {
     let first = drive("one", "ground", "c");
@@ -141,7 +144,7 @@ fn branches_on_chains() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A joint that follows one that stands behind it: in a skeleton, one of another branch, and in a chain.
+/// A joint coupled to a later one: in a skeleton, to one of another branch, and in a chain.
 #[test]
 fn followers_before_their_leaders() -> Result<(), Failure> {
     let follower = |leg: &str, leader: &str| {
@@ -164,7 +167,7 @@ fn followers_before_their_leaders() -> Result<(), Failure> {
     compare("a chain", format!("{SKELETON}{chain}"))
 }
 
-/// A four-bar whose coupler is fixed on the crank by a pin of its own, on an arm that moves.
+/// A four-bar on a moving arm, whose coupler has its own pin on the crank.
 #[test]
 fn rigid_ends() -> Result<(), Failure> {
     let text = r#"name = "RigidEnd"

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 #[test]
 fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
-    // That the checked-in modules are fresh says the same of every robot.
+    // The freshness of the checked-in modules shows the same for every robot.
     for stem in ["emps", by_tier(["five_bar", "planar_3prr"])] {
         let source = description(stem)?;
         let mut files = Vec::new();

@@ -1,11 +1,12 @@
-//! Crates whose documentation has no example do not look for any, which takes a second each. One that has
-//! gained an example has to look again.
+//! Crates without documentation examples disable doctests, which saves a second each.
+//!
+//! A crate with an example must enable them again.
 
 use overact_tests::support::{Failure, repository};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a block of code in documentation is called that is compiled.
+/// Labels of code blocks that are compiled.
 const COMPILED: [&str; 5] = ["", "rust", "no_run", "should_panic", "compile_fail"];
 
 /// The folders of all packages.
@@ -30,7 +31,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether the documentation in a source holds code that is compiled.
+/// Whether the documentation in a source contains compiled code.
 fn has_example(text: &str) -> bool {
     let lines = text.lines().map(str::trim_start);
     let documented = lines.filter_map(|line| {

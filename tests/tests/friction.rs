@@ -1,5 +1,7 @@
-//! Friction by direction, friction that rises towards standstill, and torques that are known: robots that have
-//! them agree with the numeric reference, compiled and evaluated.
+//! Robots with direction-dependent friction, Stribeck friction and known torques agree with the
+//! numeric reference.
+//!
+//! They are compiled and evaluated.
 
 use overact::{Columns, Function, Model, StandardParameter};
 use overact_codegen::derivation::BodyParameter;
@@ -25,7 +27,7 @@ fn described(text: &str) -> Result<(RobotModel, Expected), Failure> {
     Ok((model, expected))
 }
 
-/// Compares all functions, and tells the worst differences.
+/// Compares all functions, and reports the worst differences.
 fn compare(text: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let (model, expected) = described(text)?;
     let parameters = expected.parameters();
@@ -70,7 +72,7 @@ fn an_arm_with_screws() -> Result<(), Failure> {
     compare(SCREW, &ScrewArm)
 }
 
-/// At rest friction is the mean of both directions, as an offset is, and no division fails.
+/// Friction at rest is the mean of both directions, like an offset, and no division fails.
 #[test]
 fn at_rest_friction_has_a_value() -> Result<(), Failure> {
     let (model, _) = described(ARM)?;
@@ -95,7 +97,8 @@ fn at_rest_friction_has_a_value() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A motor of one joint that has the friction of the joint by direction: what stands there twice is regrouped.
+/// A motor of one joint with direction-dependent friction like the joint's: duplicates are
+/// regrouped.
 #[test]
 fn friction_that_stands_there_twice_is_regrouped() -> Result<(), Failure> {
     let text = "name = \"Twice\"\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n\

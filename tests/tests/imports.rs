@@ -1,5 +1,6 @@
-//! Imports run downwards: the modules at the top of each crate have an order, and none imports from one
-//! behind it. Within each folder the files have an order as well, whichever it is: no imports go in a circle.
+//! Imports follow the order of modules in each crate, from top to bottom.
+//!
+//! Within each folder, imports between files have no cycles.
 
 use overact_tests::support::imports::{Module, modules};
 use std::{
@@ -8,7 +9,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-/// The order of modules in a crate, or in one module of it, from the bottom up.
+/// Order of modules in a crate or a module, from the bottom up.
 struct LayerOrder {
     folder: &'static str,
     /// The module; empty for the crate itself.
@@ -242,10 +243,10 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
     },
 ];
 
-/// Circles that are left, as folder and files.
+/// Remaining cycles, as folder and files; new ones are rejected.
 ///
-/// An expression is a handle into the arena that makes it. A log in a file goes through that file whenever
-/// it is read, and reading a file makes a log. The others wait to be taken apart; a new one is refused.
+/// An expression is a handle into the arena that creates it. A log in a file is read through that
+/// file, and reading a file creates a log. The others are to be resolved.
 const CIRCLES: [(&str, &[&str]); 4] = [
     ("codegen/cas", &["arena", "expr"]),
     ("identification/data", &["log", "periods"]),
@@ -256,7 +257,7 @@ const CIRCLES: [(&str, &[&str]); 4] = [
     ("identification/regression", &["instruments", "observation"]),
 ];
 
-/// The files of a crate, parsed once for all tests.
+/// Files of a crate, parsed once for all tests.
 fn crate_of(folder: &'static str) -> &'static [Module] {
     static ALL: Mutex<BTreeMap<&str, &[Module]>> = Mutex::new(BTreeMap::new());
     let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
@@ -267,7 +268,7 @@ fn crate_of(folder: &'static str) -> &'static [Module] {
 }
 
 impl LayerOrder {
-    /// The layer that a path leads to; `None` if it does not lead into the ordered module.
+    /// Layer of a path; `None` if it does not lead into the ordered module.
     fn layer<'p>(&self, path: &'p [String]) -> Option<&'p String> {
         if self.module.is_empty() {
             return path.first();
@@ -275,7 +276,7 @@ impl LayerOrder {
         path.get(1).filter(|_| path[0] == self.module)
     }
 
-    /// The imports of a file that violate the order.
+    /// Imports of a file that violate the order.
     fn violations(&self, file: &Module) -> Vec<String> {
         let place = |name: &str| self.order.iter().position(|known| *known == name);
         let Some(own) = self.layer(&file.path) else {
@@ -301,7 +302,7 @@ impl LayerOrder {
     }
 }
 
-/// The files of each folder that import from one another in a circle.
+/// Files of each folder that import from each other in a cycle.
 fn circles(modules: &[Module]) -> Vec<(String, BTreeSet<String>)> {
     let known: BTreeSet<&[String]> = modules.iter().map(|m| m.path.as_slice()).collect();
     let mut folders: BTreeMap<String, BTreeMap<&str, BTreeSet<&str>>> = BTreeMap::new();
@@ -321,7 +322,7 @@ fn circles(modules: &[Module]) -> Vec<(String, BTreeSet<String>)> {
         }
     }
     let circle = |(folder, mut imports): (String, BTreeMap<&str, BTreeSet<&str>>)| {
-        // What imports nothing that is left, or is imported by nothing that is left, is in no circle.
+        // Files without remaining imports or importers are in no cycle.
         loop {
             let sources: BTreeSet<&str> = imports.keys().copied().collect();
             let targets: BTreeSet<&str> = imports.values().flatten().copied().collect();

@@ -1,9 +1,9 @@
-//! How many values of the checked-in modules have a name that says what they are, and not a number.
+//! Number of values in the checked-in modules with a descriptive name instead of a number.
 
 use overact_tests::support::{Failure, repository};
 use std::fs;
 
-/// The names that a module assigns: what stands between `let` and `=`.
+/// Names that a module assigns with `let`.
 fn assigned(text: &str) -> Vec<String> {
     let mut names = Vec::new();
     let mut rest = text;

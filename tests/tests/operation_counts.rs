@@ -1,8 +1,8 @@
-//! How many operations the identification models take of the works on which other generators have been
-//! counted, which ours stays below. `generated/manifest.toml` has the counts of all robots' functions.
+//! Operation counts of identification models, which must be below those of other generators.
 //!
-//! An operation is an addition, a subtraction, a multiplication, with a sign, too, or a division; square roots
-//! and trigonometric pairs stand apart.
+//! `generated/manifest.toml` has the counts of all robots' functions. An operation is an addition,
+//! a subtraction, a multiplication (also with a sign) or a division. Square roots and trigonometric
+//! pairs are counted separately.
 
 use overact::{Columns, Function};
 use overact_codegen::derivation::MotionInput;
@@ -13,8 +13,8 @@ use overact_tier::by_tier;
 use std::fmt::Write as _;
 use std::fs;
 
-/// A work: its description, whether all fourteen parameters of each joint stand in it, its columns, and
-/// the fewest operations that any other tool or hand takes for it.
+/// A benchmark: description, whether it has all fourteen parameters of each joint, columns, and the
+/// best known count.
 struct Work {
     file: &'static str,
     full: bool,
@@ -31,8 +31,10 @@ const fn work(file: &'static str, full: bool, columns: Columns, best_known: usiz
     }
 }
 
-/// All are evaluated from joint angles. The best known counts are those of CasADi, SymPy, SymForce,
-/// OpenSYMORO, SymPyBotics, or of a model written by hand, whichever is least.
+/// Benchmarks, evaluated from joint angles.
+///
+/// The best known count is the smallest of CasADi, SymPy, SymForce, OpenSYMORO, SymPyBotics, or a
+/// hand-written model.
 const WORKS: [Work; 14] = [
     work("robots/dualv.toml", false, Columns::Standard, 421),
     work("robots/dualv.toml", false, Columns::Base, 357),
@@ -50,7 +52,7 @@ const WORKS: [Work; 14] = [
     work("robots/octopod.toml", true, Columns::Standard, 4377),
 ];
 
-/// The mechanism with all parameters of all joints and of the platform.
+/// Mechanism with all parameters of all joints and of the platform.
 fn with_all_parameters(mut mechanism: Mechanism) -> Mechanism {
     let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
     for joint in joints.filter(|joint| joint.kind != JointKind::Fixed) {
@@ -113,7 +115,7 @@ fn no_other_tool_takes_fewer_operations() -> Result<(), Failure> {
 #[test]
 fn quick_search_is_within_five_percent_of_the_thorough_one() -> Result<(), Failure> {
     let mut table = String::new();
-    // A thorough search of all takes most of a minute; the default tier searches three small works.
+    // A thorough search of all takes most of a minute; the default tier searches three small ones.
     let works = by_tier([&WORKS[6..9], &WORKS[..]]);
     for work in works {
         let (_, quick) = line(work, Effort::Quick)?;

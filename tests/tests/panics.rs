@@ -1,9 +1,9 @@
-//! No generated module has a way to a panic, in the object code of an optimised build.
+//! Generated modules contain no panics in optimised object code.
 //!
-//! All robots are compiled without the standard library into one shared object, whose panic handler calls a
-//! function that nothing defines. The linker drops the handler where nothing reaches it; where something
-//! does it refuses to link, and names the function. Only the full tier does this, with one robot in four: optimising
-//! all modules, as the tier of the night does, takes minutes of processor time.
+//! All robots are compiled without the standard library into one shared object, whose panic handler
+//! calls an undefined function. If a panic is reachable, the linker fails and names the function.
+//! The full tier tests one robot in four. All modules, in the nightly tier, take minutes of
+//! processor time.
 
 use overact_codegen::derivation::JointsBy;
 use overact_codegen::{Effort, Request, RobotModel, Source, compile_with, emission};
@@ -15,7 +15,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What the panic handler calls.
+/// Function that the panic handler calls.
 const MARK: &str = "a_way_to_a_panic_is_left";
 
 #[test]
@@ -36,7 +36,7 @@ fn optimised_modules_have_no_way_to_a_panic() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The other test would pass as well if nothing were linked.
+/// Checks the method: the other test would also pass if nothing were linked.
 #[test]
 fn a_way_to_a_panic_is_found() -> Result<(), Failure> {
     if !overact_tier::is_full() {
@@ -50,14 +50,14 @@ fn a_way_to_a_panic_is_found() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A robot's generated module.
+/// Generated module of a robot.
 fn module(stem: &str) -> Result<String, Failure> {
     let source = description(stem)?;
     Ok(emission::file(&model(&source)?, &source.name))
 }
 
-/// The module of a robot whose joints are found by Newton's method, which no robot of the library needs: the
-/// first such mechanism that is drawn.
+/// Module of the first random mechanism whose joints need Newton's method; no robot of the library
+/// does.
 fn with_newtons_method() -> Result<String, Failure> {
     let drawn = (0..100).map(|seed| Sketch::draw(seed).source());
     let mut models = drawn.filter_map(|source| Some((model(&source).ok()?, source)));
@@ -73,7 +73,7 @@ fn model(source: &Source) -> Result<RobotModel, Failure> {
     Ok(compiled.model)
 }
 
-/// Builds a shared object of modules; what the linker says if it refuses.
+/// Builds a shared object of modules; returns the linker's message if it fails.
 fn link(name: &str, modules: &[(String, String)]) -> Result<Option<String>, Failure> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(folder.join("src"))?;
@@ -104,7 +104,7 @@ fn manifest(name: &str) -> String {
     )
 }
 
-/// A library that hands out all robots as models, so that all of their functions are kept.
+/// Library that exports all robots as models, so that all their functions are kept.
 fn library(modules: &[(String, String)]) -> Result<String, Failure> {
     let mut text = String::from("#![no_std]\n");
     let mut robots = String::new();

@@ -1,30 +1,31 @@
-//! Random platforms that move aside, against the numeric reference in all functions.
+//! Random platforms with parasitic motion compared with the numeric reference in all functions.
 //!
-//! `OVERACT_RANDOM_SEED=17` repeats one of them and shows its description. Where a draw's independent coordinates
-//! are refused, those that are proposed instead have to make a robot. Draws whose legs do not close, or are
-//! nearly singular, are thrown away.
+//! `OVERACT_RANDOM_SEED=17` repeats one of them and prints its description. If a draw's independent
+//! coordinates are rejected, the proposed ones must work. Draws whose legs do not close, or are
+//! nearly singular, are discarded.
 //!
-//! Nearly all of the time goes into deriving functions, of which these robots have the longest. One robot in four is
-//! compared in all of them, the others in those of a group each.
+//! Deriving the functions takes nearly all of the time. One robot in four is compared in all
+//! functions, the others in one group each.
 
 use overact_codegen::{Choice, Source};
 use overact_tests::support::random::aside;
 use overact_tests::support::{Failure, whole::of_functions};
 use overact_tier::drawn;
 
-/// Of functions of base parameters, whose regroupings are told from numbers, and of all others.
+/// Tolerances of functions of base parameters, whose regroupings are computed numerically, and of
+/// all others.
 const TOLERANCES: [f64; 2] = [1e-7, 1e-9];
 const STATES: usize = 3;
-/// Robots in the default tier and in the full one.
+/// Robots in the default and full tier.
 const COUNT: [u64; 2] = [1, 20];
-/// What robots are compared in, by their seeds: all functions, or those of a group.
+/// Functions to compare, by seed: all, or those of a group.
 const GROUPS: [Option<&str>; 4] = [
     None,
     Some("control"),
     Some("identification"),
     Some("kinematics"),
 ];
-/// Draws for each robot, at most.
+/// Largest number of draws for each robot.
 const DRAWS: u64 = 10;
 
 #[test]
@@ -79,7 +80,7 @@ fn random_platforms_that_move_aside() -> Result<(), Failure> {
 
 fn compare(seed: u64, text: &str) -> Result<Vec<String>, Failure> {
     let source = Source::new(format!("random{seed}.toml"), text.to_owned());
-    // One that is repeated is compared in all.
+    // A repeated one is compared in all functions.
     let group = match std::env::var_os("OVERACT_RANDOM_SEED") {
         Some(_) => None,
         None => GROUPS[usize::try_from(seed)? % GROUPS.len()],
@@ -88,7 +89,7 @@ fn compare(seed: u64, text: &str) -> Result<Vec<String>, Failure> {
     of_functions(source, STATES, TOLERANCES, chosen.transpose()?.as_ref())
 }
 
-/// The key that is proposed in the place of a draw's own.
+/// Proposed key in place of the draw's own.
 fn proposal(words: &str) -> Option<String> {
     let start = words.find("write independent = [")? + "write ".len();
     let rest = &words[start..];

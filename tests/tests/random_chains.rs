@@ -1,22 +1,23 @@
-//! Random trees with chains between any of their bodies, and between bodies of other chains, against the numeric
-//! reference in all functions.
+//! Random trees with chains between any bodies compared with the numeric reference in all
+//! functions.
 //!
-//! `OVERACT_RANDOM_SEED=17` repeats one of them and shows its description. Draws whose chains do not close, or
-//! are nearly singular, are thrown away.
+//! `OVERACT_RANDOM_SEED=17` repeats one of them and prints its description. Draws whose chains do
+//! not close, or are nearly singular, are discarded.
 
 use overact_codegen::Source;
 use overact_tests::support::random::skeleton;
 use overact_tests::support::{Failure, whole::against_reference};
 use overact_tier::drawn;
 
-/// Of functions of base parameters, whose regroupings are told from numbers where no exact ones are found: as
-/// many digits as columns are near to being dependent on others are lost. The worst of 200 draws misses 2e-7 of an
-/// entry, and 3e-10 of its matrix. And of all others.
+/// Tolerances of functions of base parameters and of all others.
+///
+/// Regroupings that are not exact are computed numerically and lose digits if columns are nearly
+/// dependent. The worst of 200 draws has an error of 2e-7 of an entry and 3e-10 of its matrix.
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 const STATES: usize = 3;
-/// Robots in the default tier and in the full one.
+/// Robots in the default and full tier.
 const COUNT: [u64; 2] = [2, 50];
-/// Draws for each robot, at most.
+/// Largest number of draws for each robot.
 const DRAWS: u64 = 20;
 
 #[test]
@@ -74,7 +75,7 @@ fn random_trees_with_chains() -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the draws are good for is told by their errors: none is one of writing.
+/// Errors of draws must not be syntax errors.
 #[test]
 fn draws_are_well_written() {
     for seed in 0..200 {

@@ -1,9 +1,10 @@
-//! Random mechanisms of every kind against the numeric reference, and damaged ones against diagnostics.
+//! Random mechanisms compared with the numeric reference, and defective ones with expected
+//! diagnostics.
 //!
-//! Every mechanism comes from a seed of its own. `OVERACT_RANDOM_SEED=17` repeats one of them and shows
-//! its description and results; `OVERACT_RANDOM_COUNT=2000` sets their number. The functions that
-//! issue from the platform's pose and the identification models are compared for every mechanism, of the
-//! others a sixth each time, in turn.
+//! Every mechanism has its own seed. `OVERACT_RANDOM_SEED=17` repeats one of them and prints its
+//! description and results; `OVERACT_RANDOM_COUNT=2000` sets their number. Functions of the
+//! platform's pose and identification models are compared for every mechanism, one sixth of the
+//! others each time.
 
 use nalgebra::{DMatrix, DVector};
 use overact::{Columns, Function};
@@ -28,28 +29,31 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Smallest eigenvalue of a mass matrix with ones on its diagonal whose robot's motion is compared.
+/// Smallest eigenvalue of the normalised mass matrix for which the motion is compared.
 const LIGHT: f64 = 1e-8;
 
 const TOLERANCE: f64 = 1e-9;
-/// That of functions of base parameters, whose regroupings are told from numbers where no exact ones are found,
-/// and lose as many digits as columns are near to being dependent on others.
+/// Tolerance of functions of base parameters.
+///
+/// Regroupings that are not exact are computed numerically and lose digits if columns are nearly
+/// dependent.
 const OF_BASE: f64 = 1e-8;
 const STATES: usize = 3;
-/// Mechanisms in the default tier and in the full one, which has to meet every feature and defect.
+/// Mechanisms in the default and full tier; the latter must cover every feature and defect.
 const COUNT: [u64; 2] = [16, 208];
-/// Largest condition number of the model's own partition for its functions to be compared plainly.
+/// Largest condition number of the model's own partition for the plain comparison.
 const PLAIN: f64 = 1e3;
-/// Largest joint rate of the path that the power is differentiated along, rad/s and m/s.
+/// Largest joint rate on the path for differentiating the energy, rad/s and m/s.
 const RATE: f64 = 2.0;
 /// Largest error of the power: that of seven-point differences of the energy.
 const DIFFERENCES: f64 = 1e-7;
 
-/// What is added to the seed of a mechanism whose legs do not hold the platform to its motion, and the seed from which on none is drawn anew.
+/// Increment of the seed of a mechanism whose legs do not constrain the platform to its motion;
+/// also the limit for redrawing.
 const REDRAWN: u64 = 8_000_000;
 const MOST_REDRAWN: u64 = 30 * REDRAWN;
 
-/// A number from the environment.
+/// Number from the environment.
 fn setting(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
 }
@@ -61,7 +65,7 @@ fn seeds() -> std::ops::Range<u64> {
     }
 }
 
-/// Runs `check` for every seed on all processors; what it says, by seed. A panic is a failure.
+/// Runs `check` for every seed on all processors; results by seed. A panic is a failure.
 fn for_each_seed<T: Send>(
     check: impl Fn(u64) -> Result<T, Failure> + Sync,
 ) -> BTreeMap<u64, Result<T, String>> {
@@ -92,7 +96,7 @@ fn for_each_seed<T: Send>(
     results.into_inner().unwrap_or_default()
 }
 
-/// What all seeds met; every failure of a seed is shown.
+/// Union of the features of all seeds; prints every failure.
 fn all_met<T: Ord + Clone>(results: &BTreeMap<u64, Result<BTreeSet<T>, String>>) -> BTreeSet<T> {
     let failed = |(seed, result): (&u64, &Result<BTreeSet<T>, String>)| {
         let error = result.as_ref().err()?;
@@ -121,7 +125,7 @@ fn random_mechanisms_agree_with_the_reference() {
     }
 }
 
-/// Compares one mechanism; what it has.
+/// Compares one mechanism; returns its features.
 fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     let source = sketch.source();
     let alone = seeds().count() == 1;
@@ -131,7 +135,7 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     let model = match model_of(&source, sketch.seed) {
         Ok(model) => model,
         Err(errors) => {
-            // Legs that leave the platform more than its motion are another robot: one is drawn anew.
+            // Legs that allow the platform further motions make another robot; draw a new one.
             let is_not_held = |error: &Diagnostic| error.kind == DiagnosticKind::NotHeld;
             if errors.iter().any(is_not_held) && sketch.seed < MOST_REDRAWN {
                 return agree(&Sketch::draw(sketch.seed + REDRAWN));
@@ -139,7 +143,7 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
             return Err(format!("refused:\n{}", errors.render_plain(&source)).into());
         }
     };
-    // The reference has the numbers as they were drawn, not as the generator reads them.
+    // The reference uses the numbers as drawn, not as read by the generator.
     let mut plain = sketch.mechanism();
     plain.workspace = workspace(&model);
     let expected = Expected::by_position(&model, plain);
@@ -166,7 +170,7 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     }
     if !model.is_tree() {
         let all_kept = partitions(model.mechanism.actuated().len(), model.mechanism.dof());
-        // A program of its own has one partition, the seed says which.
+        // A program has one partition, which the seed chooses.
         let own = sketch.seed as usize / 8 % all_kept.len();
         for (at, kept) in all_kept.iter().enumerate() {
             comparison.partition((kept, at == own), &model, &evaluated, &all, &truths)?;
@@ -190,13 +194,14 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     Ok(found)
 }
 
-/// The model with the functions that this seed looks at; for one in seventeen, operations are searched:
-/// of all kinds of mechanisms, which are drawn in turns of eight.
+/// Model with the functions for this seed; for one in seventeen, operations are searched.
+///
+/// Motions repeat every eight seeds, so all of them are searched at times.
 fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
         let always = match function {
-            // The closure error is what Newton's method drives to zero, not a quantity of its own. The
-            // pose in closed form has the assembly mode of home, which a state may have left.
+            // The closure error only has to vanish. The closed-form pose has the assembly mode of
+            // home, which a state may have left.
             Function::ClosureError | Function::PoseInClosedForm | Function::BlockedJacobian => {
                 return false;
             }
@@ -227,7 +232,7 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
     compile_with(source, &request).map(|compiled| compiled.model)
 }
 
-/// Whether a function is another one for other kept actuators.
+/// Whether a function depends on the kept actuators.
 const fn depends_on_kept(function: Function) -> bool {
     matches!(
         function,
@@ -239,8 +244,9 @@ const fn depends_on_kept(function: Function) -> bool {
     )
 }
 
-/// Whether the model's kept actuators are well conditioned at all samples. Else the partition is still
-/// compared, but with its condition number.
+/// Whether the model's kept actuators are well conditioned at all samples.
+///
+/// Otherwise the partition is compared with a tolerance for its condition number.
 fn is_well_kept(
     model: &RobotModel,
     evaluated: &Evaluated<'_>,
@@ -257,8 +263,10 @@ fn is_well_kept(
     Ok(true)
 }
 
-/// Whether every motion has kinetic energy at all samples: a description may leave out the parameters of all
-/// that a joint moves, and then no torque says how fast it goes.
+/// Whether every motion has kinetic energy at all samples.
+///
+/// A description may omit the parameters of everything that a joint moves; torques then do not
+/// determine its acceleration.
 fn has_masses(truths: &[Truth<'_>]) -> Result<bool, Failure> {
     for truth in truths {
         let mass = truth.output(Function::MassMatrix(Columns::Standard), MotionInput::Pose)?;
@@ -272,11 +280,11 @@ fn has_masses(truths: &[Truth<'_>]) -> Result<bool, Failure> {
     Ok(true)
 }
 
-/// The power of the motors without friction is the change of the energy.
+/// The power of the motors without friction is the rate of change of the energy.
 fn balance(expected: &Expected, evaluated: &Evaluated<'_>, all: &[Sample]) -> Result<(), Failure> {
     let (mechanism, sample) = (&expected.mechanism, all.first().ok_or("no state")?);
     let chi = frictionless(mechanism, &sample.all_parameters);
-    // The same path, run through slowly enough for the step of the differences.
+    // The same path, slow enough for the step of the differences.
     let State { pose, q, .. } = &sample.state;
     let slower = (RATE / sample.state.qd.amax()).min(1.0);
     let twist = &sample.state.twist * slower;

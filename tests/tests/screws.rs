@@ -1,5 +1,5 @@
-//! Helical joints: the power of their motors, what is compiled beside what is evaluated, and skeletons and chains that
-//! have them, beside the numeric reference.
+//! Helical joints: power balance, agreement of compiled and evaluated code, and chains with helical
+//! joints.
 
 use nalgebra::DVector;
 use overact_codegen::{Effort, Request, Source};
@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 1e-9;
 /// States of each robot in the default tier and in the full one.
 const STATES: [usize; 2] = [4, 60];
 
-/// The power of the motors is the change of the energy, which comes from positions and velocities alone.
+/// The power of the motors is the rate of change of the energy from positions and velocities.
 #[test]
 fn the_power_of_motors_of_screws_is_the_change_of_the_energy() -> Result<(), Failure> {
     let text = SCREW.replace("known = \"2 N m * cos(q) + 0.1 N m/rad * q\"\n", "");
@@ -53,7 +53,7 @@ fn the_power_of_motors_of_screws_is_the_change_of_the_energy() -> Result<(), Fai
     Ok(())
 }
 
-/// What is generated is what is evaluated, to rounding: the compiled robot takes the same lead.
+/// Compiled and evaluated robots agree up to rounding: both use the same lead.
 #[test]
 fn compiled_screws_move_as_evaluated_ones() -> Result<(), Failure> {
     let source = Source::new("screw_arm.toml", SCREW);
@@ -72,7 +72,7 @@ fn compiled_screws_move_as_evaluated_ones() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The tree with a screw in the place of its slide, and a drive from the ground to the body behind.
+/// The tree with a screw instead of its slide, and a drive from the ground to the body after it.
 fn driven(keys: &str, home: &str) -> String {
     let screw = [
         (
@@ -103,8 +103,10 @@ fn a_skeleton_with_a_screw_carries_chains() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Of this screw the slide follows from a distance, and no equation of sines has its angle; of the other the angle
-/// follows from the orientation of a rod, and no equation its slide: Newton's method finds both.
+/// Two screws that need Newton's method.
+///
+/// The slide of one follows from a distance, without an equation of sines for its angle. The angle
+/// of the other follows from a rod's orientation, without an equation for its slide.
 #[test]
 fn chains_are_solved_for_screws() -> Result<(), Failure> {
     for keys in ["actuated = true", "parameters = [\"fv\", \"m\"]"] {

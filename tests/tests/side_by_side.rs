@@ -1,9 +1,9 @@
-//! Legs that run side by side give what straight code gives: the same numbers but for rounding, and of several legs
-//! that fail the same one is told.
+//! Legs in SIMD lanes give the results of straight code up to rounding, and report the same failing
+//! leg.
 //!
-//! Vectors are taken in optimised builds only, so a program of its own is built with optimisation: for the processor's
-//! smallest vectors and for those that it finds out when it runs, which takes a minute, so that the full tier does it; and
-//! for those of AVX2 and of AVX-512 alone, at night.
+//! Vectors are used in optimised builds only, so an optimised program is built separately. The full
+//! tier does this for the smallest vectors and for run-time detection, which takes a minute; the
+//! nightly tier for AVX2 and AVX-512 as well.
 
 use overact_codegen::{Effort, Request, compile_with, emission};
 use overact_tests::support::{Failure, description, repository};
@@ -11,9 +11,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Robots of equal legs: many, whose straight code is longer than an instruction cache, and few, which run side by side
-/// with four lanes and more, redundant and not, in one working mode and (DualV) in two, with base columns that the last
-/// leg has not.
+/// Robots with equal legs.
+///
+/// Some have straight code that exceeds an instruction cache. Others use four lanes and more:
+/// redundant and not, in one working mode and (DualV) in two, with base columns that the last leg
+/// lacks.
 const ROBOTS: [&str; 7] = [
     "hexapod",
     "octopod",
@@ -71,7 +73,8 @@ fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
     if cfg!(target_arch = "x86_64") && std::arch::is_x86_feature_detected!("avx2") {
         run(&folder, "-Ctarget-feature=+avx2", &[])?;
     }
-    // All of AVX-512 that such processors have in common: `wide` does not compile with a part of it.
+    // Those AVX-512 extensions that such processors have in common; `wide` does not compile with a
+    // subset.
     if has_v4() {
         run(&folder, "-Ctarget-cpu=x86-64-v4", &[])?;
     }
@@ -120,7 +123,7 @@ fn run(folder: &Path, flags: &str, features: &[&str]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Compares both modules of each robot at random states, a part of which is out of reach.
+/// Compares both modules of each robot at random states, some of which are unreachable.
 const PROGRAM: &str = r#"
 mod delta_4_lanes;
 mod delta_4_straight;

@@ -1,5 +1,7 @@
-//! All test binaries, one for each processor at a time: cargo runs one after the other, and some have few
-//! tests that take minutes, which leaves processors idle. Each says how long it took.
+//! Runs all test binaries, one per processor at a time, with their times.
+//!
+//! Cargo runs one after the other; some have few tests that take minutes, which leaves processors
+//! idle.
 
 use crate::Failure;
 use crate::binaries::{Binary, binaries};
@@ -8,17 +10,18 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-/// Which test binaries run.
+/// Selection of test binaries.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Binaries {
-    /// All of them.
+    /// All binaries.
     All,
-    /// Those whose tests can differ between the tiers. The others were run by the default tier.
+    /// Binaries whose tests can differ between the tiers; the default tier already ran the others.
     OfTier,
 }
 
-/// Builds all tests and runs those of some binaries in the tier that the environment asks for. What a binary says is
-/// shown when it ends. Examples in the documentation are not run.
+/// Builds all tests and runs the selected binaries in the tier of the environment.
+///
+/// The output of a binary is shown when it ends. Documentation examples are not run.
 pub(crate) fn run(which: Binaries) -> Result<(), Failure> {
     let waiting = Mutex::new(chosen(which)?.into_iter());
     let failed = Mutex::new(Vec::new());
@@ -50,7 +53,7 @@ pub(crate) fn run(which: Binaries) -> Result<(), Failure> {
     Err(format!("failed: {}", failed.join(", ")).into())
 }
 
-/// The binaries to run. Those that are left out are named.
+/// Binaries to run; prints the names of the omitted ones.
 fn chosen(which: Binaries) -> Result<Vec<Binary>, Failure> {
     let all = binaries()?;
     if which == Binaries::All {
@@ -69,7 +72,7 @@ fn chosen(which: Binaries) -> Result<Vec<Binary>, Failure> {
     Ok(chosen)
 }
 
-/// Runs a binary and shows what it says; whether it succeeds.
+/// Runs a binary and shows its output; returns whether it succeeded.
 fn shown(binary: &Binary) -> Result<bool, Failure> {
     let start = Instant::now();
     let output = binary.command().output()?;

@@ -1,4 +1,4 @@
-//! The test binaries of this workspace.
+//! Test binaries of this workspace.
 
 use crate::Failure;
 use crate::files::read;
@@ -8,20 +8,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Crates through which a test reads the tier.
+/// Crates through which tests read the tier.
 const TIER_READERS: [&str; 2] = ["overact_tests", "overact_tier"];
 
-/// A test binary as cargo has built it.
+/// A test binary built by cargo.
 pub(crate) struct Binary {
-    /// Its package and its own name.
+    /// Names of the package and the binary.
     pub(crate) name: String,
     file: PathBuf,
-    /// The package's folder, in which cargo runs it.
+    /// Folder of the package, the working folder of its tests.
     folder: PathBuf,
 }
 
 impl Binary {
-    /// What runs it as cargo does.
+    /// Command that runs it as cargo does.
     pub(crate) fn command(&self) -> Command {
         let mut command = Command::new(&self.file);
         command
@@ -31,10 +31,11 @@ impl Binary {
         command
     }
 
-    /// Whether its tests can differ between the tiers: whether one of its sources names a crate that reads the tier.
+    /// Whether its tests can differ between the tiers: whether a source names a crate that reads
+    /// the tier.
     ///
-    /// The compiler lists the sources in a file next to the binary. A source that can't be read counts as one that
-    /// reads the tier, so that no test is left out by mistake.
+    /// The compiler lists the sources in a file next to the binary. An unreadable source counts as
+    /// one that reads the tier, so that no test is omitted by mistake.
     pub(crate) fn depends_on_tier(&self) -> Result<bool, Failure> {
         let list = self.file.with_extension("d");
         let text = fs::read_to_string(&list).map_err(|e| format!("{}: {e}", list.display()))?;
@@ -46,7 +47,7 @@ impl Binary {
     }
 }
 
-/// Whether one of the Rust sources of a list names a crate that reads the tier, or can't be read.
+/// Whether a listed Rust source names a crate that reads the tier, or is unreadable.
 fn names_tier_reader(sources: &str, read: impl Fn(&str) -> Result<String, Failure>) -> bool {
     let mut sources = sources
         .split_whitespace()

@@ -1,4 +1,4 @@
-//! The documentation as a book: the page of all errors, and `docs/` with what it needs from elsewhere.
+//! Documentation as a book: the page of all errors, and `docs/` with pages from other folders.
 
 use crate::Failure;
 use crate::files::{read, repository, write};
@@ -11,13 +11,14 @@ use std::path::Path;
 /// The page of all errors.
 const ERRORS: &str = "docs/errors.md";
 
-/// Where links of the book to files outside of it lead.
+/// Target of links from the book to files outside of it.
 const REPOSITORY: &str = "https://github.com/overact/overact/blob/main";
 
-/// Pages from elsewhere, by their names in the book.
+/// Pages from other folders, with their names in the book.
 const BORROWED: [(&str, &str); 1] = [("robots/README.md", "keys.md")];
 
-/// Writes the page of all errors, and the book's source below `target/book`, for `mdbook build target/book`.
+/// Writes the page of all errors, and the source of the book in `target/book`, for `mdbook build
+/// target/book`.
 pub(crate) fn write_all() -> Result<(), Failure> {
     write(ERRORS, &errors())?;
     let pages = texts()?;
@@ -43,7 +44,7 @@ pub(crate) fn write_all() -> Result<(), Failure> {
     copy_pictures(&repository("docs"), &repository("target/book/docs"))
 }
 
-/// Fails unless the page of all errors is what would be written.
+/// Fails unless the page of all errors is up to date.
 pub(crate) fn check() -> Result<(), Failure> {
     match read(ERRORS)? == errors() {
         true => Ok(()),
@@ -74,7 +75,7 @@ fn errors() -> String {
     text
 }
 
-/// A text whose brackets and angles are no markup; what stands in backquotes stays.
+/// Escapes brackets outside of backquotes.
 fn escaped(text: &str) -> String {
     let part = |(at, part): (usize, &str)| match at % 2 {
         0 => part
@@ -87,7 +88,7 @@ fn escaped(text: &str) -> String {
     text.split('`').enumerate().map(part).collect()
 }
 
-/// The name of a file's page in the book, if it is one.
+/// Name of a file's page in the book, if it has one.
 fn in_book(file: &str) -> Option<&str> {
     let borrowed = BORROWED.iter().find(|(path, _)| *path == file);
     borrowed
@@ -95,7 +96,7 @@ fn in_book(file: &str) -> Option<&str> {
         .or_else(|| file.strip_prefix("docs/"))
 }
 
-/// A page whose links lead to pages of the book, or else to the repository.
+/// Page with links to pages of the book, or else to the repository.
 fn redirected(file: &str, text: &str) -> String {
     let mut text = text.to_owned();
     let mut targets: Vec<String> = links(&text).into_iter().map(|link| link.target).collect();
@@ -125,7 +126,7 @@ fn redirected(file: &str, text: &str) -> String {
     text
 }
 
-/// Copies pictures with the folders that they lie in.
+/// Copies pictures and their folders.
 fn copy_pictures(from: &Path, to: &Path) -> Result<(), Failure> {
     for entry in fs::read_dir(from)? {
         let entry = entry?;
@@ -149,7 +150,7 @@ mod tests {
         check().expect("a fresh page");
     }
 
-    /// A cure that names a key which does not exist is none.
+    /// Explanations must only name keys that exist.
     #[test]
     fn explanations_name_keys_that_there_are() {
         let manual = [

@@ -1,10 +1,11 @@
-//! Advisories, licences, sources and duplicates of the dependencies of all workspaces, by cargo-deny.
+//! Checks advisories, licences, sources and duplicates of all workspaces' dependencies by
+//! cargo-deny.
 
 use crate::Failure;
 use crate::files::repository;
 use std::process::{Command, Stdio};
 
-/// Folders of all workspaces of this repository; each has a Cargo.lock of its own.
+/// Folders of all workspaces of this repository, each with a Cargo.lock.
 const WORKSPACES: [&str; 6] = [
     ".",
     "benchmarks/symplex",
@@ -14,9 +15,10 @@ const WORKSPACES: [&str; 6] = [
     "python",
 ];
 
-/// Runs `cargo deny check CHECKS` on every workspace with the root's `deny.toml`; without checks all of them.
+/// Runs `cargo deny check CHECKS` on every workspace with the root's `deny.toml`; by default all
+/// checks.
 ///
-/// Without cargo-deny nothing is checked, and a message says so.
+/// Without cargo-deny nothing is checked, and a message is printed.
 pub(crate) fn check(checks: &[&str]) -> Result<(), Failure> {
     if !is_installed()? {
         println!("skipped: cargo-deny is not installed (`cargo install cargo-deny --locked`)");
@@ -47,7 +49,7 @@ fn cargo_deny() -> Command {
     command
 }
 
-/// Whether cargo finds the subcommand `deny`.
+/// Whether cargo has the subcommand `deny`.
 fn is_installed() -> Result<bool, Failure> {
     let mut version = cargo_deny();
     version.arg("--version");

@@ -4,17 +4,17 @@ use crate::Failure;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A file or folder by its path from the repository's root.
+/// Path of a file or folder, from its path relative to the repository's root.
 pub(crate) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
-/// A file's text; errors name the file.
+/// Text of a file; errors name the file.
 pub(crate) fn read(path: &str) -> Result<String, Failure> {
     fs::read_to_string(repository(path)).map_err(|error| format!("{path}: {error}").into())
 }
 
-/// Writes a file and the folders that it lies in.
+/// Writes a file and creates its folders.
 pub(crate) fn write(path: &str, text: &str) -> Result<(), Failure> {
     let file = repository(path);
     let folder = file.parent().map_or(Ok(()), fs::create_dir_all);
@@ -24,7 +24,7 @@ pub(crate) fn write(path: &str, text: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Stems of the files of a folder that have an extension, sorted.
+/// Stems of a folder's files with an extension, sorted.
 pub(crate) fn stems(folder: &str, extension: &str) -> Result<Vec<String>, Failure> {
     let mut stems = Vec::new();
     let entries = fs::read_dir(repository(folder)).map_err(|error| format!("{folder}: {error}"))?;
@@ -39,7 +39,7 @@ pub(crate) fn stems(folder: &str, extension: &str) -> Result<Vec<String>, Failur
     Ok(stems)
 }
 
-/// Bytes of all files below a folder.
+/// Size of all files below a folder, bytes.
 pub(crate) fn size(folder: &Path) -> Result<u64, Failure> {
     let mut bytes = 0;
     for entry in fs::read_dir(folder)? {

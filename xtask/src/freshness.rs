@@ -1,8 +1,12 @@
-//! Whether `generated/` is what the generator writes now, and small enough to be kept.
+//! Checks that `generated/` is up to date and small.
 //!
-//! The manifest says which sources it was made from. Of a robot whose sources are the same nothing can have changed,
-//! and to generate all anew takes ten minutes of two processors: it is done for those that are kept as text and for
-//! one in eight of the others, other ones after each change of the generator, and for all that have changed.
+//! The manifest contains hashes of the sources that each robot was generated from. With equal
+//! sources the output is equal, and generating everything takes ten minutes on two processors.
+//! Therefore only some robots are generated:
+//!
+//! - those that are kept as text;
+//! - one in eight of the others, a different choice for each version of the generator;
+//! - those whose sources changed.
 
 use crate::Failure;
 use crate::files::{read, repository, size, stems};
@@ -11,15 +15,15 @@ use crate::hash::{generator, hash};
 use crate::manifest::{beginning, section, section_beginning};
 use crate::robots::{Module, TEXT, several};
 
-/// Bytes that may be checked in under `generated/`.
+/// Largest size of `generated/`, bytes.
 const LARGEST: u64 = 2_200_000;
 
-/// Of so many robots whose sources are the same one is generated.
+/// One in this many robots with unchanged sources is generated.
 const ONE_IN: u64 = 8;
 
 const MANIFEST: &str = "generated/manifest.toml";
 
-/// Compares the manifest and every file; all that differ are named, with the first line that does.
+/// Compares the manifest and every file; reports the first different line of each.
 pub(crate) fn check(all: bool) -> Result<(), Failure> {
     let generator = generator()?;
     let recorded = read(MANIFEST)?;
@@ -63,7 +67,7 @@ pub(crate) fn check(all: bool) -> Result<(), Failure> {
     )
 }
 
-/// What stands before the first robot of a manifest, and what is said of each, in one piece.
+/// Header of a manifest, and the section of each robot.
 fn sections(manifest: &str) -> Vec<&str> {
     let starts = manifest.match_indices("\n[").map(|(at, _)| at);
     let of_robots = starts.filter(|at| {
@@ -78,7 +82,7 @@ fn sections(manifest: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Sections that are missing, one too many or other than the modules'.
+/// Problems with sections: missing, superfluous or different from the modules.
 fn manifest_problems(sections: &[&str], robots: &[String], modules: &[Module]) -> Vec<String> {
     let start = |stem: &str| format!("\n[{stem}]\n");
     let missing = robots.iter().filter(|stem| {
@@ -105,7 +109,7 @@ fn manifest_problems(sections: &[&str], robots: &[String], modules: &[Module]) -
     problems
 }
 
-/// Modules that no task writes.
+/// Files of modules that no task writes.
 fn strangers() -> Result<Vec<String>, Failure> {
     let found = stems("generated/src", "rs")?.into_iter();
     let unknown = found.filter(|stem| stem != "lib" && !TEXT.contains(&stem.as_str()));
@@ -114,7 +118,7 @@ fn strangers() -> Result<Vec<String>, Failure> {
         .collect())
 }
 
-/// The first line in which a file differs from what it has to hold.
+/// First line in which a file differs from its expected text.
 fn difference(file: &File) -> Option<String> {
     match read(&file.path) {
         Ok(found) => first_difference(&file.path, &found, &file.text),
@@ -122,7 +126,7 @@ fn difference(file: &File) -> Option<String> {
     }
 }
 
-/// The first line in which what was found differs from what is expected.
+/// First line in which a text differs from the expected one.
 fn first_difference(name: &str, found: &str, expected: &str) -> Option<String> {
     if found == expected {
         return None;

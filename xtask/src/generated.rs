@@ -1,21 +1,21 @@
-//! What is written into `generated/`, and any other robot's module to read.
+//! Writes `generated/`, and modules of other robots for reading.
 
 use crate::files::{stems, write};
 use crate::hash::generator;
 use crate::robots::{Module, TEXT, all, several};
 use crate::{Failure, manifest};
 
-/// A module that is kept as text, and what it has to hold.
+/// A module kept as text.
 pub(crate) struct File {
-    /// Its path from the repository's root.
+    /// Path relative to the repository's root.
     pub(crate) path: String,
-    /// Its text.
+    /// Expected text.
     pub(crate) text: String,
 }
 
 /// Writes `generated/`.
 pub(crate) fn write_all() -> Result<(), Failure> {
-    // Before anything takes time in which a file may be changed.
+    // Hash the sources first, before they can change during the long generation.
     let generator = generator()?;
     let modules = all()?;
     write(
@@ -27,7 +27,7 @@ pub(crate) fn write_all() -> Result<(), Failure> {
         .try_for_each(|file| write(&file.path, &file.text))
 }
 
-/// Those of modules that are kept as text.
+/// Modules that are kept as text.
 pub(crate) fn texts(modules: Vec<Module>) -> Vec<File> {
     let kept = modules
         .into_iter()
@@ -39,7 +39,7 @@ pub(crate) fn texts(modules: Vec<Module>) -> Vec<File> {
     kept.map(file).collect()
 }
 
-/// Writes the modules of some robots where nothing keeps them.
+/// Writes the modules of some robots outside the repository's files.
 pub(crate) fn write_to_read(robots: &[&str]) -> Result<(), Failure> {
     let known = stems("robots", "toml")?;
     let unknown: Vec<&str> = robots

@@ -5,8 +5,8 @@ use crate::files::repository;
 use std::fs;
 use std::path::Path;
 
-/// The folders and files that what is generated depends on: the generator's sources, how this program asks it, and the
-/// versions of what it stands on.
+/// Sources that determine the generated code: generator, its use by this program, and dependency
+/// versions.
 const SOURCES: [&str; 7] = [
     "codegen/src",
     "core/src",
@@ -17,12 +17,12 @@ const SOURCES: [&str; 7] = [
     "Cargo.lock",
 ];
 
-/// The 64 bits of FNV-1a, which will be the same with any compiler.
+/// 64-bit FNV-1a hash, independent of the compiler.
 pub(crate) fn hash(text: &str) -> u64 {
     further(0xcbf2_9ce4_8422_2325, text.as_bytes())
 }
 
-/// The hash of the sources: names of files, and their text without lines that are comments.
+/// Hash of the sources: file names, and contents without comment lines of Rust.
 pub(crate) fn generator() -> Result<u64, Failure> {
     let mut all = hash("");
     for source in SOURCES {

@@ -1,9 +1,9 @@
-//! Licence expressions, and which ones a dependency may have.
+//! Licence expressions, and the licences that dependencies may have.
 
-/// Licences whose terms those of this repository, MIT or Apache-2.0, fulfil.
+/// Licences compatible with MIT and Apache-2.0, those of this repository.
 ///
-/// CC0-1.0 asks for nothing: its authors give up what rights they can. That it grants no patents makes it no worse
-/// than MIT, which does not speak of them. A macro that a hash function for WebAssembly is built with has it.
+/// CC0-1.0 has no conditions; like MIT, it does not grant patents. A macro of a hash function for
+/// WebAssembly uses it.
 const PERMITTED: [&str; 10] = [
     "0BSD",
     "Apache-2.0",
@@ -17,8 +17,8 @@ const PERMITTED: [&str; 10] = [
     "Zlib",
 ];
 
-/// Whether an expression like `(MIT OR Apache-2.0) AND Unicode-3.0` leaves a choice that is permitted.
-/// Old manifests write `/` for `OR`.
+/// Whether an expression like `(MIT OR Apache-2.0) AND Unicode-3.0` permits a choice; old manifests
+/// write `/` for `OR`.
 pub(crate) fn is_permitted(expression: &str) -> bool {
     let spaced = expression
         .replace('/', " OR ")
@@ -30,7 +30,7 @@ pub(crate) fn is_permitted(expression: &str) -> bool {
     permitted && at == words.len()
 }
 
-/// Alternatives; `AND` binds more strongly than `OR`.
+/// Alternatives; `AND` binds more tightly than `OR`.
 fn any_of(words: &[&str], at: &mut usize) -> bool {
     let mut permitted = all_of(words, at);
     while words.get(*at) == Some(&"OR") {
@@ -51,7 +51,7 @@ fn all_of(words: &[&str], at: &mut usize) -> bool {
 
 fn one(words: &[&str], at: &mut usize) -> bool {
     let Some(&word) = words.get(*at) else {
-        // Beyond the end: what is left unsaid permits nothing.
+        // An incomplete expression permits nothing.
         *at = words.len() + 1;
         return false;
     };

@@ -1,4 +1,4 @@
-//! Links between the texts of the repository: each leads to a file, and to a heading of it where it names one.
+//! Checks links between the repository's texts: files and headings must exist.
 
 use crate::Failure;
 use crate::files::{read, repository};
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Folders whose texts are checked, and those of the root.
+/// Folders whose texts are checked; the root is the empty one.
 const FOLDERS: [&str; 7] = [
     "",
     "benchmarks",
@@ -17,14 +17,14 @@ const FOLDERS: [&str; 7] = [
     "robots",
 ];
 
-/// A link of a text.
+/// A link in a text.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Link {
     pub(crate) line: usize,
     pub(crate) target: String,
 }
 
-/// Fails with every link that leads nowhere.
+/// Fails with all broken links.
 pub(crate) fn check() -> Result<(), Failure> {
     let texts = texts()?;
     let problems = broken(&texts);
@@ -35,7 +35,7 @@ pub(crate) fn check() -> Result<(), Failure> {
     Err(problems.join("\n").into())
 }
 
-/// All texts by their paths from the root.
+/// All texts by path relative to the root.
 pub(crate) fn texts() -> Result<BTreeMap<String, String>, Failure> {
     let mut all = BTreeMap::new();
     for folder in FOLDERS {
@@ -54,7 +54,7 @@ pub(crate) fn texts() -> Result<BTreeMap<String, String>, Failure> {
     Ok(all)
 }
 
-/// Every link that leads nowhere, with its file and line.
+/// Every broken link with its file and line.
 fn broken(texts: &BTreeMap<String, String>) -> Vec<String> {
     let mut problems = Vec::new();
     for (file, text) in texts {
@@ -67,7 +67,7 @@ fn broken(texts: &BTreeMap<String, String>) -> Vec<String> {
     problems
 }
 
-/// Why a link leads nowhere.
+/// Why a link is broken, if it is.
 fn fault(file: &str, target: &str, texts: &BTreeMap<String, String>) -> Option<String> {
     if is_foreign(target) {
         return None;
@@ -90,14 +90,15 @@ fn fault(file: &str, target: &str, texts: &BTreeMap<String, String>) -> Option<S
     (!known.iter().any(|one| one == anchor)).then(|| format!("`{resolved}` has no such heading"))
 }
 
-/// Whether a link leads out of the repository.
+/// Whether a link leaves the repository.
 pub(crate) fn is_foreign(target: &str) -> bool {
     ["http://", "https://", "mailto:", "data:"]
         .iter()
         .any(|scheme| target.starts_with(scheme))
 }
 
-/// A relative path from the root; one that leaves the repository stays as it is, and exists nowhere.
+/// Relative path from the root; a path that leaves the repository is returned unchanged and does
+/// not exist.
 pub(crate) fn resolved(file: &str, path: &str) -> Option<String> {
     let mut parts = PathBuf::from(file);
     parts.pop();
@@ -111,7 +112,7 @@ pub(crate) fn resolved(file: &str, path: &str) -> Option<String> {
     Some(parts.display().to_string())
 }
 
-/// The lines of a text that are no code, with their numbers.
+/// Numbered lines of a text outside of code.
 pub(crate) fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut is_code = false;
     text.lines().enumerate().filter_map(move |(at, line)| {
@@ -136,7 +137,7 @@ pub(crate) fn links(text: &str) -> Vec<Link> {
     found
 }
 
-/// A line without what stands between backquotes.
+/// Line without text in backquotes.
 fn without_code(line: &str) -> String {
     let parts = line.split('`').enumerate();
     parts
@@ -145,7 +146,8 @@ fn without_code(line: &str) -> String {
         .collect()
 }
 
-/// What links call the headings of a text: small letters, digits and hyphens, repeated ones with a number.
+/// Anchors of a text's headings: lower case letters, digits and hyphens; repeated ones are
+/// numbered.
 pub(crate) fn anchors(text: &str) -> Vec<String> {
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     let headings = prose(text).filter(|(_, line)| line.starts_with('#'));

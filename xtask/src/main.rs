@@ -1,4 +1,4 @@
-//! The chores of this repository: `cargo xtask TASK`.
+//! Tasks of this repository: `cargo xtask TASK`.
 
 mod at_once;
 mod binaries;
@@ -22,7 +22,7 @@ mod workflows;
 
 use std::process::ExitCode;
 
-/// What a task may fail with.
+/// Error of a task.
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 const HELP: &str = "\

@@ -1,4 +1,4 @@
-//! What generation makes of a description, in numbers: operations of every function, bytes of the module.
+//! Measures the generated code of a description: operations of every function, size of the module.
 
 use crate::Failure;
 use crate::files::read;

@@ -1,4 +1,4 @@
-//! What cargo knows of the workspace's packages and of those that they depend on.
+//! Cargo metadata of the workspace's packages and their dependencies.
 
 use crate::Failure;
 use crate::files::repository;
@@ -6,22 +6,22 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A package of the workspace or below it.
+/// A package of the workspace or a dependency.
 pub(crate) struct Package {
     pub(crate) name: String,
     pub(crate) version: String,
-    /// The licence expression of its manifest.
+    /// Licence expression of its manifest.
     pub(crate) licence: Option<String>,
-    /// The oldest Rust that it says it builds with.
+    /// Minimum Rust version.
     pub(crate) rust_version: Option<String>,
     /// Whether it belongs to the workspace.
     pub(crate) is_member: bool,
-    /// Whether it is meant for a registry.
+    /// Whether it is published.
     pub(crate) is_published: bool,
     pub(crate) description: Option<String>,
-    /// What else its archive or the registry's page lacks.
+    /// Items that its archive or the registry's page lacks.
     pub(crate) lacks: Vec<&'static str>,
-    /// What it requires of packages of the workspace, by name; development alone left out.
+    /// Version requirements on packages of the workspace by name, except development dependencies.
     pub(crate) siblings: Vec<(String, String)>,
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn cargo(arguments: &[&str]) -> Result<String, Failure> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// The folder that cargo builds into.
+/// Cargo's target folder.
 pub(crate) fn target() -> Result<PathBuf, Failure> {
     let text = cargo(&["metadata", "--format-version", "1", "--no-deps"])?;
     let document: Value = serde_json::from_str(&text)?;
@@ -79,7 +79,7 @@ fn package(one: &Value, members: &[Value]) -> Package {
     }
 }
 
-/// What a package lacks that a registry shows, or that its archive has to hold.
+/// Items of a package that a registry shows or its archive needs, but that are missing.
 fn lacks(one: &Value) -> Vec<&'static str> {
     let keys = ["documentation", "readme", "repository"].into_iter();
     let keys = keys.filter(|key| one[*key].is_null());
@@ -89,7 +89,7 @@ fn lacks(one: &Value) -> Vec<&'static str> {
     keys.chain(files.filter(|file| !has(file))).collect()
 }
 
-/// Names of the workspace's libraries whose documentation has no example to look for.
+/// Names of the workspace's libraries without documentation examples.
 pub(crate) fn without_examples() -> Result<Vec<String>, Failure> {
     let text = cargo(&["metadata", "--format-version", "1", "--no-deps"])?;
     let document: Value = serde_json::from_str(&text)?;
@@ -107,7 +107,7 @@ pub(crate) fn without_examples() -> Result<Vec<String>, Failure> {
     Ok(names.collect())
 }
 
-/// A list of a document, empty where there is none.
+/// List in a document; empty if absent.
 pub(crate) fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }

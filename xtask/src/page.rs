@@ -1,4 +1,4 @@
-//! The page for browsers: `page/build` makes it, Node and a browser test it.
+//! Builds and tests the page for browsers with `page/build`, Node and a browser.
 
 use crate::Failure;
 use crate::files::repository;
@@ -6,17 +6,17 @@ use crate::metadata::target;
 use std::io::ErrorKind;
 use std::process::Command;
 
-/// Tests of the page, each a script of Node.
+/// Node scripts that test the page.
 const TESTS: [&str; 1] = ["browser.mjs"];
 
-/// Builds the page into `page` of the target folder. Without a Rust for browsers nothing is done, with a word.
+/// Builds the page in the target folder; prints a message without a WebAssembly toolchain.
 pub(crate) fn build() -> Result<(), Failure> {
     let mut build = Command::new(repository("page/build"));
     build.env("CARGO_TARGET_DIR", target()?);
     succeeds(build)
 }
 
-/// Builds the page and tests it; what is not there, Node or a browser, is told.
+/// Builds and tests the page; prints a message if Node or a browser is missing.
 pub(crate) fn test() -> Result<(), Failure> {
     build()?;
     if let Err(error) = Command::new("node").arg("--version").output()

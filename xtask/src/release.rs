@@ -1,11 +1,11 @@
-//! What has to hold of the packages before they are published.
+//! Checks and packages the crates for publication.
 
 use crate::Failure;
 use crate::files::read;
 use crate::licence::is_permitted;
 use crate::metadata::{Package, cargo, packages};
 
-/// Checks versions, licences and Rust versions; everything that is wrong is named.
+/// Checks versions, licences and Rust versions; reports all problems.
 pub(crate) fn check() -> Result<(), Failure> {
     let packages = packages()?;
     let mut problems = versions(&packages, &read("CHANGELOG.md")?);
@@ -21,8 +21,7 @@ pub(crate) fn check() -> Result<(), Failure> {
     Err(problems.join("\n").into())
 }
 
-/// Makes the archives of all packages that are published, and builds each of them as it will be; with `--no-verify`
-/// the archives alone.
+/// Packages all published crates and builds each from its archive; `--no-verify` skips the builds.
 pub(crate) fn package(options: &[&str]) -> Result<(), Failure> {
     let packages = packages()?;
     let private = packages.iter().filter(|p| p.is_member && !p.is_published);
@@ -32,8 +31,8 @@ pub(crate) fn package(options: &[&str]) -> Result<(), Failure> {
     cargo(&arguments).map(drop)
 }
 
-/// Published packages have one version, which the changelog knows, and what a registry asks for; they
-/// depend on nothing that is not published.
+/// Checks that published packages have one version, listed in the changelog, complete metadata and
+/// published dependencies.
 fn versions(packages: &[Package], changelog: &str) -> Vec<String> {
     let published: Vec<&Package> = packages
         .iter()
@@ -75,7 +74,7 @@ fn versions(packages: &[Package], changelog: &str) -> Vec<String> {
     problems
 }
 
-/// Every dependency can be had under a licence that agrees with ours.
+/// Checks that every dependency has a compatible licence.
 fn licences(packages: &[Package]) -> Vec<String> {
     let is_bad = |p: &&Package| !p.licence.as_deref().is_some_and(is_permitted);
     let problem = |p: &Package| {
@@ -85,7 +84,7 @@ fn licences(packages: &[Package]) -> Vec<String> {
     packages.iter().filter(is_bad).map(problem).collect()
 }
 
-/// No dependency asks for a newer Rust than the workspace promises to build with.
+/// Checks that no dependency requires a newer Rust than the workspace.
 fn rust_versions(packages: &[Package]) -> Vec<String> {
     let own = packages.iter().find(|p| p.is_member);
     let Some(promised) = own.and_then(|p| p.rust_version.as_deref()) else {
@@ -103,7 +102,7 @@ fn rust_versions(packages: &[Package]) -> Vec<String> {
     packages.iter().filter_map(problem).collect()
 }
 
-/// A version's parts; missing ones are zero.
+/// Components of a version; missing ones are zero.
 fn number(version: &str) -> [u64; 3] {
     let mut parts = version.split('.').map(|part| part.parse().unwrap_or(0));
     std::array::from_fn(|_| parts.next().unwrap_or(0))

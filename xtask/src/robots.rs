@@ -1,4 +1,4 @@
-//! The robots of `robots/` as the generator writes them.
+//! Generates the modules of the descriptions in `robots/`.
 
 use crate::Failure;
 use crate::files::{read, stems};
@@ -7,28 +7,27 @@ use overact_codegen::{Effort, Request, Source, TotalCost, compile_with, emission
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The robots that `generated/` holds as text, because people read and compare them.
+/// Robots that `generated/` keeps as text for reading and comparison.
 pub(crate) const TEXT: [&str; 5] = ["dualv", "emps", "five_bar", "rx90", "three_leg_point"];
 
-/// A robot's module and what its functions cost.
+/// Module of a robot with the cost of its functions.
 pub(crate) struct Module {
-    /// Name of the description without its extension, and of the module.
+    /// Stem of the description's file name, and name of the module.
     pub(crate) stem: String,
-    /// A hash of the description.
+    /// Hash of the description.
     pub(crate) description: u64,
-    /// The source file.
+    /// Source text.
     pub(crate) text: String,
     /// Name and cost of each function.
     pub(crate) functions: Vec<(String, TotalCost)>,
 }
 
-/// All robots' modules in the order of their names, generated on all processors.
+/// Modules of all robots in the order of their names, generated on all processors.
 pub(crate) fn all() -> Result<Vec<Module>, Failure> {
     several(&stems("robots", "toml")?)
 }
 
-/// Modules of some robots, in the order asked for. Work is handed out from a queue; a module does not
-/// depend on which thread writes it.
+/// Modules of some robots in the given order; threads take robots from a queue.
 pub(crate) fn several(stems: &[String]) -> Result<Vec<Module>, Failure> {
     let next = AtomicUsize::new(0);
     let done = Mutex::new(Vec::new());
@@ -51,7 +50,7 @@ pub(crate) fn several(stems: &[String]) -> Result<Vec<Module>, Failure> {
     done.into_iter().map(|(_, module)| Ok(module?)).collect()
 }
 
-/// The module of a robot, with all operations searched unless its description says otherwise.
+/// Module of a robot, with thorough optimisation unless its description says otherwise.
 fn module(stem: &str) -> Result<Module, Failure> {
     let name = format!("robots/{stem}.toml");
     let text = read(&name)?;

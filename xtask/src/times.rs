@@ -1,12 +1,12 @@
-//! The processor time of each test binary, so that the suite stays one that people run.
+//! Processor time of each test binary.
 
 use crate::Failure;
 use crate::binaries::binaries;
 use crate::metadata::{cargo, without_examples};
 use std::fs;
 
-/// Builds all tests, runs one binary after the other and says what each took, at once on stderr and then
-/// as a table, most first.
+/// Builds all tests, runs the binaries one after the other and prints their times, at last as a
+/// sorted table.
 pub(crate) fn table(most: Option<&str>) -> Result<(), Failure> {
     let most: f64 = most.map_or(Ok(f64::INFINITY), str::parse)?;
     let mut rows = Vec::new();
@@ -22,7 +22,7 @@ pub(crate) fn table(most: Option<&str>) -> Result<(), Failure> {
         }
     }
     let examples = "examples in the documentation".to_owned();
-    // Asked for examples alone, cargo looks for them in libraries that say that they have none, too.
+    // If only examples are requested, cargo would also search libraries without any.
     let silent = without_examples()?;
     let excluded = silent.iter().flat_map(|name| ["--exclude", name]);
     let chosen: Vec<&str> = ["--workspace", "--quiet"]
@@ -51,11 +51,11 @@ pub(crate) fn table(most: Option<&str>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Seconds of the processor that all ended children of this process took, as Linux counts them.
+/// Processor time of all ended child processes on Linux, s.
 fn children() -> Result<f64, Failure> {
     let text = fs::read_to_string("/proc/self/stat")?;
-    // The second field is the program's name in parentheses; those of waited-for children are the
-    // 16th and the 17th, in hundredths of a second.
+    // The second field is the program's name in parentheses. Fields 16 and 17 are the times of
+    // waited-for children, in hundredths of a second.
     let (_, fields) = text.rsplit_once(')').ok_or("unexpected /proc/self/stat")?;
     let ticks = fields
         .split_whitespace()

@@ -1,4 +1,4 @@
-//! What the workflows in `.github/workflows` must keep to.
+//! Tests of the workflows in `.github/workflows`.
 
 use crate::files::{read, stems};
 

@@ -1,5 +1,6 @@
-//! Times a generated function and the evaluation of its program over blocks, in turns, and prints the
-//! shortest times per sample in nanoseconds: function, blocks as they lie, rows.
+//! Times a generated function and block evaluation of its program, alternately.
+//!
+//! Prints the shortest times per sample in nanoseconds: function, contiguous blocks, rows.
 use overact::{Columns, Function};
 use overact_codegen::derivation::{MotionInput};
 use overact_codegen::evaluation::{Evaluator, Number, Rows};
@@ -10,7 +11,7 @@ use std::{env, error::Error, fs, hint::black_box, time::Instant};
 /// One state: the function's inputs.
 type State = (@TYPES@);
 
-/// Samples that are evaluated at once, as in an identification.
+/// Samples per block, as in an identification.
 const SAMPLES: usize = 512;
 
 const LENGTHS: &[usize] = &[@LENGTHS@];
@@ -41,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut output = vec![0.0; SAMPLES * program.entries.len()];
     let mut evaluator = Evaluator::new(program);
     let mut written = @WRITTEN@;
-    // Blocks first: all agree with the function.
+    // Blocks first: all must agree with the function.
     evaluator
         .evaluate(SAMPLES, &inputs, &mut output)
         .map_err(|failed| format!("{failed:?}"))?;

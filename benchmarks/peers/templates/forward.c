@@ -1,5 +1,5 @@
 
-/* Gauss and Newton's steps from the pose `inputs[1]` to the one that fits the actuators `inputs[0]`. */
+/* Gauss-Newton steps from the pose `inputs[1]` to the least-squares pose of the actuators `inputs[0]`. */
 #include <math.h>
 #include <string.h>
 

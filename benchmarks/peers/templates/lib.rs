@@ -1,6 +1,6 @@
-//! Generated models that are timed.
+//! Generated models to be timed.
 
-/// What a model returns, with or without a check of the configuration.
+/// Result of a model, with or without a check of the configuration.
 pub trait Output {
     /// The numbers, row by row.
     fn numbers(&self) -> Result<Vec<f64>, overact::Error>;
@@ -18,7 +18,7 @@ impl<const N: usize> Output for [f64; N] {
     }
 }
 
-/// Of a function that writes into what is handed in.
+/// For a function that writes into the caller's matrix.
 impl Output for () {
     fn numbers(&self) -> Result<Vec<f64>, overact::Error> {
         Ok(Vec::new())

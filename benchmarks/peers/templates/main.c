@@ -1,4 +1,4 @@
-/* Calls a model for one state after the other and prints the shortest time per call in nanoseconds. */
+/* Calls a model for successive states and prints the shortest time per call in nanoseconds. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>

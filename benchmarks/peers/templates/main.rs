@@ -1,4 +1,4 @@
-//! Calls a model for one state after the other and prints the shortest time per call in nanoseconds.
+//! Calls a model for successive states and prints the shortest time per call in nanoseconds.
 use overact_timed::{Output, @MODULE@};
 use std::{env, error::Error, fs, hint::black_box, time::Instant};
 
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _ in 0..arguments[2].parse()? {
         let start = Instant::now();
         for s in &states {
-            // Where it was written: a copy would be timed, too, and the peers' results are not copied.
+            // In place: a copy would be timed, too, and the peers' results are not copied.
             black_box(&@CALL@(@ARGUMENTS@));
             black_box(&mut written);
         }

@@ -1,14 +1,14 @@
-//! Writes a model with as few operations as symplex makes of it.
+//! Optimises a model's operation count with symplex.
 //!
-//! The standard input holds a line for every operation, `NAME OPERATOR OPERAND…`, and a line `output OPERAND`
-//! for every output. An operand is the name of an earlier line, a decimal number, or else a symbol. The standard
-//! output gets a line for every shared expression, its name and its tree in symplex's JSON, each before those that
-//! need it, and a line `output` with the tree of every output.
+//! Standard input has a line `NAME OPERATOR OPERAND…` for every operation, and a line `output
+//! OPERAND` for every output. An operand is the name of an earlier line, a decimal number, or else
+//! a symbol. Standard output has a line for every shared expression, with its name and its tree in
+//! symplex's JSON, in order of dependency. A line `output` with a tree follows for every output.
 //!
-//! symplex merges a product of products into one product, and a sum of sums likewise, and its `cse_many` shares
-//! whole nodes only: of `a*b*c` and `a*b*d` nothing. Hence a line that is used more than once gets a symbol of its
-//! own, as a user of symplex would write it, and `cse_many` runs over all of these. Common factors are taken out
-//! of each by `factor_terms`.
+//! symplex flattens nested products and sums, and its `cse_many` shares whole nodes only: nothing
+//! of `a*b*c` and `a*b*d`. A line that is used more than once therefore becomes a symbol, as a user
+//! of symplex would write it, and `cse_many` runs over all of these. `factor_terms` takes common
+//! factors out of each.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -36,10 +36,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(out.flush()?)
 }
 
-/// The name of every output's line.
+/// Name of the output lines.
 const OUTPUT: &str = "output";
 
-/// The named expressions and the outputs that the lines of a text describe, without what no output needs.
+/// Named expressions and outputs of a text, without those that no output needs.
 fn read(text: &str) -> Result<Vec<(String, Ex)>, Box<dyn Error>> {
     let lines: Vec<Vec<&str>> = text
         .lines()
@@ -94,7 +94,7 @@ fn is_atom(expression: &Ex) -> bool {
     matches!(expression.expr_type(), ExprType::Symbol | ExprType::Number)
 }
 
-/// How often the outputs, and what they need, use each operand.
+/// Number of uses of each operand by the outputs and their dependencies.
 fn uses<'a>(lines: &[Vec<&'a str>]) -> HashMap<&'a str, usize> {
     let mut uses = HashMap::new();
     for line in lines.iter().rev() {
@@ -110,7 +110,7 @@ fn uses<'a>(lines: &[Vec<&'a str>]) -> HashMap<&'a str, usize> {
     uses
 }
 
-/// The expression that an operator makes of its operands.
+/// Applies an operator to its operands.
 fn apply(operator: &str, operands: &[Ex]) -> Option<Ex> {
     Some(match (operator, operands) {
         ("add", [a, b]) => a + b,
@@ -126,13 +126,13 @@ fn apply(operator: &str, operands: &[Ex]) -> Option<Ex> {
     })
 }
 
-/// The expression with the common factor of its terms taken out.
+/// Expression with the common factor of its terms taken out.
 fn factor(expression: &Ex) -> Ex {
     let (content, primitive) = expression.factor_terms();
     content * primitive
 }
 
-/// Writes an expression's line after those of the expressions that it needs and that are still waiting.
+/// Writes an expression's line after those of its unwritten dependencies.
 fn write(
     out: &mut impl Write,
     name: &str,

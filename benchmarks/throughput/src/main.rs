@@ -1,9 +1,10 @@
-//! From measured poses and torques to the R factors of the identification model, timed.
+//! Times the computation of R factors from measured poses and torques.
 //!
-//! `overact-throughput DESCRIPTION LOG SETTINGS ROUNDS [RESULT]`: LOG holds rows of a pose and torques as
-//! little-endian doubles; SETTINGS are sampling frequency (Hz), filter's order, filter's cutoff (Hz),
-//! decimation, and the names of the columns, separated by commas. Prints the shortest time of the processor of
-//! all rounds in nanoseconds per sample, and writes the R factors, row-major, to RESULT.
+//! `overact-throughput DESCRIPTION LOG SETTINGS ROUNDS [RESULT]`. LOG has rows of a pose and
+//! torques as little-endian doubles. SETTINGS are, separated by commas: sampling frequency (Hz),
+//! filter order, filter cutoff (Hz), decimation, and the names of the columns. Prints the shortest
+//! processor time of all rounds in nanoseconds per sample, and writes the R factors, row-major, to
+//! RESULT.
 
 use nalgebra::DMatrix;
 use overact::{Function, Model};
@@ -14,12 +15,12 @@ use overact_identification::{ColumnSet, Error};
 use overact_robot::InterpretedRobot;
 use std::{env, fs, process::ExitCode};
 
-/// Samples that are evaluated at once, as in an identification.
+/// Samples per block, as in an identification.
 const BLOCK: usize = 512;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// What is done with a log.
+/// A log with its processing settings.
 struct Work<'a> {
     model: &'a dyn Model,
     columns: ColumnSet,
@@ -60,7 +61,7 @@ impl Work<'_> {
         })
     }
 
-    /// For each line of the model, the R factor of the decimated equations, which come block by block.
+    /// R factor of the decimated equations for each row of the model, computed block by block.
     fn factors(&self) -> Result<Vec<Factor>, Failure> {
         let motion = self.motion()?;
         let sizes = self.model.info().sizes;
@@ -83,7 +84,7 @@ impl Work<'_> {
         Ok(kept.iter().map(factor).collect())
     }
 
-    /// For each line of the model, `count` samples from number `first` on x (columns + 1), Y last.
+    /// Rows of the model for `count` samples from number `first`, x (columns + 1), Y last.
     fn rows(&self, motion: &Motion, first: usize, count: usize) -> Result<Vec<Vec<f64>>, Failure> {
         let sizes = self.model.info().sizes;
         let part =
@@ -111,7 +112,7 @@ impl Work<'_> {
     }
 }
 
-/// Time of the processor that this process has taken so far, s. Other work on the machine takes none of it.
+/// Processor time of this process so far, s, which excludes other work on the machine.
 fn processor_time() -> Result<f64, Failure> {
     let text = fs::read_to_string("/proc/self/schedstat")?;
     let nanoseconds = text.split_whitespace().next().ok_or("no time")?;

@@ -1,4 +1,4 @@
-//! Virtual experiments with motions and noise of their own.
+//! Virtual experiments with random motions and noise.
 
 use crate::{Failure, Subject};
 use nalgebra::DMatrix;
@@ -10,34 +10,35 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
-/// Instants of a period at which a motion is checked.
+/// Samples of a period at which a motion is checked.
 const INSTANTS: usize = 120;
 
-/// A motion on which the actuators, or the kept ones of case 2, get worse conditioned than this, by
-/// their condition at home, is drawn anew: the identification warns of it, so nobody is misled.
+/// Largest condition number of the actuators, or kept actuators, relative to that at home.
+///
+/// Other motions are redrawn, because the identification warns of them anyway.
 const LARGEST_CONDITION: f64 = 10.0;
 
-/// Motions that are tried for a run.
+/// Largest number of motions tried for a run.
 const CANDIDATES: usize = 500;
 
-/// Multiples of the description's noise.
+/// Factors on the description's noise.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Noise {
-    /// Of the torques' deviation.
+    /// Factor on the standard deviation of the torques.
     pub torque: f64,
-    /// Of the encoders' resolution.
+    /// Factor on the resolution of the encoders.
     pub encoder: f64,
 }
 
 impl Noise {
-    /// The description's.
+    /// The description's noise.
     pub const PLAIN: Self = Self {
         torque: 1.0,
         encoder: 1.0,
     };
 }
 
-/// The subject's experiment with the motions of draw number `draw`.
+/// The subject's experiment with random motions of draw number `draw`.
 ///
 /// # Errors
 /// A run for which no motion was found.
@@ -60,7 +61,7 @@ pub fn varied(subject: &Subject, draw: u64) -> Result<Experiment, Failure> {
     Ok(experiment)
 }
 
-/// The terms of a motion with random phases and sizes, each coordinate within its original reach.
+/// Terms of a motion with random phases and amplitudes; each coordinate within its original range.
 fn candidate(original: &Trajectory, random: &mut Pcg64) -> Trajectory {
     let Trajectory::Periodic {
         fundamental_hz,
@@ -133,14 +134,16 @@ fn is_harmless(subject: &Subject, trajectory: &Trajectory) -> bool {
         let here = conditions(subject, &pose, &sets);
         here.is_some_and(|here| {
             let mut pairs = here.iter().zip(&home);
-            // A determinant that changes its sign has crossed a singularity.
+            // A determinant that changes its sign indicates a singularity.
             pairs.all(|(here, home)| here.0 <= LARGEST_CONDITION * home.0 && here.1 == home.1)
         })
     })
 }
 
-/// Condition number of the rows of J_p^inv of each set of actuators, and whether the determinant of a
-/// square one is positive; none where the pose is out of reach.
+/// For each set of actuators: condition number of its rows of J_p^inv, and whether the determinant
+/// is positive.
+///
+/// `None` if the pose is unreachable.
 fn conditions(subject: &Subject, pose: &[f64], sets: &[Vec<usize>]) -> Option<Vec<(f64, bool)>> {
     let sizes = subject.info().sizes;
     let mut jacobian = vec![0.0; sizes.actuators * sizes.dof];
@@ -158,10 +161,10 @@ fn conditions(subject: &Subject, pose: &[f64], sets: &[Vec<usize>]) -> Option<Ve
     Some(sets.iter().map(of).collect())
 }
 
-/// The records of an experiment with encoders of so many times the resolution, and exact torques.
+/// Records of an experiment with a factor on the encoder resolution, and exact torques.
 ///
 /// # Errors
-/// A run that can't be made.
+/// A run that fails.
 pub fn records(
     subject: &Subject,
     experiment: &Experiment,
@@ -175,10 +178,10 @@ pub fn records(
     Ok(simulate(subject.model(), &exact, &|_, _| ()).map_err(|error| error.to_string())?)
 }
 
-/// Logs of the records with torque noise of so many times the description's deviation.
+/// Logs of the records with a factor on the torque noise.
 ///
 /// # Errors
-/// A record that is no log.
+/// A record that is not a valid log.
 pub fn logs(
     subject: &Subject,
     records: &[Record],

@@ -1,4 +1,4 @@
-//! One draw: simulated, disturbed, identified, counted.
+//! Evaluation of one draw: simulation, noise, identification, counting.
 
 use crate::{Failure, Noise, Subject, draw};
 use overact_identification::{
@@ -8,20 +8,20 @@ use overact_identification::{
 use overact_robot::beside_simulated;
 use overact_simulation::Experiment;
 
-/// The intervals of one estimate of one draw, counted.
+/// Intervals of one estimate of one draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Counted {
-    /// Multiples of the description's noise.
+    /// Factors on the description's noise.
     pub noise: Noise,
-    /// Which inputs were explained.
+    /// Model of the estimate.
     pub model: ModelKind,
-    /// Which parameters were estimated.
+    /// Stage of the estimate.
     pub stage: Stage,
-    /// How.
+    /// Estimator.
     pub estimator: Estimator,
-    /// Whether errors of the positions were found to spoil least squares, where that was tested.
+    /// Whether position errors were found to bias least squares, if tested.
     pub flagged: Option<bool>,
-    /// The parameters of which the true value is known.
+    /// Parameters with known true values.
     pub parameters: Vec<Interval>,
 }
 
@@ -32,16 +32,16 @@ pub struct Interval {
     pub name: String,
     /// Whether it contains the true value.
     pub covers: bool,
-    /// Its width by that of the base model's interval of the parameter.
+    /// Width relative to that of the base model's interval.
     pub relative_width: f64,
-    /// Error by half of the width.
+    /// Error relative to the half width.
     pub miss: f64,
 }
 
-/// Makes draw number `draw` of a subject under each noise.
+/// Evaluates draw number `draw` of a subject under each noise.
 ///
 /// # Errors
-/// A draw that can't be simulated or identified.
+/// A draw that cannot be simulated or identified.
 pub fn measure(subject: &Subject, draw: u64, noises: &[Noise]) -> Result<Vec<Counted>, Failure> {
     let experiment = draw::varied(subject, draw)?;
     let mut encoders: Vec<f64> = noises.iter().map(|noise| noise.encoder).collect();
@@ -58,9 +58,11 @@ pub fn measure(subject: &Subject, draw: u64, noises: &[Noise]) -> Result<Vec<Cou
     Ok(counted)
 }
 
-/// Identifies from runs and counts the intervals. With coarser encoders than the description's there is an
-/// estimate by instruments, too: those of the simulated robot, since steps of an encoder return with a
-/// motion that returns.
+/// Identifies from runs and counts the intervals.
+///
+/// With coarser encoders than described, there is also an estimate by instrumental variables. Its
+/// instruments come from the simulated robot, because quantisation errors repeat with a periodic
+/// motion.
 fn identified(
     subject: &Subject,
     experiment: &Experiment,
@@ -106,7 +108,7 @@ fn identified(
     Ok(counted)
 }
 
-/// All intervals of an estimate beside those of the base model.
+/// Intervals of an estimate, compared with those of the base model.
 fn intervals(estimate: &Estimate, base: &Estimate) -> Vec<Interval> {
     let width = |parameter: &ParameterEstimate| {
         let [low, high] = parameter.interval_95;

@@ -1,4 +1,4 @@
-//! A robot whose virtual experiments are drawn.
+//! A robot for virtual experiments.
 
 use crate::Failure;
 use overact::{Info, Model};
@@ -10,34 +10,34 @@ use std::{collections::BTreeMap, ffi::OsStr, fs, path::Path};
 /// A robot with its virtual experiment and the settings of its identification.
 pub struct Subject {
     robot: Robot,
-    /// The robot as compiled Rust, ten times as fast as the interpreted one, if it is one of the library.
+    /// The robot as compiled Rust, ten times as fast as interpreted, if it is in the library.
     compiled: Option<&'static dyn Model>,
-    /// Its experiment, without the runs that are held out.
+    /// Its experiment without validation runs.
     pub experiment: Experiment,
     /// The true values by name.
     pub truth: BTreeMap<String, f64>,
-    /// The robot with other lengths, where nothing but the torques tells of them.
+    /// Robots with changed lengths, if only torques contain information on these.
     pub variants: Variants,
-    /// Sizes and limits of the description, by which units are judged.
+    /// Sizes and limits of the description, to check units.
     pub scales: Scales,
-    /// How it is identified.
+    /// Settings of the identification.
     pub settings: Settings,
 }
 
 impl Subject {
-    /// Reads the description of a robot.
+    /// Reads a robot's description.
     ///
     /// # Errors
-    /// A description that is wrong or has no virtual experiment.
+    /// An invalid description, or one without a virtual experiment.
     pub fn load(path: &Path) -> Result<Self, Failure> {
         let robot = Robot::from_toml(path).map_err(said)?;
         Self::new(robot, compiled(path))
     }
 
-    /// Reads the description of a robot with replacements in its text.
+    /// Reads a robot's description with replacements in its text.
     ///
     /// # Errors
-    /// A replacement that replaces nothing, a description that is wrong or has no virtual experiment.
+    /// A replacement without effect, an invalid description, or one without a virtual experiment.
     pub fn altered(path: &Path, replacements: &[(String, String)]) -> Result<Self, Failure> {
         let mut text = fs::read_to_string(path)?;
         for (from, to) in replacements {
@@ -71,19 +71,19 @@ impl Subject {
         self.compiled.unwrap_or_else(|| self.robot.model())
     }
 
-    /// What is known of the robot.
+    /// Information on the robot.
     #[must_use]
     pub fn info(&self) -> Info<'_> {
         self.model().info()
     }
 
-    /// The settings of runs sampled at another frequency (Hz), as the command line chooses them.
+    /// Settings for another sampling frequency (Hz), as on the command line.
     #[must_use]
     pub fn settings_at(&self, frequency: f64) -> Settings {
         self.robot.settings(frequency)
     }
 
-    /// Shortens all runs to a part of their duration.
+    /// Shortens all runs to a fraction of their duration.
     pub fn shorten(&mut self, part: f64) {
         self.experiment.duration_s *= part;
         for duration in self
@@ -96,7 +96,7 @@ impl Subject {
         }
     }
 
-    /// Case 1 and case 2, or the joint model of a robot without redundancy.
+    /// Both projections, or the joint model of a robot without redundancy.
     #[must_use]
     pub fn projections(&self) -> Vec<Projection> {
         let sizes = self.info().sizes;
@@ -109,12 +109,12 @@ impl Subject {
     }
 }
 
-/// An error as the command line tells it.
+/// Text of an error as on the command line.
 fn said(error: overact_robot::Error) -> String {
     error.render(false)
 }
 
-/// The compiled robot of a file of the library.
+/// Compiled robot of a library file.
 fn compiled(path: &Path) -> Option<&'static dyn Model> {
     let library = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots"));
     let folder = path.canonicalize().ok()?.parent()?.to_owned();

@@ -1,4 +1,4 @@
-//! The table in Markdown.
+//! Markdown table of the coverage.
 
 use crate::Cell;
 use overact_identification::Estimator;
@@ -14,7 +14,7 @@ pub fn markdown(cells: &[Cell]) -> String {
         let [low, high] = cell.coverage_interval_percent;
         let flagged = cell.flagged_percent;
         let flagged = flagged.map_or_else(String::new, |percent| format!("{percent:.0}"));
-        // Writing into a string does not fail.
+        // Writing to a string does not fail.
         let _ = writeln!(
             text,
             "| {} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {low:.1} to {high:.1} | {:.2} | {:.2} | {} | `{}` {:.0} % |",

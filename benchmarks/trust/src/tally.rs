@@ -1,29 +1,28 @@
 //! Coverage over draws.
 //!
 //! A draw contributes the fraction of its intervals that contain the truth. Draws are independent,
-//! their parameters are not, so the coverage is the mean of the fractions and its deviation that of a
-//! mean of as many values as there are draws, by Student's distribution.
+//! their parameters are not. The coverage is therefore the mean of the fractions, with its standard
+//! error by Student's t distribution.
 
 use crate::{Counted, Noise, measure::Interval};
 use overact_identification::{Estimator, ModelKind, Stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The coverage of one cell of the table.
+/// Coverage in one cell of the table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cell {
     /// Name of the robot.
     pub robot: String,
-    /// Which inputs are explained.
+    /// Model of the estimates.
     pub model: ModelKind,
-    /// Which parameters are estimated.
+    /// Stage of the estimates.
     pub stage: Stage,
-    /// How.
+    /// Estimator.
     pub estimator: Estimator,
-    /// Percent of the draws in which errors of the positions were found to spoil least squares, where
-    /// that was tested.
+    /// Percent of the draws in which position errors were found to bias least squares, if tested.
     pub flagged_percent: Option<f64>,
-    /// Multiples of the description's noise.
+    /// Factors on the description's noise.
     pub noise: Noise,
     /// Number of draws.
     pub draws: usize,
@@ -31,27 +30,28 @@ pub struct Cell {
     pub parameters: f64,
     /// Percent of the intervals that contain the truth.
     pub coverage_percent: f64,
-    /// 99.9 % interval of that, percent.
+    /// 99.9 % interval of the coverage, percent.
     pub coverage_interval_percent: [f64; 2],
-    /// Median width of the intervals by those of the base model.
+    /// Median width relative to the intervals of the base model.
     pub relative_width: f64,
-    /// Root mean square of the errors by half of the width, times 1.96: 1 for intervals of the right
-    /// width and many degrees of freedom.
+    /// Root mean square error relative to the half width, times 1.96.
+    ///
+    /// It is 1 for intervals of the right width with many degrees of freedom.
     pub spread: f64,
-    /// The parameter whose intervals contain the truth least often, and how often, percent.
+    /// Parameter with the lowest coverage, and that coverage, percent.
     pub worst: (String, f64),
-    /// The draws of each parameter.
+    /// Results of each parameter.
     pub each: BTreeMap<String, Each>,
 }
 
-/// The intervals of one parameter.
+/// Intervals of one parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Each {
-    /// In how many draws it was estimated.
+    /// Number of draws in which it was estimated.
     pub draws: usize,
-    /// How many of its intervals contain the truth.
+    /// Number of intervals that contain the truth.
     pub covering: usize,
-    /// Mean of the errors by half of the width, times 1.96.
+    /// Mean error relative to the half width, times 1.96.
     pub mean: f64,
     /// Root mean square of the same.
     pub spread: f64,
@@ -85,7 +85,7 @@ impl Tally {
         self.draws.push(draw);
     }
 
-    /// The cells of all models, stages and noises, in the order in which they were counted.
+    /// Cells of all models, stages and noises, in order of appearance.
     #[must_use]
     pub fn cells(&self, robot: &str) -> Vec<Cell> {
         let first = self.draws.first().map_or(&[][..], Vec::as_slice);
@@ -108,7 +108,7 @@ impl Tally {
         let each = intervals.into_iter();
         let each: BTreeMap<String, Each> =
             each.map(|(name, own)| (name, Each::new(&own))).collect();
-        // A parameter that is rarely among the chosen ones says little.
+        // A parameter that is rarely selected has too few draws.
         let often = each.iter().filter(|(_, one)| 2 * one.draws >= own.len());
         let rates = often.map(|(name, one)| (name.clone(), one.covering as f64 / one.draws as f64));
         let worst = rates.min_by(|a, b| a.1.total_cmp(&b.1));
@@ -135,21 +135,21 @@ impl Tally {
     }
 }
 
-/// Percent of the draws that are flagged, of those that were tested.
+/// Percent of tested draws that are flagged.
 fn flagged(draws: &[&Counted]) -> Option<f64> {
     let tested: Vec<bool> = draws.iter().filter_map(|one| one.flagged).collect();
     let count = tested.iter().filter(|flagged| **flagged).count();
     (!tested.is_empty()).then(|| 100.0 * count as f64 / tested.len() as f64)
 }
 
-/// The part of a draw's intervals that contain the truth.
+/// Fraction of a draw's intervals that contain the truth.
 fn fraction(one: &Counted) -> Option<f64> {
     let count = one.parameters.len();
     let covering = one.parameters.iter().filter(|one| one.covers).count();
     (count > 0).then(|| covering as f64 / count as f64)
 }
 
-/// The mean of independent values, and half of its 99.9 % interval.
+/// Mean of independent values, and half width of its 99.9 % interval.
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -158,9 +158,10 @@ fn mean(values: &[f64]) -> (f64, f64) {
     (mean, quantile_999(count - 1.0) * deviation)
 }
 
-/// The value that Student's distribution of so many degrees of freedom exceeds in magnitude one time
-/// in a thousand, by the first terms of its expansion about the normal distribution (Abramowitz and
-/// Stegun 26.7.5), right to 1 % from 10 degrees on.
+/// Two-sided 99.9 % quantile of Student's t distribution.
+///
+/// First terms of the expansion about the normal distribution (Abramowitz and Stegun 26.7.5),
+/// accurate to 1 % from 10 degrees of freedom on.
 fn quantile_999(freedom: f64) -> f64 {
     let x = 3.290_526_731_491_896_f64;
     let terms = [

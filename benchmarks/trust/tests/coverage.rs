@@ -1,21 +1,22 @@
-//! A sample of the table in `docs/trust.md`: intervals that say 95 % contain the truth so often. It takes
-//! dozens of identifications, so only the full tier does it.
+//! A sample of the table in `docs/trust.md`: coverage of 95 % intervals.
+//!
+//! It takes dozens of identifications, so only the full tier runs it.
 
 use overact_identification::Stage;
 use overact_tier::is_full;
 use overact_trust::{Cell, Noise, Subject, Tally, measure};
 use std::path::Path;
 
-/// What the intervals say, percent.
+/// Nominal coverage, percent.
 const NOMINAL: f64 = 95.0;
 
-/// What those of the paper's rule keep, which omits friction that is there, percent.
+/// Coverage with the paper's rule, which omits existing friction, percent.
 const ESSENTIAL: f64 = 93.0;
 
-/// Most by which these are wider than the base model's.
+/// Largest width relative to the base model's intervals.
 const WIDEST: f64 = 3.0;
 
-/// The cells of a robot with so many draws of a part of its runs.
+/// Cells of a robot with a number of draws of shortened runs.
 fn cells(robot: &str, draws: u64, part: f64) -> Vec<Cell> {
     let file = format!("../../robots/{robot}.toml");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);

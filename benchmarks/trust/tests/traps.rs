@@ -1,6 +1,7 @@
-//! Every trap of the DualV: what the verdict says of data with one known fault. It takes some forty
-//! identifications, so only the full tier does it; `identification/tests/bad_data.rs` sees the plainest faults
-//! in either tier.
+//! Every trap of the DualV: verdicts on data with one known fault.
+//!
+//! It takes some forty identifications, so only the full tier runs it;
+//! `identification/tests/bad_data.rs` tests the clearest faults in either tier.
 
 use overact_identification::Grade;
 use overact_tier::is_full;
@@ -10,7 +11,7 @@ use overact_trust::{
 };
 use std::path::Path;
 
-/// The faults that are left to a result that may be used: no data can show them, or they do no harm.
+/// Faults with a usable result: no data can reveal them, or they are harmless.
 const USED: [&str; 7] = [
     "sampling frequency 5 % too high",
     "all gains 5 % high",
@@ -21,10 +22,10 @@ const USED: [&str; 7] = [
     "torque 1 drifts with time",
 ];
 
-/// Known misses: faults that no check names, and the error that they make, in deviations, at most.
+/// Known misses: faults that no check names, and their largest error in standard deviations.
 const MISSED: [(&str, f64); 1] = [("encoders of 12 bits", 3.1)];
 
-/// The part of each run's duration that is identified from, as in `docs/traps.md`.
+/// Fraction of each run's duration, as in `docs/traps.md`.
 const PART: f64 = 0.25;
 
 #[test]

@@ -1,4 +1,4 @@
-//! `overact check`: every error of a description at once.
+//! `overact check`: reports every error of a description at once.
 
 use crate::{
     failure::Failure,
@@ -26,7 +26,7 @@ struct Checked {
     joints: usize,
     actuators: usize,
     dof: usize,
-    /// What may not be meant.
+    /// Contents that may be unintended.
     note: Option<String>,
 }
 
@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         }
     }
     if as_json {
-        // Without an error: a document with errors goes to stderr.
+        // Only without errors: a document with errors goes to stderr.
         if bad.is_empty() {
             print(&json(&serde_json::json!({ "robots": good }))?)?;
         }

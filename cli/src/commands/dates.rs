@@ -1,9 +1,9 @@
-//! Days and instants as they are written.
+//! Parses and formats dates.
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::diagnostic::Code;
 
-/// Days from 1970-01-01 to a day of the Gregorian calendar; none of a day that is not there.
+/// Days from 1970-01-01 to a Gregorian date; `None` if the date does not exist.
 fn days(year: i64, month: i64, day: i64) -> Option<i64> {
     let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let february = if leap { 29 } else { 28 };
@@ -20,10 +20,10 @@ fn days(year: i64, month: i64, day: i64) -> Option<i64> {
     Some(before * 365 + leaps - to_1970 + own + day - 1)
 }
 
-/// An instant, µs since 1970, of `2026-03-02` or `2026-03-02T14:05:00`, in UTC.
+/// Instant in µs since 1970 from `2026-03-02` or `2026-03-02T14:05:00`, UTC.
 ///
 /// # Errors
-/// Another text.
+/// A text of another form.
 pub(super) fn instant(text: &str) -> Result<i64, Failure> {
     let none = || {
         let help = "write `2026-03-02` or `2026-03-02T14:05:00`, UTC";
@@ -45,11 +45,11 @@ pub(super) fn instant(text: &str) -> Result<i64, Failure> {
     Ok((((days * 24 + hour) * 60 + minute) * 60 + second) * 1_000_000)
 }
 
-/// The day of an instant, µs since 1970: `2026-03-02`, in UTC.
+/// Date of an instant (µs since 1970), as `2026-03-02`, UTC.
 pub(super) fn date(instant: i64) -> String {
     let mut rest = instant.div_euclid(86_400_000_000);
     let mut year = 1970 + rest.div_euclid(366);
-    // The first guess is early; a day of a later year moves on.
+    // The first guess is never late; advance to the right year.
     while days(year + 1, 1, 1).is_some_and(|next| next <= rest) {
         year += 1;
     }

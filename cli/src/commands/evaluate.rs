@@ -1,4 +1,4 @@
-//! `overact evaluate`: a function of a robot on given states.
+//! `overact evaluate`: evaluates a function of a robot for given states.
 
 mod gather;
 mod resolve;
@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     output: Option<PathBuf>,
 }
 
-/// The document with `--json`.
+/// JSON document.
 #[derive(Debug, Serialize)]
 struct Document {
     function: String,
@@ -65,7 +65,8 @@ struct Document {
     results: Vec<BTreeMap<&'static str, Vec<f64>>>,
 }
 
-/// What states may hold: the inputs of all functions, and where forward kinematics starts.
+/// Quantities that states may contain: inputs of all functions, and the start of forward
+/// kinematics.
 const QUANTITIES: [&str; 14] = [
     "pose",
     "twist",
@@ -86,8 +87,8 @@ const QUANTITIES: [&str; 14] = [
 /// Runs the command.
 ///
 /// # Errors
-/// A function that the robot does not have, states that do not hold what it needs, or a state at
-/// which it has no value.
+/// A function that the robot does not have, states without the required inputs, or a state for
+/// which the function has no value.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut inputs = vec![arguments.file.as_path(), arguments.states.as_path()];
     inputs.extend(arguments.parameters.as_deref());
@@ -146,7 +147,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::emit(&text, output::file(arguments.output.as_ref()))
 }
 
-/// The model with other kept actuators than the description's.
+/// Model with other kept actuators than the description's.
 fn with_kept(
     model: RobotModel,
     names: &[String],
@@ -180,7 +181,7 @@ fn parameters(model: &RobotModel, function: Function) -> Vec<String> {
     }
 }
 
-/// Parameters that hold for all states, in the order in which functions take them.
+/// Parameters of all states, in the order of the functions' inputs.
 #[derive(Debug, Default)]
 struct GivenParameters {
     standard: Option<Vec<f64>>,
@@ -188,7 +189,7 @@ struct GivenParameters {
 }
 
 impl GivenParameters {
-    /// Those of a file; without values of the payload's there is no payload.
+    /// Parameters of a file; without values for the payload there is none.
     fn new(values: &BTreeMap<String, f64>, robot: &InterpretedRobot) -> Self {
         let info = robot.info();
         let all = info.parameters.iter().chain(info.payload_parameters);
@@ -200,7 +201,7 @@ impl GivenParameters {
         }
     }
 
-    /// Those that an input takes.
+    /// Parameters for an input.
     fn input(&self, name: &str) -> Option<&Vec<f64>> {
         match name {
             "parameters" => self.standard.as_ref(),
@@ -210,7 +211,7 @@ impl GivenParameters {
     }
 }
 
-/// Values at all states, row after row.
+/// Values for all states, row after row.
 fn evaluate(
     robot: &InterpretedRobot,
     program: &Program,
@@ -231,7 +232,7 @@ fn evaluate(
         let error = robot.error(program, &failed);
         states.problem(error.sample, &error.error.to_string())
     })?;
-    // Guards keep what is divided by away from zero; inputs of 1e200 have squares that are no numbers.
+    // Guards keep denominators away from zero, but squares of inputs such as 1e200 overflow.
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(values),
         Some(at) => {
@@ -246,7 +247,7 @@ fn evaluate(
     }
 }
 
-/// One row per state under a header of names with indices.
+/// CSV with one row per state and indexed column names.
 fn csv<'a>(name: &str, shape: &[usize], rows: impl Iterator<Item = &'a [f64]>) -> String {
     let mut header: Vec<String> = vec![name.to_owned()];
     for &length in shape {

@@ -1,4 +1,4 @@
-//! `overact excite`: runs that determine the base parameters best inside all limits.
+//! `overact excite`: searches runs that determine the base parameters best within all limits.
 
 use crate::{
     failure::Failure,
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     print(&text(&found, &robot.model().info(), written))
 }
 
-/// Tables of the comparison and of the limits, and the runs where no file takes them.
+/// Tables of the comparison and the limits, and the runs if they are not written to a file.
 fn text(found: &Excitation, info: &Info<'_>, written: Option<&Path>) -> String {
     let heading = format!(
         "{}: {} of {} s together, {}; all rows at this duration\n",
@@ -92,7 +92,7 @@ fn text(found: &Excitation, info: &Info<'_>, written: Option<&Path>) -> String {
     }
 }
 
-/// The sets of runs with what they are called.
+/// Names and results of the sets of runs.
 fn sets(found: &Excitation) -> impl Iterator<Item = (String, &JudgedRuns)> {
     let described = found.described.iter();
     let described = described.map(|runs| ("described".to_owned(), runs));
@@ -100,7 +100,7 @@ fn sets(found: &Excitation) -> impl Iterator<Item = (String, &JudgedRuns)> {
     described.chain([(random, &found.random), ("found".to_owned(), &found.found)])
 }
 
-/// How well each set of runs determines the parameters.
+/// Table of how well each set determines the parameters.
 fn comparison(found: &Excitation) -> String {
     let header = [
         "runs",
@@ -132,7 +132,7 @@ fn comparison(found: &Excitation) -> String {
     columns(&rows, &[true, true])
 }
 
-/// How much of each limit the sets of runs take.
+/// Table of each set's use of the limits.
 fn limits(found: &Excitation) -> String {
     let names = sets(found).map(|(name, _)| name);
     let mut header = vec!["limit".to_owned(), "largest".to_owned(), String::new()];
@@ -151,12 +151,12 @@ fn limits(found: &Excitation) -> String {
     columns(&rows, &[true, true, true])
 }
 
-/// A part of a limit, rounded up so that what goes beyond it is seen.
+/// Fraction of a limit in percent, rounded up so that violations are visible.
 fn percent(used: f64) -> String {
     format!("{:.1} %", (1000.0 * used).ceil() / 10.0)
 }
 
-/// The limit of each coordinate or actuator, one number where all have the same.
+/// Limit of each coordinate or actuator; one number if all are equal.
 fn largest(limit: &Limit) -> String {
     let numbers = limit.values.iter().map(|value| significant(*value, 3));
     let mut all: Vec<(String, &str)> = numbers.zip(limit.units.iter().copied()).collect();

@@ -1,4 +1,4 @@
-//! `overact explain`: cause and cure of an error, by its code.
+//! `overact explain`: explains errors by their codes.
 
 use crate::{
     failure::Failure,
@@ -19,7 +19,7 @@ pub(crate) struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// Codes that no error has.
+/// Unknown codes.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let explanation = |text: &String| match Code::named(text) {
         Some(code) => Ok(code.explanation()),
@@ -76,7 +76,7 @@ fn as_text(one: &Explanation) -> String {
     )
 }
 
-/// A text in lines for a terminal.
+/// Wraps a text for a terminal.
 fn wrapped(text: &str) -> Vec<String> {
     const WIDTH: usize = 90;
     let mut lines: Vec<String> = Vec::new();

@@ -1,4 +1,5 @@
-//! `overact export`: identified parameters back into the robot's file that a description was made of.
+//! `overact export`: writes identified parameters into the file that a description was imported
+//! from.
 
 use super::import::Choices;
 use crate::{
@@ -36,7 +37,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// The robot's file.
+    /// File of the robot.
     pub(super) fn file(&self) -> &Path {
         let all = self.mjcf.as_deref().or(self.urdf.as_deref());
         all.unwrap_or(Path::new("-"))
@@ -46,7 +47,7 @@ impl Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// What is wrong with one of the files, or an output that can't be written.
+/// Errors of one of the files, or an output that cannot be written.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = arguments.file();
     let output = output::file(arguments.output.as_ref());
@@ -83,7 +84,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Included files that changed, with the paths beside the output that stand to it as theirs to the file.
+/// Changed included files, with paths relative to the output as theirs to the main file.
 fn beside(
     file: &Path,
     output: Option<&Path>,
@@ -112,7 +113,7 @@ fn beside(
     exported.included.iter().map(place).collect()
 }
 
-/// What changed, and what has no place in the file.
+/// Prints the changes, and parameters that the file cannot express.
 fn tell(exported: &Exported) {
     if is_quiet() {
         return;
@@ -123,7 +124,7 @@ fn tell(exported: &Exported) {
     }];
     lines.extend(exported.notes.iter().cloned());
     for line in lines {
-        // A closed stderr is no reason to stop.
+        // A closed stderr is ignored.
         let _ = writeln!(io::stderr(), "note: {line}");
     }
 }

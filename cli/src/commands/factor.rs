@@ -1,4 +1,4 @@
-//! `overact factor`: logs as R factors of their equations.
+//! `overact factor`: computes R factors of logs.
 
 use super::{dates::instant, runs};
 use crate::{failure::Failure, output, progress::Progress};
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// Logs that can't be used, times that are none.
+/// Logs that cannot be used, or invalid times.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let runs = runs::Arguments::of_logs(arguments.data.clone(), arguments.payload_data.clone());
     let logs = arguments.data.len() + arguments.payload_data.len();

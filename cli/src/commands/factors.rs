@@ -1,4 +1,4 @@
-//! `overact identify --factors`: parameters from factor files.
+//! `overact identify --factors`: identifies parameters from factor files.
 
 use super::runs;
 use crate::{failure::Failure, output, progress::Progress};
@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What is asked for.
+/// Options of the identification from factors.
 pub(super) struct Request<'a> {
     pub(super) description: &'a Path,
     pub(super) files: &'a [PathBuf],
@@ -25,7 +25,8 @@ pub(super) struct Request<'a> {
 /// Identifies a robot from factor files.
 ///
 /// # Errors
-/// Files that can't be used, unless they are to be skipped; factors that do not fit the description.
+/// Files that cannot be used, unless they are to be skipped, or factors that do not match the
+/// description.
 pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
     let files = request.files.iter().map(PathBuf::as_path);
     let inputs: Vec<&Path> = std::iter::once(request.description).chain(files).collect();
@@ -34,7 +35,7 @@ pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
     let kept = request
         .kept
         .map(|names| overact_robot::kept_actuators(robot.model().model(), names));
-    // Settings follow from the rate of the first run, as they do where logs are read.
+    // The settings follow from the sampling frequency of the first run, as for logs.
     let first = gather(request.files, None, true)?;
     let rate = first
         .runs
@@ -55,7 +56,7 @@ pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
     output::emit(&text, request.output)
 }
 
-/// The result for a person.
+/// Text output.
 fn text(found: &FromFactors) -> String {
     let mut text = format!(
         "{} from the factors of {}\n\n",
@@ -85,7 +86,7 @@ fn text(found: &FromFactors) -> String {
     text
 }
 
-/// What was left out, a line each.
+/// Omitted runs, one per line.
 pub(super) fn left_out(all: &[LeftOut]) -> String {
     let mut text = String::new();
     if !all.is_empty() {

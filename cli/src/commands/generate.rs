@@ -1,4 +1,4 @@
-//! `overact generate`: Rust or C, one module per robot.
+//! `overact generate`: generates Rust or C, one module per robot.
 
 mod module;
 
@@ -16,7 +16,7 @@ use overact_codegen::{Choice, Float, Progress as Step, Request, Runtime, mechani
 use overact_robot::CompiledFile;
 use std::path::{Path, PathBuf};
 
-/// More joints than these and generation is a matter of minutes.
+/// Number of joints above which generation takes minutes.
 const LARGE: usize = 60;
 
 /// Arguments of the command.
@@ -61,14 +61,14 @@ enum Language {
 }
 
 impl Arguments {
-    /// The file or folder of the output; `-` is standard output.
+    /// Output file or folder; `None` for standard output.
     fn output(&self) -> Option<&Path> {
         let output = self.output.as_deref();
         output.filter(|output| *output != Path::new("-"))
     }
 
-    /// Whether the output is a folder: it is one already, is written like one, or must hold several
-    /// files.
+    /// Whether the output is a folder: an existing one, a path with a trailing separator, or
+    /// several files.
     fn is_folder(&self, output: &Path) -> bool {
         let written = output.as_os_str().to_string_lossy();
         output.is_dir()
@@ -77,12 +77,12 @@ impl Arguments {
             || self.lang == Language::C
     }
 
-    /// The numbers, which the parser knows.
+    /// Number type; the argument parser accepts known names only.
     fn float(&self) -> Float {
         Float::named(&self.float).unwrap_or_default()
     }
 
-    /// The options that say what is written, as they stand behind the description.
+    /// Options that determine the output, as on the command line.
     fn options(&self) -> String {
         let language = match self.lang {
             Language::Rust => "",
@@ -97,7 +97,7 @@ impl Arguments {
         format!("{language}{float}{path}{}", self.functions.words())
     }
 
-    /// What of the arguments does not go together.
+    /// Message on incompatible arguments.
     fn contradiction(&self, as_json: bool) -> Option<String> {
         let is_printed = self.output.is_none() && !as_json;
         if is_printed && self.lang == Language::C {
@@ -135,15 +135,14 @@ impl Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// Descriptions with errors, two robots that would have one name, or files that differ with
-/// `--check`.
+/// Descriptions with errors, two robots with one name, or files that differ with `--check`.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(message) = arguments.contradiction(as_json) {
         return Err(Failure::Usage(message));
     }
     let inputs = arguments.files.iter().chain(&arguments.parameters);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
-    // The files of C are called after the robots, which are not read yet.
+    // C files are named after the robots, which are not read yet.
     if !arguments.check && arguments.lang == Language::Rust {
         let mut outputs = inputs
             .iter()
@@ -243,7 +242,7 @@ fn load_all(
     }
 }
 
-/// What is said of a robot whose functions take minutes, before they do.
+/// Note for a robot whose generation takes minutes.
 fn large(mechanism: &Mechanism) -> Option<String> {
     let joints = mechanism.joints().len();
     (joints > LARGE).then(|| {

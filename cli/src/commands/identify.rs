@@ -1,7 +1,7 @@
-//! `overact identify`: parameters from measured motion and torque, or from the virtual experiment.
+//! `overact identify`: identifies parameters from logs or from the virtual experiment.
 //!
-//! Measured or virtual, the identification sees positions and torques of the actuators only. The true
-//! values of a virtual experiment stand beside the estimates and nowhere in them.
+//! The identification uses positions and torques of the actuators only. True values of a virtual
+//! experiment are only reported for comparison.
 
 use super::{factors, runs};
 use crate::{
@@ -18,7 +18,7 @@ use overact_report::Extent;
 use overact_robot::{Identifier, tracking};
 use std::path::PathBuf;
 
-/// What is said where `--tracking` asks for what there is not.
+/// Message if `--tracking` has no runs to follow.
 const NOTHING_TO_FOLLOW: &str = "--tracking follows nothing: it takes the runs that are held out from the virtual robot's in [experiment], also beside logs, and the description has none (`validation = true` of a run)";
 
 /// Arguments of the command.
@@ -107,8 +107,8 @@ impl From<Scope> for CalibrationScope {
 /// Runs the command.
 ///
 /// # Errors
-/// Logs that can't be used, a virtual experiment that can't be made, or data that determine nothing; with
-/// `--strict` a result that is not to be used, which has been written then.
+/// Logs that cannot be used, an invalid virtual experiment, or data that determine no parameter.
+/// With `--strict`, also a result with the verdict not to use it, which has then been written.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if !arguments.factors.is_empty() {
         return from_factors(arguments, as_json);
@@ -181,7 +181,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// What speaks against the result, and what is to be known of it.
+/// Objections to the result, and other warnings.
 fn warnings(result: &Identification) -> Vec<String> {
     let verdicts = result.verdicts.iter().filter(|one| !one.trusted);
     let reasons = verdicts.flat_map(|one| {
@@ -197,7 +197,7 @@ fn warnings(result: &Identification) -> Vec<String> {
     all
 }
 
-/// The parameters from factor files.
+/// Identifies parameters from factor files.
 fn from_factors(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.runs.names_logs() {
         let message = "`--factors` takes the place of logs: leave out one of both";
@@ -223,7 +223,7 @@ fn no_parameters() -> Failure {
         .into()
 }
 
-/// Why the result is not to be used.
+/// Failure for a result with the verdict not to use it.
 fn refused(result: &Identification) -> Failure {
     let first = result.verdicts.first();
     let reasons = first.map_or(&[][..], |verdict| verdict.reasons.as_slice());
@@ -235,7 +235,7 @@ fn refused(result: &Identification) -> Failure {
     ))
 }
 
-/// The identification, with a bar on a terminal.
+/// Runs the identification with a progress bar.
 fn identified(
     identifier: Identifier<'_>,
     calibrated: Option<CalibrationScope>,

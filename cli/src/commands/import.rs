@@ -1,4 +1,4 @@
-//! `overact import`: a description from the robot's file in another format.
+//! `overact import`: imports a description from a robot file in another format.
 
 use crate::{
     failure::Failure,
@@ -55,7 +55,7 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// As the importer takes them.
+    /// Options of the importer.
     pub(super) fn options(&self) -> Options {
         Options {
             name: None,
@@ -84,7 +84,8 @@ fn position(text: &str) -> Result<(String, f64), String> {
 /// Runs the command.
 ///
 /// # Errors
-/// What is wrong with the file, what of it can't be said, or an output that can't be written.
+/// Errors of the file, contents that a description cannot express, or an output that cannot be
+/// written.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let options = Options {
         name: arguments.name.clone(),
@@ -107,29 +108,29 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     print(&document)
 }
 
-/// Prints on stderr what of the files is not used although the model may differ without it.
+/// Prints unused contents of the files that may change the model, on stderr.
 fn print_notes(account: &Account) {
     for entry in account.reported.iter().filter(|_| !is_quiet()) {
         let (subject, reason) = (entry.subject(), entry.counted_reason());
         let text = format!("{subject}: reported: {reason}");
         let note = format!("{}:{}: {}", entry.file, entry.line, visible(&text));
-        // A closed stderr is no reason to stop.
+        // A closed stderr is ignored.
         let _ = writeln!(io::stderr(), "note: {note}");
     }
 }
 
-/// What an import gives as JSON.
+/// JSON document of an import.
 #[derive(Debug, Serialize)]
 struct Document<'d> {
     robot: &'d str,
-    /// The TOML.
+    /// TOML text.
     description: &'d str,
     honoured: Vec<Item<'d>>,
     ignored: Vec<Item<'d>>,
     reported: Vec<Item<'d>>,
-    /// Closures that the file's numbers miss; none are accepted yet.
+    /// Closures that the file's numbers violate; none are accepted yet.
     misfits: [(); 0],
-    /// Motions that move no other body; they are in the comments of the description.
+    /// Idle spins; they are in the comments of the description.
     spins: [(); 0],
 }
 

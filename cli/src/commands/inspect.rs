@@ -1,4 +1,4 @@
-//! `overact inspect`: what a robot's model consists of, what it costs, and how the robot looks.
+//! `overact inspect`: shows composition, cost and drawing of a robot's model.
 
 mod table;
 

@@ -1,4 +1,4 @@
-//! `overact merge`: factor files put together.
+//! `overact merge`: merges factor files.
 
 use crate::{failure::Failure, output};
 use overact_identification::factors::{gather, write_factors};
@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// Files that can't be used or are unlike each other, unless they are to be skipped.
+/// Files that cannot be used or are incompatible, unless they are to be skipped.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
     output::check(&inputs, &[arguments.output.as_path()])?;

@@ -1,4 +1,4 @@
-//! The command line: one file per subcommand.
+//! Command line: one file per subcommand.
 
 mod check;
 mod dates;
@@ -80,7 +80,7 @@ impl Command {
     /// Runs the command.
     ///
     /// # Errors
-    /// What went wrong; then no output was touched.
+    /// The error of the command; then no output was changed.
     pub(crate) fn run(&self, json: bool) -> Result<(), Failure> {
         match self {
             Self::New(arguments) => new::run(arguments, json),
@@ -102,7 +102,7 @@ impl Command {
         }
     }
 
-    /// Its name.
+    /// Name of the command.
     pub(crate) const fn name(&self) -> &'static str {
         match self {
             Self::New(_) => "new",
@@ -124,7 +124,7 @@ impl Command {
         }
     }
 
-    /// The descriptions that it is about, for a report of a defect.
+    /// Descriptions of the command, for reports of internal errors.
     pub(crate) fn descriptions(&self) -> String {
         let files: &[PathBuf] = match self {
             Self::New(_)

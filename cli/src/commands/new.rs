@@ -1,4 +1,4 @@
-//! `overact new`: a description from a commented template; without arguments, the list of them.
+//! `overact new`: writes a description from a commented template, or lists the templates.
 
 use crate::{
     failure::{Failure, Problem},
@@ -11,7 +11,7 @@ use overact_report::layout::definitions;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// A template with its name and text.
+/// Template with its name and text.
 macro_rules! template {
     ($name:literal) => {
         (
@@ -21,8 +21,10 @@ macro_rules! template {
     };
 }
 
-/// All templates, by the freedoms of their platforms. Names are motion and legs: a letter for each
-/// joint (P prismatic, R revolute, S spherical, U universal).
+/// All templates, by the degrees of freedom of their platforms.
+///
+/// Names consist of motion and legs, with a letter per joint (P prismatic, R revolute, S spherical,
+/// U universal).
 const TEMPLATES: [(&str, &str); 15] = [
     template!("serial-2r"),
     template!("serial-6r"),
@@ -52,7 +54,7 @@ pub(crate) struct Arguments {
     file: Option<PathBuf>,
 }
 
-/// A template in the list.
+/// List entry of a template.
 #[derive(Debug, Serialize)]
 struct Listed {
     template: &'static str,
@@ -62,7 +64,7 @@ struct Listed {
 /// Runs the command.
 ///
 /// # Errors
-/// A file that exists or can't be written.
+/// A file that exists or cannot be written.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let (Some(template), Some(path)) = (&arguments.template, &arguments.file) else {
         return list(as_json);
@@ -75,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if is_stream(path) && !as_json {
         return print(text);
     }
-    // A link that leads nowhere is a file, too.
+    // A dangling link counts as an existing file.
     if path.symlink_metadata().is_ok() {
         let problem =
             Problem::new(Code::FILE_EXISTS, "the file exists and is not overwritten").file(file);
@@ -97,7 +99,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     ))
 }
 
-/// The list of templates; a template's first line says what it is.
+/// List of the templates, described by their first lines.
 fn list(as_json: bool) -> Result<(), Failure> {
     let listed = |&(template, text): &(&'static str, &'static str)| Listed {
         template,

@@ -1,4 +1,4 @@
-//! `overact partitions`: case 2 for every choice of kept actuators, ranked.
+//! `overact partitions`: ranks all partitions for the actuator projection.
 
 use super::runs;
 use crate::{
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::emit(&text, arguments.output.as_deref())
 }
 
-/// A row of the table.
+/// Row of the table.
 fn cells(row: &RankedProjection, name: String) -> Vec<String> {
     let number = |value: Option<f64>, digits| {
         value.map_or_else(|| "-".to_owned(), |value| significant(value, digits))

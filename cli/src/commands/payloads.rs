@@ -1,4 +1,4 @@
-//! Which payload a log of the command line is of: `NAME=LOG` where a description names several.
+//! Payloads of logs on the command line: `NAME=LOG` if a description has several.
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::diagnostic::Code;
@@ -7,24 +7,24 @@ use overact_identification::Log;
 use overact_robot::Robot;
 use std::path::{Path, PathBuf};
 
-/// The payloads that a description names; none where there is one, or none at all.
+/// Named payloads of a description; empty if there is only one, or none.
 pub(super) struct Payloads<'a> {
     names: Vec<&'a str>,
 }
 
-/// A log as it was given.
+/// Log as given on the command line.
 #[derive(Debug, Clone)]
 pub(super) struct Given {
     pub(super) path: PathBuf,
     pub(super) loaded: bool,
-    /// The name before the equals sign, where payloads have names.
+    /// Name before the equals sign, if payloads have names.
     name: Option<String>,
-    /// Whether it came from standard input.
+    /// Whether it was read from standard input.
     pub(super) streamed: bool,
 }
 
 impl Given {
-    /// The log with the name of its payload.
+    /// Adds the name of the payload to the log.
     pub(super) fn label(&self, log: Log) -> Log {
         let log = match self.streamed {
             true => log.with_name("-"),
@@ -72,7 +72,7 @@ impl<'a> Payloads<'a> {
     /// Checks the names of all logs.
     ///
     /// # Errors
-    /// Logs without a name where payloads have names, and names that no payload has.
+    /// Logs without a name although payloads have names, and unknown names.
     pub(super) fn check<'g>(&self, given: impl Iterator<Item = &'g Given>) -> Result<(), Failure> {
         let problem = |one: &Given| {
             let file = one.path.display().to_string();
@@ -115,15 +115,14 @@ impl<'a> Payloads<'a> {
     }
 }
 
-/// A word before an equals sign, and the file behind it; none where the whole is the name of a file that is
-/// there.
+/// Name and file around an equals sign; `None` if the whole is the name of an existing file.
 fn split(path: &Path) -> Option<(&str, &str)> {
     let (name, file) = path.to_str()?.split_once('=')?;
     let word = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     (word && !path.exists()).then_some((name, file))
 }
 
-/// The file of a log as it is given.
+/// File of a log as given on the command line.
 pub(super) fn file(path: &Path) -> &Path {
     split(path).map_or(path, |(_, file)| Path::new(file))
 }

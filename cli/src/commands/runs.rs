@@ -1,4 +1,4 @@
-//! The runs of an identification: measured logs, or the virtual experiment.
+//! Runs of an identification: measured logs, or the virtual experiment.
 
 use super::{
     payloads::{self, Payloads},
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     /// Seed of the virtual experiment's noise [default: the description's]
     #[arg(long)]
     seed: Option<u64>,
-    /// The log that came from standard input; it is gone when the command is.
+    /// Log from standard input; its file is removed with this value.
     #[arg(skip)]
     spool: OnceCell<Spool>,
     /// Friction in both directions of motion [default: the description's]
@@ -56,7 +56,7 @@ enum Friction {
 }
 
 impl Arguments {
-    /// Runs of logs, without and with the payload.
+    /// Runs from logs, without and with payload.
     pub(super) const fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
         Self {
             data,
@@ -69,19 +69,18 @@ impl Arguments {
         }
     }
 
-    /// Whether any log is named.
+    /// Whether any log is given.
     pub(super) fn names_logs(&self) -> bool {
         let held_out = [&self.cross_validate, &self.cross_validate_payload];
         !self.are_virtual() || held_out.into_iter().any(|logs| !logs.is_empty())
     }
 
-    /// Whether the runs are those of the virtual experiment.
+    /// Whether the runs come from the virtual experiment.
     pub(super) fn are_virtual(&self) -> bool {
         self.data.is_empty() && self.payload_data.is_empty()
     }
 
-    /// The files that are read: the description and the logs. Of a virtual experiment, held-out runs
-    /// are named and not read.
+    /// Files to read: description and logs; validation runs of a virtual experiment are names only.
     pub(super) fn inputs<'a>(&'a self, description: &'a Path) -> Vec<&'a Path> {
         let logs = [&self.data, &self.payload_data];
         let held_out = [&self.cross_validate, &self.cross_validate_payload];
@@ -92,10 +91,10 @@ impl Arguments {
             .collect()
     }
 
-    /// Reads the logs, or makes the virtual experiment.
+    /// Reads the logs, or simulates the virtual experiment.
     ///
     /// # Errors
-    /// Logs that can't be used, or a virtual experiment that can't be made.
+    /// Logs that cannot be used, or an invalid virtual experiment.
     pub(super) fn runs(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
         if self.are_virtual() {
             self.made(robot, as_json)
@@ -107,7 +106,7 @@ impl Arguments {
         }
     }
 
-    /// The description's settings with what the command line says otherwise.
+    /// Settings of the description with overrides from the command line.
     pub(super) fn settings(&self, robot: &Robot, runs: &Runs) -> Settings {
         let mut settings = robot.settings(runs.sampling_frequency());
         if let Some(friction) = self.friction {
@@ -116,7 +115,7 @@ impl Arguments {
         settings
     }
 
-    /// Reads logs; the problems of all of them are reported together.
+    /// Reads logs and reports the problems of all of them.
     fn measured(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
         let payloads = Payloads::new(robot);
         let mut own = [
@@ -151,7 +150,7 @@ impl Arguments {
         })
     }
 
-    /// An error that calls standard input as the user does, and not by the file that it was read to.
+    /// Replaces the temporary file by the user's name of standard input in an error.
     fn as_given(&self, error: Error) -> Error {
         let spooled = self
             .spool
@@ -169,17 +168,17 @@ impl Arguments {
         }
     }
 
-    /// The file that standard input was read to.
+    /// File with the contents of standard input.
     fn spooled(&self) -> Result<PathBuf, Failure> {
         if self.spool.get().is_none() {
-            // It was empty, as has just been seen.
+            // It was empty, as checked above.
             let _ = self.spool.set(Spool::read()?);
         }
         let path = self.spool.get().map(Spool::path);
         Ok(path.unwrap_or_default())
     }
 
-    /// Makes the virtual experiment.
+    /// Simulates the virtual experiment.
     fn made(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
         let mut experiment = robot.experiment()?;
         if let Some(seed) = self.seed {
@@ -203,7 +202,7 @@ fn name(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// Shows what the identification is doing.
+/// Shows the progress of the identification.
 pub(super) fn tell(bar: &Progress, doing: Doing<'_>) {
     let part = |done: usize, samples: usize| done as f64 / samples.max(1) as f64;
     match doing {

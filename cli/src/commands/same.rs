@@ -1,13 +1,14 @@
-//! Logs that are given twice, under whatever names: their samples would count twice, and a prediction of the
-//! data that parameters were estimated from says little.
+//! Detects logs that are given twice, under any names.
+//!
+//! Their samples would count twice, and validation with training data has little meaning.
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::diagnostic::Code;
 use overact_identification::data;
 use std::{fs, path::Path};
 
-/// Refuses logs with the same content: of the first `estimated` ones that parameters are estimated from, and
-/// of those behind them that predictions are compared with.
+/// Rejects logs with equal content; the first `estimated` ones are training data, the others
+/// validation data.
 ///
 /// # Errors
 /// Every log with the content of an earlier one.
@@ -56,13 +57,13 @@ fn problem(log: &Path, other: &Path, is_estimated: bool, is_other_estimated: boo
         .help(help)
 }
 
-/// Sizes of the files of a log; none where one of them is no file, which reading the log tells of.
+/// Sizes of a log's files; `None` if one is not a file, which is reported when the log is read.
 fn sizes(log: &Path) -> Option<Vec<u64>> {
     let size = |path: &Path| Some(fs::metadata(path).ok().filter(fs::Metadata::is_file)?.len());
     data::parts(log).into_iter().map(size).collect()
 }
 
-/// The bytes of the files of a log.
+/// Contents of a log's files.
 fn content(log: &Path) -> Option<Vec<Vec<u8>>> {
     let parts = data::parts(log).into_iter();
     parts.map(|path| fs::read(path).ok()).collect()

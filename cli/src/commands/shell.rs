@@ -1,4 +1,4 @@
-//! `overact completions` and `overact manual`: the command line told to shells and to `man`.
+//! `overact completions` and `overact manual`: shell completions and manual pages.
 
 use crate::{
     failure::{Failure, Problem},
@@ -27,10 +27,10 @@ pub(crate) struct Manual {
     output: Option<PathBuf>,
 }
 
-/// Prints what a shell completes.
+/// Prints shell completions.
 ///
 /// # Errors
-/// A stdout that takes no more.
+/// A stdout that cannot be written.
 pub(super) fn completions(arguments: &Completions) -> Result<(), Failure> {
     let mut text = Vec::new();
     let mut command = super::Arguments::command();
@@ -38,10 +38,10 @@ pub(super) fn completions(arguments: &Completions) -> Result<(), Failure> {
     print(&as_text(text)?)
 }
 
-/// Writes pages for `man`.
+/// Writes manual pages.
 ///
 /// # Errors
-/// A folder that can't be made or written.
+/// A folder that cannot be created or written.
 pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
     let mut command = super::Arguments::command();
     command.build();
@@ -69,7 +69,7 @@ pub(super) fn manual(arguments: &Manual) -> Result<(), Failure> {
 
 fn page(command: &Command) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::new();
-    // The date of a page is that of no day: the same command line gives the same bytes.
+    // Without a date, the same command line gives the same bytes.
     let man = Man::new(command.clone()).date("");
     man.render(&mut text).map_err(|error| unwritten(&error))?;
     Ok(text)

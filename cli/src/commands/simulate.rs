@@ -1,4 +1,4 @@
-//! `overact simulate`: the virtual experiment of a description, as logs; `fleet`: of many robots.
+//! `overact simulate`: writes logs of a virtual experiment; `fleet`: of many robots.
 
 mod fleet;
 
@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     fleet: fleet::Arguments,
 }
 
-/// What is told of a run.
+/// Result of a run.
 #[derive(Debug, Serialize)]
 struct Summary {
     name: String,
@@ -54,14 +54,14 @@ struct Summary {
     payload: bool,
     samples: usize,
     sampling_hz: f64,
-    /// Largest difference between wanted and measured position of each actuator (rad, m).
+    /// Largest difference between desired and measured position of each actuator (rad, m).
     tracking_error: Vec<f64>,
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// A description without an experiment, or a run that can't be made.
+/// A description without an experiment, or a run that fails.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let robot = input::robot(&arguments.file, as_json)?;
     let mut experiment = robot.experiment()?;
@@ -115,17 +115,16 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// Parameters that the simulation does not feel are mentioned once; never beside a JSON document, whose
-/// errors share stderr with it.
+/// Prints parameters without effect once; never with `--json`, because errors share stderr.
 pub(super) fn warn(without_effect: &[String], as_json: bool) {
     if !without_effect.is_empty() && !as_json && !is_quiet() {
         let names = without_effect.join(", ");
-        // A closed stderr is no reason to stop.
+        // A closed stderr is ignored.
         let _ = writeln!(io::stderr(), "note: without effect on the model: {names}");
     }
 }
 
-/// Leaves only the runs of these names; all where there are none.
+/// Keeps only the runs with these names; all if there are none.
 fn keep_runs(experiment: &mut VirtualExperiment<'_>, names: &[String]) -> Result<(), Failure> {
     experiment.check_runs(names)?;
     if !names.is_empty() {
@@ -135,7 +134,7 @@ fn keep_runs(experiment: &mut VirtualExperiment<'_>, names: &[String]) -> Result
     Ok(())
 }
 
-/// The file of each run; none where the only one goes to stdout.
+/// File of each run; `None` if the only one goes to stdout.
 fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<PathBuf>>, Failure> {
     let runs = &experiment.runs;
     let Some(output) = output else {

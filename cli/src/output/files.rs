@@ -1,5 +1,6 @@
-//! Files that a command writes: before any work it is seen that none of them would destroy what the
-//! command reads or another result; then all are written, whole, or none.
+//! Output files: checked before any work, then all written completely, or none.
+//!
+//! The check ensures that no output overwrites an input or another output.
 
 use crate::{
     failure::{Failure, Problem},
@@ -14,7 +15,7 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// Links that are followed before a path counts as leading nowhere, as many as Linux follows.
+/// Largest number of links that are followed, as in Linux.
 const LINKS: usize = 40;
 
 /// [`check_distinct`], and the folder of every output must exist.
@@ -33,11 +34,12 @@ pub(crate) fn check<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(),
     Ok(())
 }
 
-/// Fails early, before any work, if an output is a file that the command reads, two outputs are one
-/// file, whatever links lead there, or a file may not be written. Devices and pipes lose nothing.
+/// Fails early if an output is also an input or another output, or may not be written.
+///
+/// Links are followed. Devices and pipes are exempt.
 ///
 /// # Errors
-/// Arguments that do not go together, or files that may not be written.
+/// Incompatible arguments, or files that may not be written.
 pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(), Failure> {
     if outputs.iter().any(|output| is_stream(output)) {
         let message = "`-` is standard output, which takes the result of `-o` alone: write `./-` for a file of that name";
@@ -83,18 +85,18 @@ pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> R
     }
 }
 
-/// What makes two paths the same file.
+/// Identity of a file.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// Number of device and file: links lead to one, hard links have the same.
+    /// Numbers of device and file; they are equal for links and hard links to the same file.
     #[cfg(unix)]
     Numbers(u64, u64),
-    /// The path without links, of a file that is not there yet.
+    /// Path without links, for a file that does not exist yet.
     Path(PathBuf),
 }
 
 fn identity(path: &Path) -> Identity {
-    // `-` is stdin, which the shell may have opened as one of the files.
+    // `-` is stdin, which the shell may have opened from one of the files.
     let path = match path.as_os_str() == "-" {
         true => Path::new("/dev/stdin"),
         false => path,
@@ -107,7 +109,7 @@ fn identity(path: &Path) -> Identity {
     Identity::Path(resolved(path))
 }
 
-/// A path without links; its last part may not exist.
+/// Path without links; its last component may not exist.
 fn resolved(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..LINKS {
@@ -133,14 +135,16 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Whether a file may be replaced: renaming another over it asks only for the folder's permission, so
-/// that of the file itself is asked for here.
+/// Whether a file may be replaced.
+///
+/// Renaming over a file requires the folder's permission only, so the file's own permission is
+/// checked here.
 fn may_be_replaced(path: &Path) -> io::Result<()> {
     let Ok(existing) = fs::metadata(path) else {
         return Ok(());
     };
     if existing.is_file() {
-        // Who may do everything is not stopped by the open, and respects the mark all the same.
+        // A privileged user can open any file; respect its read-only flag nevertheless.
         if existing.permissions().readonly() {
             return Err(io::Error::from(io::ErrorKind::ReadOnlyFilesystem));
         }
@@ -149,11 +153,12 @@ fn may_be_replaced(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes files: each goes to a temporary file in its folder first, and when all of them are
-/// complete, they are renamed. So an error leaves the old files as they were.
+/// Writes files by way of temporary files that are renamed when all are complete.
+///
+/// An error therefore leaves the old files unchanged.
 ///
 /// # Errors
-/// A folder that can't be written, or a file that may not be replaced.
+/// A folder that cannot be written, or a file that may not be replaced.
 pub(crate) fn write(files: Vec<(PathBuf, Vec<u8>)>) -> Result<(), Failure> {
     let mut staged = Vec::new();
     for (path, bytes) in files {
@@ -170,11 +175,11 @@ pub(crate) fn write(files: Vec<(PathBuf, Vec<u8>)>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A file that waits for its name.
+/// Complete file that is not yet visible under its name.
 enum Staged {
-    /// The file and its name.
+    /// Temporary file and its final path.
     Temporary(NamedTempFile, PathBuf),
-    /// Devices and pipes, `/dev/stdout` for instance, are written to and never replaced.
+    /// Devices and pipes, such as `/dev/stdout`, are written to and never replaced.
     Device,
 }
 
@@ -189,7 +194,7 @@ fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
         }
     }
     may_be_replaced(path)?;
-    // A link stays a link: what it points to is replaced.
+    // Replace the target of a link, not the link.
     let target = resolved(path);
     let mut builder = tempfile::Builder::new();
     builder.prefix(".overact-");
@@ -207,7 +212,7 @@ fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
     Ok(Staged::Temporary(file, target))
 }
 
-/// Those of any new file; the default of a temporary file is to be private.
+/// Default permissions of new files; those of temporary files are private.
 #[cfg(unix)]
 fn usual_permissions() -> Option<fs::Permissions> {
     use std::os::unix::fs::PermissionsExt;
@@ -223,7 +228,7 @@ fn unwritable(path: &Path, error: &io::Error) -> Failure {
     unwritable_problem(path, error).into()
 }
 
-/// The error's own text may name the temporary file, which is nobody's business.
+/// Problem with a generic reason, because the error's text may name the temporary file.
 fn unwritable_problem(path: &Path, error: &io::Error) -> Problem {
     let reason = match error.kind() {
         io::ErrorKind::NotFound if folder(path).is_dir() => "its folder takes no files".to_owned(),
@@ -297,7 +302,7 @@ mod tests {
         assert!(check_distinct(&[], &[&at("none/new.csv")]).is_ok());
         let nowhere = std::path::Path::new("/dev/null");
         assert!(check(&[], &[nowhere, nowhere]).is_ok());
-        // What a link leads to is written, and the link stays.
+        // The target of the link is written, and the link stays.
         assert!(write(vec![(at("dangling.csv"), b"new".to_vec())]).is_ok());
         assert_eq!(fs::read_to_string(at("nothing.csv"))?, "new");
         assert!(fs::symlink_metadata(at("dangling.csv"))?.is_symlink());

@@ -1,8 +1,8 @@
-//! A program around generated C that calls its functions: compiled, fed with numbers, and read.
+//! Compiles generated C with a driver program, calls its functions and reads the results.
 //!
-//! The repository holds no `unsafe` code, so C is not linked to the tests but run beside them. A call is a
-//! number of a function followed by its inputs, an answer the error followed by the output, all as doubles, which
-//! the program rounds where the C computes with shorter numbers.
+//! The repository has no `unsafe` code, so C runs in a separate process. A call is a function's
+//! number followed by its inputs, an answer the error followed by the output, all as doubles. The
+//! program rounds these if the C computes with shorter numbers.
 
 use overact_codegen::Float;
 use overact_codegen::c::Files;
@@ -11,20 +11,20 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a test may fail with.
+/// Any error of a test.
 pub(crate) type Failure = Box<dyn std::error::Error>;
 
-/// What an output holds before it is written.
+/// Value of an output before it is written.
 pub(crate) const UNTOUCHED: f64 = 0.125;
 
-/// A function as the driver calls it.
+/// A function in the driver.
 #[derive(Debug, Clone)]
 pub(crate) struct Call {
-    /// The name behind the prefix.
+    /// Name without the prefix.
     pub(crate) name: String,
-    /// How many numbers each argument has.
+    /// Number of values of each argument.
     pub(crate) arguments: Vec<usize>,
-    /// How many numbers the output has.
+    /// Number of values of the output.
     pub(crate) output: usize,
 }
 
@@ -32,16 +32,16 @@ pub(crate) struct Call {
 pub(crate) struct Question {
     /// Index among the calls.
     pub(crate) call: usize,
-    /// All inputs, one argument behind the other.
+    /// All inputs, argument by argument.
     pub(crate) inputs: Vec<f64>,
 }
 
-/// A compiler that is there, and how far it optimises.
+/// An available compiler and its optimisation level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Compiler(pub(crate) &'static str, &'static str);
 
 impl Compiler {
-    /// The compilers among GCC and Clang that can be run; the others are told.
+    /// Available compilers among GCC and Clang; prints the others.
     pub(crate) fn all() -> Vec<Self> {
         let is_there = |compiler: &Self| {
             let there = Command::new(compiler.0).arg("--version").output().is_ok();
@@ -57,13 +57,13 @@ impl Compiler {
             .collect()
     }
 
-    /// The same one in a hurry: it takes an eighth of the time for a large robot.
+    /// The same compiler without optimisation: an eighth of the time for a large robot.
     pub(crate) fn unoptimised(self) -> Self {
         Self(self.0, "-O0")
     }
 }
 
-/// Every warning that a careful C programmer asks for is an error.
+/// Warnings that are errors.
 pub(crate) const WARNINGS: [&str; 9] = [
     "-std=c99",
     "-Wall",
@@ -84,7 +84,7 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// Compiles a robot with the functions that shall be called.
+    /// Compiles a robot with the functions to call.
     pub(crate) fn build(
         compiler: Compiler,
         folder: &Path,
@@ -118,7 +118,7 @@ impl Driver {
         })
     }
 
-    /// The texts of all errors, by their numbers.
+    /// Texts of all errors, by their numbers.
     pub(crate) fn texts(&self) -> Result<Vec<String>, Failure> {
         let said = Command::new(&self.program).arg("texts").output()?;
         let said = String::from_utf8(said.stdout)?;
@@ -160,7 +160,7 @@ impl Driver {
     }
 }
 
-/// The driver.
+/// Text of the driver.
 fn text(stem: &str, calls: &[Call], float: Float) -> Result<String, Failure> {
     let number = match float {
         Float::F64 => "double",

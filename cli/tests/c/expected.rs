@@ -1,4 +1,4 @@
-//! What a function should give: its program, evaluated, after what Rust's runtime finds before it runs.
+//! Expected result of a function: its program, evaluated as in Rust's runtime.
 
 use crate::driver::Call;
 use overact::{Error, Function, Model, guard};
@@ -9,10 +9,10 @@ use overact_codegen::{CompiledFunction, RobotModel};
 use overact_robot::InterpretedRobot;
 use std::collections::BTreeMap;
 
-/// All inputs of a state, by the names of arguments.
+/// All inputs of a state, by argument name.
 pub(crate) type Inputs = BTreeMap<&'static str, Vec<f64>>;
 
-/// The name of forward kinematics, which is none of the table's functions.
+/// Name of forward kinematics, which is not in the table of functions.
 pub(crate) const FORWARD: &str = "pose_from_actuators";
 
 /// Names and lengths of a function's arguments.
@@ -42,7 +42,7 @@ pub(crate) fn forward_arguments(model: &RobotModel) -> Vec<(String, usize)> {
     ]
 }
 
-/// All functions of a robot as the driver calls them.
+/// All functions of a robot in the driver.
 pub(crate) fn calls(model: &RobotModel) -> Vec<(Call, Vec<String>)> {
     let call = |name: &str, arguments: Vec<(String, usize)>, output: usize| {
         let (names, arguments) = arguments.into_iter().unzip();
@@ -67,7 +67,7 @@ pub(crate) fn calls(model: &RobotModel) -> Vec<(Call, Vec<String>)> {
     calls
 }
 
-/// A function's output at a state, by its index among the calls.
+/// Output of a function at a state, by its index among the calls.
 pub(crate) fn output(
     robot: &InterpretedRobot,
     index: usize,
@@ -124,7 +124,7 @@ pub(crate) fn output(
     }
 }
 
-/// The arguments of a call are finite and not too large.
+/// Checks that the arguments of a call are finite and not too large.
 fn in_range(model: &RobotModel, index: usize, inputs: &Inputs) -> Result<(), Error> {
     let largest = model.float.limits().largest;
     let arguments = model
@@ -138,7 +138,7 @@ fn in_range(model: &RobotModel, index: usize, inputs: &Inputs) -> Result<(), Err
     Ok(())
 }
 
-/// Numbers between -1 and 1 that are alike whenever they are drawn.
+/// Reproducible numbers between -1 and 1.
 pub(crate) struct Dice(u64);
 
 impl Dice {
@@ -154,7 +154,7 @@ impl Dice {
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// A number of either sign whose magnitude is between 1e-30 and ten to the power `largest`.
+    /// Number of either sign with a magnitude between 1e-30 and ten to the power `largest`.
     pub(crate) fn of_any_size(&mut self, largest: f64) -> f64 {
         let exponent = 0.5 * (self.next() + 1.0) * (largest + 30.0) - 30.0;
         10.0_f64.powf(exponent).copysign(self.next())
@@ -165,8 +165,7 @@ impl Dice {
     }
 }
 
-/// Random states with all that functions take. Actuators' positions are those of the pose, where it has
-/// some.
+/// Random states with all inputs; actuator positions are those of the pose if there is one.
 pub(crate) fn states(robot: &InterpretedRobot, count: usize, seed: u64) -> Vec<Inputs> {
     let model = robot.model();
     let mechanism = &model.mechanism;

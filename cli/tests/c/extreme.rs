@@ -1,18 +1,19 @@
-//! Inputs of any size: generated C gives finite numbers or an error, which is that of the interpreted robot.
+//! Inputs of any size: generated C gives finite numbers or the error of the interpreted robot.
 
 use crate::driver::{Driver, Failure, Question, UNTOUCHED};
 use crate::expected::{Dice, Inputs, output};
 use overact_robot::InterpretedRobot;
 
-/// Whether the errors of the C are compared with those of the programs, which are evaluated with 64 bits.
+/// Whether errors of the C must equal those of the 64-bit programs.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Errors {
     Compared,
-    /// Numbers of 32 bits overflow earlier.
+    /// 32-bit numbers overflow earlier.
     Any,
 }
 
-/// States of which one input, in every third state all, has another size: up to ten to the power `largest`.
+/// States of which one input, in every third state all, has another size: up to ten to the power
+/// `largest`.
 pub(crate) fn extremes(near: &[Inputs], largest: f64) -> Vec<Inputs> {
     let mut dice = Dice::new(5);
     let mut extremes = Vec::new();
@@ -30,7 +31,7 @@ pub(crate) fn extremes(near: &[Inputs], largest: f64) -> Vec<Inputs> {
     extremes
 }
 
-/// Asks for all functions at some states.
+/// Checks all functions at some states.
 pub(crate) fn check(
     robot: &InterpretedRobot,
     driver: &Driver,

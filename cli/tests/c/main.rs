@@ -1,5 +1,6 @@
-//! Generated C: compiled by GCC and Clang with every warning as an error, and compared with the programs that
-//! it was written from at random states, with what is out of reach, singular or no number among them.
+//! Generated C, compiled by GCC and Clang with warnings as errors, compared with its programs.
+//!
+//! The random states include unreachable and singular ones, and inputs that are not numbers.
 
 mod driver;
 mod expected;
@@ -17,17 +18,21 @@ use overact_tier::{by_tier, of_many};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// How many times larger than what one rounding of the inputs changes a difference may be, where that is above
-/// the tolerance: near singularities, and of what is zero but for rounding. Formulas lose up to 40 times that where they
-/// divide by what nearly vanishes inside: a humanoid's leg far from home, without a search.
+/// Largest ratio of a difference above the tolerance to the effect of one rounding of the inputs.
+///
+/// It applies near singularities, and to values that are zero up to rounding. Formulas that divide
+/// by small intermediate results lose up to 40 times that effect, for example a humanoid's leg far
+/// from home.
 const ROUNDINGS: f64 = 60.0;
 
-/// Largest difference, relative to the largest number of an output. Sines of the C library and those of the
-/// evaluation differ in their last digit.
+/// Largest difference, relative to the largest number of an output; sines differ in their last
+/// digit.
 const TOLERANCE: f64 = 1e-13;
 
-/// Robots of the default tier, with some of their functions where all take long to compile; forward kinematics
-/// with and without a quaternion, case 2, and functions from each kind of input are among them.
+/// Robots of the default tier, with some functions if all take long to compile.
+///
+/// They include forward kinematics with and without a quaternion, the actuator projection, and
+/// functions from each kind of input.
 const FEW: [(&str, &[&str]); 4] = [
     (
         "dualv",
@@ -43,8 +48,8 @@ const FEW: [(&str, &[&str]); 4] = [
     ("hexapod", &["pose_from_actuators", "twist_from_actuators"]),
 ];
 
-/// Inputs that are smaller (m, rad and their rates) are rounded as this one is: what is computed first, a sine beside a
-/// length, has roundings of its own size, not of an angle that happens to be nearly zero.
+/// Inputs below this (m, rad and their rates) are rounded like this value, because intermediate
+/// results have their own magnitude.
 const SMALL: f64 = 0.1;
 
 fn repository(path: &str) -> PathBuf {
@@ -71,25 +76,25 @@ fn model(
         .model)
 }
 
-/// A folder of its own for what is compiled.
+/// Separate folder for compiled files.
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join(name)
 }
 
-/// What was seen of a robot.
+/// Results of a robot.
 struct Seen {
-    /// The largest relative difference, and of which function.
+    /// Largest relative difference, and its function.
     worst: (f64, String),
-    /// How many outputs were compared.
+    /// Number of compared outputs.
     values: usize,
-    /// How many differ by more than the tolerance, where a rounding of the inputs does so, too, the largest ratio of
-    /// both, and the function that has it.
+    /// Number of differences above the tolerance that a rounding of the inputs explains, the
+    /// largest ratio of both, and its function.
     sensitive: (usize, f64, String),
-    /// Texts of the errors that both have.
+    /// Texts of the errors that both gave.
     errors: Vec<String>,
 }
 
-/// Compares all functions of a robot, by some compilers.
+/// Compares all functions of a robot, with some compilers.
 fn compare(
     name: &str,
     model: RobotModel,
@@ -221,7 +226,7 @@ fn compare(
     Ok(seen)
 }
 
-/// By how much a rounding of the inputs changes a function's output, relative to its largest number.
+/// Effect of a rounding of the inputs on a function's output, relative to its largest number.
 fn change(
     robot: &InterpretedRobot,
     call: usize,
@@ -245,7 +250,7 @@ fn change(
     largest
 }
 
-/// Whether the C has partitions of case 2.
+/// Whether the C has partitions for the actuator projection.
 fn has_partitions(model: &RobotModel) -> bool {
     let regressor = model.function(
         Function::IdmRedPlatform(Columns::Standard),
@@ -254,7 +259,7 @@ fn has_partitions(model: &RobotModel) -> bool {
     model.mechanism.actuated().len() > model.mechanism.dof() && regressor.is_some()
 }
 
-/// The state far from home, where most poses are out of reach.
+/// The state far from home, where most poses are unreachable.
 fn far(robot: &InterpretedRobot, state: &Inputs) -> Inputs {
     let home = &robot.model().mechanism.home;
     let mut far = state.clone();
@@ -284,7 +289,7 @@ fn difference(found: &[f64], wanted: &[f64]) -> f64 {
         .fold(0.0_f64, |m, x| m.max(x.abs()))
         .max(1e-300);
     let worst = found.iter().zip(wanted).map(|(a, b)| (a - b).abs());
-    // A maximum would pass over what is no number.
+    // `f64::max` would ignore NaN.
     worst
         .map(|d| {
             if d.is_finite() {
@@ -312,7 +317,7 @@ fn stems() -> Result<Vec<String>, Failure> {
     Ok(stems)
 }
 
-/// The robots of the tier, with those of their functions that are compared; none means all.
+/// Robots of the tier with the functions to compare; none means all.
 fn robots() -> Result<Vec<(String, &'static [&'static str])>, Failure> {
     let all: &[&str] = &[];
     let few = FEW.map(|(stem, functions)| (stem.to_owned(), by_tier([functions, all])));
@@ -325,7 +330,7 @@ fn robots() -> Result<Vec<(String, &'static [&'static str])>, Failure> {
 #[test]
 fn robots_of_the_library_agree() -> Result<(), Failure> {
     for (index, (stem, functions)) in robots()?.into_iter().enumerate() {
-        // Both compilers for some robots, one of them, which does not optimise, for each of the others.
+        // Both compilers for some robots, one without optimisation for each of the others.
         let mut compilers = Compiler::all();
         if FEW.iter().all(|(few, _)| *few != stem) && !compilers.is_empty() {
             compilers = vec![compilers.swap_remove(index % compilers.len()).unoptimised()];
@@ -338,7 +343,7 @@ fn robots_of_the_library_agree() -> Result<(), Failure> {
     Ok(())
 }
 
-/// No robot of the library has joints that Newton's method finds.
+/// No robot of the library needs Newton's method for its joints.
 #[test]
 fn robots_that_iterate_agree() -> Result<(), Failure> {
     let names = by_tier([&["newton_point"][..], &["newton_point", "newton_spatial"]]);

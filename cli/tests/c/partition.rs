@@ -1,5 +1,6 @@
-//! Case 2 for any kept actuators: the C against the runtime's Rust, actuators that are singular or not there among
-//! them.
+//! Actuator projection for any kept actuators: the C compared with Rust's runtime.
+//!
+//! The kept actuators include singular and non-existent ones.
 
 use crate::driver::{Call, Driver, Failure, Question};
 use crate::expected::Inputs;
@@ -7,10 +8,10 @@ use overact::partition::Partition;
 use overact::{Error, Function, Model};
 use overact_robot::InterpretedRobot;
 
-/// Columns of the matrix that is projected.
+/// Columns of the projected matrix.
 const COLUMNS: usize = 3;
 
-/// The driver's call: J_p^inv, the kept actuators and a matrix; the condition number and the matrix.
+/// Call of the driver: J_p^inv, kept actuators and matrix; condition number and matrix.
 pub(crate) fn call(robot: &InterpretedRobot) -> Call {
     let sizes = robot.info().sizes;
     let (n, r) = (sizes.actuators, sizes.dof);
@@ -45,8 +46,8 @@ pub(crate) fn wrapper(stem: &str, call: &Call) -> String {
     )
 }
 
-/// Compares all choices of kept actuators at some states; the largest relative difference and how many had
-/// a value.
+/// Compares all partitions at some states; returns the largest relative difference and the number
+/// of values.
 pub(crate) fn compare(
     robot: &InterpretedRobot,
     driver: &Driver,
@@ -82,7 +83,7 @@ pub(crate) fn compare(
             Ok(wanted) => {
                 assert_eq!(error, 0, "{}", texts[error]);
                 let condition = wanted[0];
-                // What is solved with has the roundings of its condition number.
+                // Rounding errors are proportional to the condition number.
                 worst = worst.max(crate::difference(&found, &wanted) / condition);
                 values += 1;
             }
@@ -102,7 +103,7 @@ pub(crate) fn compare(
     Ok((worst, values))
 }
 
-/// All sets of r of n actuators, a set with one of them twice, and one with an actuator that there is not.
+/// All sets of r of n actuators, one with a repeated actuator, and one with a non-existent one.
 fn choices(n: usize, r: usize) -> Vec<Vec<usize>> {
     let sets = (0_u32..1 << n).filter(|bits| bits.count_ones() as usize == r);
     let mut all: Vec<Vec<usize>> = sets

@@ -1,4 +1,4 @@
-//! C with numbers of 32 bits against the programs, evaluated with 64 bits, at states that both can hold.
+//! 32-bit C compared with 64-bit programs, at states that both can represent.
 
 use crate::driver::{Compiler, Driver, Failure, Question};
 use crate::expected::{Inputs, calls, output, states};
@@ -8,19 +8,24 @@ use overact_codegen::{Effort, Float, c};
 use overact_robot::InterpretedRobot;
 use overact_tier::{by_tier, is_full};
 
-/// Largest difference, relative to the largest number of an output: some ten roundings of 6 · 10⁻⁸.
+/// Largest difference, relative to the largest number of an output: about ten roundings of 6 ·
+/// 10⁻⁸.
 const TOLERANCE: f64 = 1e-6;
 
-/// How many times larger a difference may be than what roundings of the inputs change: an operation rounds what it
-/// computes, too, and forward kinematics ends with steps of 10⁻⁵.
+/// Largest ratio of a difference to the effect of input roundings.
+///
+/// Operations round their results too, and forward kinematics ends with steps of 10⁻⁵.
 const ROUNDINGS: f64 = 60.0;
 
-/// The part of the outputs that may differ by more: near singularities, where what is solved with is worse conditioned
-/// than what comes out (70 of 9600 of the Exechon-like head, at most).
+/// Fraction of the outputs that may differ by more, near singularities of intermediate systems.
+///
+/// The largest count is 70 of 9600, for the Exechon-like head.
 const BEYOND: f64 = 0.01;
 
-/// Robots of the full tier: chains and trees, legs with and without redundancy, loops on a skeleton, and a platform that
-/// moves aside. Others take minutes to compile.
+/// Robots of the full tier: chains and trees, legs with and without redundancy, skeletons with
+/// loops, and a platform with parasitic motion.
+///
+/// Others take minutes to compile.
 const ROBOTS: [&str; 9] = [
     "ankle",
     "delta_4",
@@ -33,7 +38,7 @@ const ROBOTS: [&str; 9] = [
     "four_bar",
 ];
 
-/// The state with numbers of 32 bits.
+/// The state rounded to 32 bits.
 fn rounded(state: &Inputs) -> Inputs {
     let short = |values: &Vec<f64>| values.iter().map(|&x| f64::from(x as f32)).collect();
     state
@@ -42,8 +47,10 @@ fn rounded(state: &Inputs) -> Inputs {
         .collect()
 }
 
-/// Compares all functions of a robot: the worst relative difference, and by how many roundings of the inputs
-/// the worst of those differs that are beyond the tolerance.
+/// Compares all functions of a robot.
+///
+/// Reports the worst relative difference, and for those beyond the tolerance the worst ratio to
+/// input roundings.
 fn compare(name: &str, functions: &[&str], path: &str, count: usize) -> Result<(), Failure> {
     let effort = by_tier([Effort::None, Effort::Quick]);
     let model = model(&repository(path), effort, functions, Float::F32)?;

@@ -1,6 +1,6 @@
-//! The program `overact` run as its users run it.
+//! Runs the program `overact` as users do.
 
-// Every test file uses a part of these helpers.
+// Every test file uses some of these helpers.
 #![allow(dead_code)]
 
 use serde_json::Value;
@@ -11,12 +11,12 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// A folder of its own in which `overact` is run.
+/// A separate working folder for `overact`.
 pub(crate) struct Bench {
     folder: TempDir,
 }
 
-/// What a run gave.
+/// Result of a run.
 pub(crate) struct Outcome {
     pub(crate) code: Option<i32>,
     pub(crate) out: String,
@@ -29,7 +29,7 @@ impl Bench {
         Self { folder }
     }
 
-    /// A bench with `my.toml`, a template that is shortened by `edit`.
+    /// A bench with `my.toml`, a template shortened by `edit`.
     pub(crate) fn with(template: &str, edit: impl Fn(&str) -> String) -> Self {
         let bench = Self::new();
         let new = bench.run(&["new", template, "my.toml"]);
@@ -82,13 +82,13 @@ impl Bench {
         outcome.out
     }
 
-    /// The JSON document of a command that must succeed.
+    /// JSON document of a command that must succeed.
     pub(crate) fn json(&self, arguments: &[&str]) -> Value {
         let arguments = [&["--json"], arguments].concat();
         serde_json::from_str(&self.good(&arguments)).expect("JSON")
     }
 
-    /// The errors of a command that must fail with code 1, as text; as JSON they say the same.
+    /// Errors of a command that must fail with code 1, as text; its JSON must be equivalent.
     pub(crate) fn bad(&self, arguments: &[&str]) -> String {
         let outcome = self.run(arguments);
         assert_eq!(outcome.code, Some(1), "{arguments:?}: {}", outcome.out);
@@ -122,7 +122,7 @@ fn outcome(output: Output) -> Outcome {
     }
 }
 
-/// The path of a robot of this repository.
+/// Path of a robot of this repository.
 pub(crate) fn robot(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../robots")
@@ -143,8 +143,7 @@ pub(crate) fn robots() -> Vec<String> {
     names
 }
 
-/// A file of the measured data, which are not part of this repository: they lie next to it, or where
-/// `OVERACT_SHARED` says.
+/// A file of the measured data, in a folder next to the repository or at `OVERACT_SHARED`.
 pub(crate) fn shared(name: &str) -> Option<String> {
     let root = std::env::var_os("OVERACT_SHARED").map(PathBuf::from);
     let root = root.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"));
@@ -178,8 +177,8 @@ pub(crate) fn number(value: &Value) -> f64 {
         .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// Names and true values of the DualV's essential parameters: Table 2 of the paper, case 1, and the truth of
-/// the virtual experiment.
+/// Names and true values of the DualV's essential parameters: Table 2 of the paper (case 1), and
+/// the values of the virtual experiment.
 pub(crate) const NINE: [(&str, f64); 9] = [
     ("zz_platformR", 0.0206),
     ("m_platformR", 1.92),

@@ -1,4 +1,4 @@
-//! Puts the memory's layout where the linker looks for it.
+//! Copies the memory layout to the linker's search path.
 
 use std::{env, fs, path::PathBuf};
 

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Flash and stack of a firmware without recursion and without calls through pointers: `stack.py FIRMWARE`.
+"""Flash and stack usage of a firmware without recursion and indirect calls: `stack.py FIRMWARE`.
 
-Each function's stack is what its code pushes and subtracts; the deepest chain of calls from the reset is that of
-the program, and that of the timer's interrupt stands on top of it. Needs arm-none-eabi-objdump and -size.
+A function's stack is what its code pushes and subtracts. The total is that of the deepest call chain from
+the reset, plus that of the timer's interrupt. Needs arm-none-eabi-objdump and -size.
 """
 
 import re
 import subprocess
 import sys
 
-# What the core itself stores when an interrupt comes, with the registers of the floating-point unit.
+# Stored by the core at an interrupt, including the registers of the floating-point unit.
 EXCEPTION_FRAME = 104
 
 
@@ -27,7 +27,7 @@ def registers(words):
 
 
 def functions(program):
-    """By name: bytes of its frame, and what it calls."""
+    """For each function by name: frame size in bytes, and called functions."""
     found, name = {}, None
     for line in run("arm-none-eabi-objdump", "-d", "--no-show-raw-insn", program).splitlines():
         if head := re.match(r"[0-9a-f]+ <(.+)>:$", line):

@@ -1,17 +1,19 @@
-//! A controller of the DualV for a microcontroller: no standard library, no allocator, nothing that panics.
+//! A controller of the DualV for a microcontroller: no standard library, no allocator, no panics.
 //!
-//! It is the controller of the paper's Fig. 4 with the inverse dynamics of identified parameters: independent PD
-//! on every actuator, feed-forward of the torques that the desired motion takes, and projection of the sum by
-//! eq. (50), so that four motors on three degrees of freedom do not work against one another. The parameters are
-//! constants of the generated modules ([`unloaded`], [`loaded`]): `overact generate --parameters` writes them.
+//! It is the controller of the paper's Fig. 4 with inverse dynamics of identified parameters. It
+//! consists of PD control of every actuator, feed-forward torques of the desired motion, and
+//! projection of the sum by eq. (50). The projection prevents four motors on three degrees of
+//! freedom from working against each other. The parameters are constants of the generated modules
+//! ([`unloaded`], [`loaded`]), written by `overact generate --parameters`.
 //!
-//! The same code runs in `firmware/`, on a Cortex-M7, and in the tests, in the loop with the virtual robot.
+//! The same code runs in `firmware/` on a Cortex-M7, and in the tests in closed loop with the
+//! virtual robot.
 #![no_std]
 
-/// The robot with its payload: the inverse dynamics alone, for kinematics know no load.
+/// The robot with payload: inverse dynamics only, because kinematics do not depend on the load.
 #[rustfmt::skip]
 pub mod loaded;
-/// The robot without a payload.
+/// The robot without payload.
 #[rustfmt::skip]
 pub mod unloaded;
 
@@ -20,29 +22,31 @@ use overact::{Error, math::wrap_angle};
 
 /// Number of actuators.
 pub const ACTUATORS: usize = unloaded::DualV::ACTUATORS;
-/// Samples in a second.
+/// Sampling frequency, Hz.
 pub const SAMPLING_HZ: f64 = 5000.0;
 /// Natural frequency of the controlled robot, section 5.1 of the paper.
 pub const BANDWIDTH_HZ: f64 = 70.0;
 /// Damping factor, section 5.1 of the paper.
 pub const DAMPING: f64 = 0.7;
-/// exp(-2π f_d / f_s): what the filter of the derivative, a first-order low-pass of 70 Hz, keeps in a sample.
+/// exp(-2π f_d / f_s): coefficient of the derivative's first-order low-pass filter of 70 Hz.
 pub const SMOOTHING: f64 = 0.915_793_300_451_716_7;
-/// Largest torque of a drive, N m.
+/// Torque limit of a drive, N m.
 pub const TORQUE_LIMIT: f64 = 127.0;
 
-/// What stands on the platform.
+/// Load on the platform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Load {
-    /// Nothing.
+    /// No payload.
     Unloaded,
-    /// The payload with which the robot was identified.
+    /// The payload of the identification.
     Loaded,
 }
 
 impl Load {
-    /// Inertia that each actuator moves, kg m²: what the gains are made of. As large as can be while no mode of
-    /// the controlled robot is faster than the bandwidth along the runs of the description's experiment.
+    /// Effective inertia of each actuator, kg m², from which the gains are computed.
+    ///
+    /// It is the largest for which no mode of the controlled robot is faster than the bandwidth
+    /// along the runs of the description's experiment.
     #[must_use]
     pub const fn inertia(self) -> [f64; ACTUATORS] {
         match self {
@@ -63,7 +67,7 @@ pub struct Motion {
     pub acceleration: [f64; unloaded::DualV::DOF],
 }
 
-/// The controller's memory: the errors of the sample before, and their filtered rates.
+/// State of the controller: errors of the previous sample, and their filtered rates.
 #[derive(Debug, Clone)]
 pub struct Controller {
     load: Load,
@@ -74,7 +78,7 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller at its first sample.
+    /// Controller at its first sample.
     #[must_use]
     pub fn new(load: Load) -> Self {
         let rate = TAU * BANDWIDTH_HZ;
@@ -88,12 +92,14 @@ impl Controller {
         }
     }
 
-    /// The torques of the motors, N m, for one sample: from what is desired and the positions of the actuators,
-    /// rad, in any turn.
+    /// Torques of the motors, N m, for one sample, from the desired motion and the actuator
+    /// positions.
+    ///
+    /// Positions are in rad, in any turn.
     ///
     /// # Errors
-    /// A desired motion that the robot does not reach or where it is singular, or numbers that are not finite;
-    /// the memory then stays as it was, and what to do is the caller's to say: hold the motors, or brake.
+    /// A desired motion that is unreachable or singular, or numbers that are not finite. The state
+    /// is then unchanged, and the caller decides what to do: hold the motors, or brake.
     pub fn step(
         &mut self,
         desired: &Motion,

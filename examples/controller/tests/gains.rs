@@ -1,4 +1,4 @@
-//! The controller's constants against the simulation's: gains, filter, bandwidth.
+//! The controller's constants compared with the simulation's: gains, filter, bandwidth.
 
 use overact_controller::{BANDWIDTH_HZ, DAMPING, Load, SAMPLING_HZ, SMOOTHING, TORQUE_LIMIT};
 use overact_robot::Robot;
@@ -28,7 +28,7 @@ fn constants_are_those_of_the_description() {
                 *smallest = smallest.min(found);
             }
         }
-        // Rounded down: never above what keeps every mode below the bandwidth.
+        // Rounded down, so that every mode stays below the bandwidth.
         for (own, most) in load.inertia().iter().zip(smallest) {
             assert!(
                 *own <= most && most - own < 1e-3 * most,

@@ -1,6 +1,8 @@
-//! Section 5.4 of the paper end to end: the virtual robot is identified, the identified parameters are baked into
-//! the controller's modules, and the controller follows trajectories that nothing was identified from, beside a PD
-//! controller alone. Tracking errors are those of Table 4.
+//! Section 5.4 of the paper, end to end.
+//!
+//! The virtual robot is identified, the parameters become constants of the controller's modules,
+//! and the controller follows validation trajectories. It is compared with a PD controller alone.
+//! Tracking errors are those of Table 4.
 
 use overact::{Columns, Error, Function, Model};
 use overact_codegen::{Choice, Effort, Request, emission};
@@ -71,7 +73,7 @@ fn modules_are_what_their_parameters_generate() {
             functions.join(",")
         );
         let expected = emission::file(&made.model, &label);
-        // The whole texts would fill the screen.
+        // The full texts would fill the screen.
         let same = expected == text;
         assert!(
             same,
@@ -80,8 +82,10 @@ fn modules_are_what_their_parameters_generate() {
     }
 }
 
-/// Largest errors of each actuator in a held-out run, rad: of PD alone, of the controller on board, and of the
-/// simulation's own with the true parameters.
+/// Largest errors of each actuator in a validation run, rad.
+///
+/// They are those of PD alone, the firmware's controller, and the simulation's own with the true
+/// parameters.
 fn tracking(robot: &Robot, plan: &Experiment, run: &Run) -> [Vec<f64>; 3] {
     let alone = |feed_forward| Experiment {
         feed_forward,
@@ -118,14 +122,15 @@ fn computed_torque_follows_better_than_pd_alone() {
             run.name
         );
         for ((pd, board), ideal) in pd.iter().zip(board).zip(ideal) {
-            // Table 4 has reductions of 55.9 % to 76.6 %, of a robot that bends and drives that ripple.
+            // Table 4 has reductions of 55.9 % to 76.6 %, for a flexible robot with torque ripple.
             assert!(board < 0.1 * pd, "{}: {board} of {pd} mrad", run.name);
             assert!(board < 1.5 * ideal, "{}: {board}, {ideal} mrad", run.name);
         }
     }
 }
 
-/// The baked inverse dynamics against that of the true parameters, along the runs that are held out.
+/// Inverse dynamics with constant parameters compared with the true parameters, along the
+/// validation runs.
 #[test]
 fn baked_torques_are_the_robots() {
     let robot = dualv();
@@ -152,7 +157,7 @@ fn an_identification_anew_gives_what_is_baked() {
     compare(&robot, experiment.plan(), &values, 1e-6);
 }
 
-/// Asserts that baked torques are those of `parameters` but for a part of the largest torque.
+/// Asserts that the torques equal those of `parameters`, up to a fraction of the largest torque.
 fn compare(robot: &Robot, plan: &Experiment, parameters: &[f64], part: f64) {
     let own = robot.model().info().sizes.parameters;
     for run in &plan.runs {

@@ -1,4 +1,4 @@
-//! Estimates as values of SQL, and back.
+//! Converts estimates to SQL values and back.
 
 use arrow::{
     array::{
@@ -19,7 +19,7 @@ fn list(kind: DataType) -> DataType {
     DataType::List(Arc::new(Field::new("item", kind, true)))
 }
 
-/// The fields of a parameter.
+/// Fields of a parameter.
 pub(super) fn of_parameter() -> Fields {
     let numbers = ["value", "deviation", "freedom", "white_deviation"];
     let numbers = numbers.map(|name| field(name, DataType::Float64));
@@ -28,7 +28,7 @@ pub(super) fn of_parameter() -> Fields {
         .collect()
 }
 
-/// The fields of an estimate.
+/// Fields of an estimate.
 pub(super) fn of_estimate() -> Fields {
     let counts = ["runs", "equations", "groups", "twice", "damaged", "unlike"];
     let counts = counts.map(|name| field(name, DataType::UInt64));
@@ -51,7 +51,7 @@ fn row(kind: DataType, values: ArrayRef) -> ArrayRef {
     Arc::new(ListArray::new(item, offsets, values, None))
 }
 
-/// Parameters as a struct each.
+/// Parameters as a struct array.
 pub(super) fn parameters(all: &[PooledParameter]) -> StructArray {
     let numbers = |of: fn(&PooledParameter) -> f64| -> ArrayRef {
         Arc::new(all.iter().map(of).collect::<Float64Array>())
@@ -67,7 +67,7 @@ pub(super) fn parameters(all: &[PooledParameter]) -> StructArray {
     StructArray::new(of_parameter(), columns, None)
 }
 
-/// An estimate as a value.
+/// Estimate as a value.
 pub(super) fn value(own: &Pooled) -> ScalarValue {
     let count = |value: u64| -> ArrayRef { Arc::new(UInt64Array::from(vec![value])) };
     let problem = Some(own.problem.as_str()).filter(|text| !text.is_empty());
@@ -97,7 +97,7 @@ pub(super) fn value(own: &Pooled) -> ScalarValue {
     ScalarValue::Struct(Arc::new(StructArray::new(of_estimate(), columns, None)))
 }
 
-/// The estimate of a row of a column; none where there is none, or where the column is another one.
+/// Estimate in a row of a column; `None` if it is null or the column has another type.
 #[must_use]
 pub fn pooled(column: &StructArray, row: usize) -> Option<Pooled> {
     if column.is_null(row) {
@@ -164,7 +164,7 @@ pub fn pooled(column: &StructArray, row: usize) -> Option<Pooled> {
     Some(own)
 }
 
-/// No parameter, as a value.
+/// Null parameter as a value.
 pub(super) fn no_parameter() -> Result<ScalarValue> {
     ScalarValue::try_from(&DataType::Struct(of_parameter()))
 }

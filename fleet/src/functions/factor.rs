@@ -1,9 +1,9 @@
-//! `factor(robot, columns [, carried])`: the rows of a log as its factor.
+//! `factor(robot, columns [, carried])`: aggregates the rows of a log to its R factors.
 //!
-//! What the platform carried is `false`, `true`, or the name of a payload where the description names several.
+//! `carried` is `false`, `true`, or the name of a payload if the description has several.
 //!
-//! A run is filtered as a whole, so all its rows are kept until the last has come: 80 kB of 10 s at 200 Hz. They come
-//! in any order, and are put in that of their time. A row that is there twice counts once.
+//! A run is filtered as a whole, so all its rows are kept until the last one: 80 kB for 10 s at 200
+//! Hz. Rows may come in any order and are sorted by time. Duplicate rows count once.
 
 use crate::robots::Robots;
 use arrow::{
@@ -27,10 +27,10 @@ use overact_identification::{
 use overact_robot::Robot;
 use std::sync::Arc;
 
-/// Numbers of a run, at most: 512 MB.
+/// Largest number of values of a run: 512 MB.
 const MOST: usize = 1 << 26;
 
-/// The aggregate.
+/// The aggregate function.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct FactorOfLog {
     signature: Signature,
@@ -118,15 +118,15 @@ impl AggregateUDFImpl for FactorOfLog {
     }
 }
 
-/// The rows of a run.
+/// Rows of a run.
 #[derive(Debug)]
 struct Rows {
     robots: Robots,
     robot: String,
     columns: Vec<String>,
-    /// `true`, or the name of a payload; empty where the platform carried nothing.
+    /// `true`, or the name of a payload; empty without payload.
     carried: String,
-    /// Row after row.
+    /// Row-major values.
     values: Vec<f64>,
 }
 
@@ -149,7 +149,7 @@ impl Rows {
         Err(refused(message))
     }
 
-    /// The log with what the platform carried.
+    /// Sets the payload of the log.
     fn carrying(&self, robot: &Robot, log: Log) -> Result<Log, String> {
         let names = robot.payloads();
         match self.carried.as_str() {
@@ -176,7 +176,7 @@ impl Rows {
         }
     }
 
-    /// The factors, or why there are none.
+    /// Factors, or why there are none.
     fn factors(&self) -> Result<Vec<u8>, String> {
         let robot = self.robots.get(&self.robot).ok_or_else(|| {
             let known: Vec<&str> = self.robots.names().collect();
@@ -226,7 +226,7 @@ impl Rows {
     }
 }
 
-/// What is said of groups that hold more than a run.
+/// Messages on groups with more than one run.
 const SEVERAL_ROBOTS: &str = "`factor` has rows of several robots in a group: group by them";
 const SEVERAL_PAYLOADS: &str = "`factor` has rows with and without payload, or with several payloads, in a group: group by run";
 
@@ -234,7 +234,7 @@ fn refused(message: &str) -> DataFusionError {
     DataFusionError::Execution(message.to_owned())
 }
 
-/// The text that all rows have, empty where it is null; none where they differ.
+/// Text that all rows share, empty if null; `None` if they differ.
 fn the_only(column: &ArrayRef) -> Option<&str> {
     let mut all = column
         .as_string::<i32>()
@@ -274,7 +274,7 @@ impl Accumulator for Rows {
             .map(|own| own.as_primitive::<Float64Type>())
             .collect();
         for row in 0..rows.len() {
-            // A number that is not there is none, and told as such with the log.
+            // A missing number becomes NaN and is reported with the log.
             let value = |own: &&arrow::array::Float64Array| match own.is_valid(row) {
                 true => own.value(row),
                 false => f64::NAN,

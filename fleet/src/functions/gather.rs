@@ -1,7 +1,7 @@
-//! `estimate(factor)` and `merge_r(factor)`: factors gathered in bounded memory, whatever the order of the rows.
+//! `estimate(factor)` and `merge_r(factor)`: aggregate factors in bounded memory, in any order.
 //!
-//! Pools go from place to place as large binaries: the engine hands on all groups of rows at once, and those of some
-//! 40 000 robots have more bytes than 32 bits count.
+//! Pools are passed between processes as large binaries. The engine sends all groups at once, and
+//! for about 40 000 robots these exceed 32-bit offsets.
 
 use super::arrays;
 use arrow::{
@@ -19,7 +19,7 @@ use datafusion::{
 use overact_identification::factors::{Pool, PoolError};
 use std::sync::Arc;
 
-/// Either of the aggregates.
+/// Either of the two aggregate functions.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct Gather {
     signature: Signature,
@@ -105,7 +105,7 @@ impl AggregateUDFImpl for Gather {
 #[derive(Debug)]
 struct Gathered {
     pool: Pool,
-    /// Whether it has had rows.
+    /// Whether any row was added.
     fed: bool,
     estimates: bool,
 }
@@ -120,7 +120,7 @@ impl Gathered {
     }
 }
 
-/// An error of a pool in words.
+/// Converts an error of a pool.
 fn told(error: &PoolError) -> DataFusionError {
     DataFusionError::Execution(
         match error {
@@ -149,7 +149,7 @@ impl Accumulator for Gathered {
     }
 
     fn state(&mut self) -> Result<Vec<ScalarValue>> {
-        // A place without rows has not been told how many groups are wanted, and has nothing to say.
+        // A partition without rows does not know the number of groups, so it returns null.
         let pool = self.fed.then(|| self.pool.to_bytes());
         Ok(vec![ScalarValue::LargeBinary(pool)])
     }

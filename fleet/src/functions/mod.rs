@@ -1,4 +1,4 @@
-//! The functions of SQL, for one machine and for those that a query is sent to.
+//! SQL functions, for one machine and for clusters.
 
 mod arrays;
 mod factor;
@@ -14,7 +14,7 @@ use datafusion::{
 };
 use std::sync::Arc;
 
-/// The aggregates.
+/// Aggregate functions.
 #[must_use]
 pub fn aggregates(robots: &Robots) -> Vec<Arc<AggregateUDF>> {
     vec![
@@ -24,7 +24,7 @@ pub fn aggregates(robots: &Robots) -> Vec<Arc<AggregateUDF>> {
     ]
 }
 
-/// The functions of single values.
+/// Scalar functions.
 #[must_use]
 pub fn scalars() -> Vec<Arc<ScalarUDF>> {
     vec![
@@ -33,10 +33,10 @@ pub fn scalars() -> Vec<Arc<ScalarUDF>> {
     ]
 }
 
-/// Makes all of them known.
+/// Registers all functions.
 ///
 /// # Errors
-/// A registry that takes no functions.
+/// A registry that accepts no functions.
 pub fn register(
     registry: &mut dyn FunctionRegistry,
     robots: &Robots,

@@ -1,4 +1,4 @@
-//! `parameter(e, name)` and `f_test(e, e, names)`: what estimates say.
+//! `parameter(e, name)` and `f_test(e, e, names)`: scalar functions of estimates.
 
 use super::arrays;
 use arrow::{
@@ -14,7 +14,7 @@ use datafusion::{
 use overact_identification::factors::{Comparison, compare};
 use std::sync::Arc;
 
-/// The arguments as columns, the last of them as texts.
+/// Arguments as columns, the last one as text.
 fn columns(args: &ScalarFunctionArgs, name: &str) -> Result<(Vec<ArrayRef>, ArrayRef)> {
     let mut all = ColumnarValue::values_to_arrays(&args.args)?;
     let texts = all.pop().ok_or_else(|| wrong(name))?;
@@ -37,7 +37,7 @@ fn structs<'a>(column: &'a ArrayRef, name: &str) -> Result<&'a StructArray> {
     column.as_struct_opt().ok_or_else(|| wrong(name))
 }
 
-/// Whether the types are those of estimates, then a text.
+/// Checks that the types are those of estimates, followed by a text.
 fn check(given: &[DataType], estimates: usize, name: &str) -> Result<Vec<DataType>> {
     let (own, text) = given
         .split_at_checked(estimates)
@@ -110,7 +110,7 @@ impl Default for FTest {
     }
 }
 
-/// The fields of a comparison.
+/// Fields of a comparison.
 fn of_comparison() -> Fields {
     ["ratio", "parameters", "freedom", "probability"]
         .into_iter()

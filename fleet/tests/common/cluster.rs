@@ -1,4 +1,4 @@
-//! A scheduler and three executors, processes each.
+//! Cluster of a scheduler and three executors in separate processes.
 
 use std::{
     fs,
@@ -8,12 +8,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A process that ends with its test.
+/// A process that is killed at the end of its test.
 pub(crate) struct Process(Child);
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // One that has ended already needs no end.
+        // It may already have ended.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -30,7 +30,7 @@ fn start(arguments: &[&str], environment: &[(&str, String)]) -> Process {
     Process(child.expect("the program"))
 }
 
-/// A port that is free, and the one after it; none where a machine gives none.
+/// Free port whose successor is also free; `None` if there is none.
 fn port() -> Option<u16> {
     for _ in 0..100 {
         let own = TcpListener::bind("127.0.0.1:0").ok()?;
@@ -42,7 +42,7 @@ fn port() -> Option<u16> {
     None
 }
 
-/// Waits until something listens.
+/// Waits until a port accepts connections.
 fn wait_for(port: u16) {
     let begin = Instant::now();
     while TcpStream::connect(("127.0.0.1", port)).is_err() {
@@ -51,19 +51,19 @@ fn wait_for(port: u16) {
     }
 }
 
-/// How long anything may take on a machine that does much else.
+/// Time limit for any step, also on a busy machine.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
 pub(crate) struct Cluster {
     pub(crate) url: String,
     executors: Vec<Process>,
-    /// Where each executor puts what others fetch.
+    /// Folders of the executors' intermediate results.
     folders: Vec<PathBuf>,
     _scheduler: Process,
 }
 
 impl Cluster {
-    /// Files of results that an executor has.
+    /// Number of an executor's result files.
     pub(crate) fn results(&self, executor: usize) -> usize {
         let mut folders = vec![self.folders[executor].clone()];
         let mut count = 0;
@@ -85,7 +85,8 @@ impl Cluster {
     }
 }
 
-/// A scheduler and three executors, each with an environment; none, with a word, where there are no ports.
+/// Starts a scheduler and three executors, each with an environment; `None`, with a message,
+/// without ports.
 pub(crate) fn cluster(
     folder: &Path,
     of_scheduler: &[(&str, String)],
@@ -118,7 +119,8 @@ pub(crate) fn cluster(
     });
     let executors = executors.collect();
     ports[1..].iter().for_each(|port| wait_for(*port));
-    // They listen before the scheduler knows them, and it does not tell whom it knows.
+    // They accept connections before they are registered with the scheduler, which does not report
+    // it.
     std::thread::sleep(Duration::from_secs(2));
     Some(Cluster {
         url: format!("df://127.0.0.1:{}", ports[0]),

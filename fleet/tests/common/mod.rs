@@ -1,4 +1,4 @@
-//! A small fleet of five-bars: logs and factor files.
+//! A small fleet of five-bar robots: logs and factor files.
 #![allow(dead_code)]
 
 #[cfg(feature = "distributed")]
@@ -46,7 +46,7 @@ pub(crate) fn description() -> String {
     })
 }
 
-/// A fleet in a folder of its own.
+/// A fleet in its own folder.
 pub(crate) struct Bench {
     pub(crate) folder: tempfile::TempDir,
     pub(crate) robot: Robot,
@@ -96,7 +96,7 @@ impl Bench {
         self.folder.path().join(name)
     }
 
-    /// Factor files, one for each day.
+    /// Writes factor files, one for each day.
     pub(crate) fn factor_files(&self, folder: &str) -> PathBuf {
         let folder = self.path(folder);
         fs::create_dir_all(&folder).expect("a folder");

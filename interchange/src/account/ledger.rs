@@ -1,63 +1,63 @@
-//! The record of one import: what was used, ignored and reported, equal entries counted together.
+//! Record of one import: contents used, ignored and reported, with equal entries counted.
 
 use std::collections::BTreeMap;
 
-/// What became of an element or attribute.
+/// Treatment of an element or attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Use {
     Honoured,
-    /// Left out without an effect on the dynamics.
+    /// Omitted, without effect on the dynamics.
     Ignored,
-    /// Left out; the model may differ from the file's.
+    /// Omitted, and the model may therefore differ from the file.
     Reported,
 }
 
-/// Equal elements or attributes of a file, of which the same became.
+/// Equal elements or attributes of a file with the same treatment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
-    /// The file, as it was named.
+    /// File name as the user gave it.
     pub file: String,
-    /// The line of the first of them, from 1.
+    /// Line of the first occurrence, counted from 1.
     pub line: usize,
     /// Name of the element, or of the key in formats without elements.
     pub element: String,
-    /// Name of the attribute; none of a whole element.
+    /// Name of the attribute; `None` for a whole element.
     pub attribute: Option<String>,
-    /// Why it is not used; empty of what is.
+    /// Reason for not using it; empty if it is used.
     pub reason: String,
-    /// How many there are.
+    /// Number of occurrences.
     pub count: usize,
 }
 
-/// What an import used of its files, in the order of files and lines.
+/// What an import used of its files, ordered by file and line.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Account {
-    /// What became part of the description.
+    /// Contents that became part of the description.
     pub honoured: Vec<Entry>,
-    /// What was left out and has no effect on the dynamics of rigid bodies.
+    /// Omitted contents without effect on rigid-body dynamics.
     pub ignored: Vec<Entry>,
-    /// What was left out although the model may differ without it.
+    /// Omitted contents that may change the model.
     pub reported: Vec<Entry>,
 }
 
-/// What entries are counted together by: use, file, element, attribute, reason.
+/// Entries with equal keys are counted together: use, file, element, attribute, reason.
 type Key = (Use, usize, String, Option<String>, String);
 
-/// Entries with the byte at which the first of them stands, and their count.
+/// Entries with the byte offset of the first occurrence, and their count.
 #[derive(Debug, Default)]
 pub(crate) struct Ledger {
     entries: BTreeMap<Key, (usize, usize)>,
 }
 
 impl Ledger {
-    /// Counts an element or attribute at a byte of a file.
+    /// Counts an element or attribute at a byte offset of a file.
     pub(crate) fn add(&mut self, key: Key, at: usize) {
         let entry = self.entries.entry(key).or_insert((at, 0));
         entry.0 = entry.0.min(at);
         entry.1 += 1;
     }
 
-    /// Takes one of what counts as used back.
+    /// Removes one occurrence that was counted as honoured.
     pub(crate) fn retract(&mut self, file: usize, element: &str, attribute: Option<&str>) {
         let key = (
             Use::Honoured,
@@ -74,7 +74,7 @@ impl Ledger {
         }
     }
 
-    /// The entries by use; `locate` gives the name of a file and the line of a byte in it.
+    /// Entries by use; `locate` maps a file and byte offset to the file's name and a line.
     pub(crate) fn account(&self, locate: impl Fn(usize, usize) -> (String, usize)) -> Account {
         let mut account = Account::default();
         let mut ordered: Vec<_> = self.entries.iter().collect();
@@ -100,7 +100,7 @@ impl Ledger {
 }
 
 impl Entry {
-    /// The element and attribute: `joint damping`.
+    /// Element and attribute, as `joint damping`.
     #[must_use]
     pub fn subject(&self) -> String {
         match &self.attribute {
@@ -109,7 +109,7 @@ impl Entry {
         }
     }
 
-    /// The reason, with how often it applies.
+    /// Reason, with the number of occurrences.
     #[must_use]
     pub fn counted_reason(&self) -> String {
         match self.count {

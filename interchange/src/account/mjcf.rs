@@ -32,7 +32,7 @@ const RULES: &[Rule] = &[
         attributes: &[("model", Honoured)],
     },
     Rule {
-        // In any element; the elements of the file take its place.
+        // Allowed in any element; replaced by the elements of the included file.
         within: "",
         elements: "include",
         treatment: Honoured,
@@ -375,7 +375,7 @@ const RULES: &[Rule] = &[
         ],
     },
     Rule {
-        // Rejected by name where they are active.
+        // Rejected by name if active.
         within: "equality",
         elements: "tendon flex flexvert flexstrain distance",
         treatment: Honoured,

@@ -1,4 +1,4 @@
-//! What import uses of a file, and what it leaves out: a table for each format, and the record of an import.
+//! Tables of the contents that import uses for each format, and the record of an import.
 
 mod ledger;
 mod mjcf;

@@ -1,4 +1,4 @@
-//! .par files of OpenSYMORO: their keys, in capitals.
+//! Table of .par files (OpenSYMORO): keys in capitals.
 
 use super::table::{IDENTITY, Rule, Table, Treatment, unless};
 use Treatment::{Honoured, Irrelevant};

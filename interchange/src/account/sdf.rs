@@ -1,4 +1,4 @@
-//! SDFormat 1.4 to 1.12: the elements and attributes of its specification.
+//! Table of SDFormat 1.4 to 1.12: elements and attributes of its specification.
 
 use super::table::{Rule, Table, Treatment, rejected, reported, unless};
 use Treatment::{Container, Honoured, Irrelevant, Opaque};
@@ -79,7 +79,6 @@ const RULES: &[Rule] = &[
         treatment: Opaque,
         attributes: &[("name filename", Honoured)],
     },
-    // Includes.
     Rule {
         within: "sdf gazebo world model",
         elements: "include",
@@ -107,7 +106,6 @@ const RULES: &[Rule] = &[
         treatment: Honoured,
         attributes: &[("name attached_to", Honoured)],
     },
-    // Links.
     Rule {
         within: "model",
         elements: "link",
@@ -154,7 +152,6 @@ const RULES: &[Rule] = &[
     ),
     whole("link joint", "sensor", SENSORS),
     whole("link", "must_be_base_link battery", SIMULATION),
-    // Joints.
     Rule {
         within: "world model",
         elements: "joint",

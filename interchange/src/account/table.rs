@@ -1,24 +1,24 @@
-//! The form of the tables: what import does with each element and attribute of a format.
+//! Table type: how import treats each element and attribute of a format.
 
 use std::collections::BTreeMap;
 
-/// What import does with an element or an attribute.
+/// Treatment of an element or attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Treatment {
-    /// It is read.
+    /// Read.
     Honoured,
-    /// Its attributes are read; what is inside it is its own.
+    /// Its attributes are read; its children are not checked against the table.
     Opaque,
-    /// The element itself says nothing; its attributes and children have treatments of their own.
+    /// Has no meaning of its own; its attributes and children have their own treatments.
     Container,
-    /// It is left out and has no effect on the dynamics of rigid bodies.
+    /// Omitted, without effect on rigid-body dynamics.
     Irrelevant(&'static str),
-    /// It is left out and changes the model, unless its value is the neutral one.
+    /// Omitted and reported because it changes the model, unless its value is neutral.
     Reported {
         neutral: &'static str,
         reason: &'static str,
     },
-    /// The file is rejected, unless the value is the neutral one.
+    /// The file is rejected, unless the value is neutral.
     Rejected {
         neutral: &'static str,
         reason: &'static str,
@@ -26,25 +26,25 @@ pub(crate) enum Treatment {
     },
 }
 
-/// The treatment of elements of a format, and of their attributes.
+/// Treatment of elements of a format, and of their attributes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rule {
-    /// The elements that they stand in, separated by blanks; any where empty.
+    /// Names of possible parent elements, separated by blanks; empty for any parent.
     pub(crate) within: &'static str,
-    /// Their names, separated by blanks.
+    /// Names of the elements, separated by blanks.
     pub(crate) elements: &'static str,
     pub(crate) treatment: Treatment,
-    /// Names of attributes, separated by blanks, with their treatment.
+    /// Attribute names, separated by blanks, with their treatment.
     pub(crate) attributes: &'static [(&'static str, Treatment)],
 }
 
-/// The table of a format.
+/// Table of a format.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Table {
     pub(crate) rules: &'static [Rule],
 }
 
-/// A table by names.
+/// Rules of a table by element name.
 pub(crate) struct Index {
     by_parent: BTreeMap<(&'static str, &'static str), &'static Rule>,
     by_name: BTreeMap<&'static str, &'static Rule>,
@@ -66,7 +66,7 @@ impl Index {
         Self { by_parent, by_name }
     }
 
-    /// The rule of an element in another one; none of an unknown element.
+    /// Rule of an element in a parent; `None` if the element is unknown.
     pub(crate) fn rule(&self, parent: &str, name: &str) -> Option<&'static Rule> {
         let found = self.by_parent.get(&(parent, name));
         found.or_else(|| self.by_name.get(name)).copied()
@@ -74,7 +74,7 @@ impl Index {
 }
 
 impl Rule {
-    /// The treatment of an attribute; none of an unknown one.
+    /// Treatment of an attribute; `None` if it is unknown.
     pub(crate) fn attribute(&self, name: &str) -> Option<Treatment> {
         let mut all = self.attributes.iter();
         let found = all.find(|(names, _)| names.split_whitespace().any(|own| own == name));
@@ -82,17 +82,17 @@ impl Rule {
     }
 }
 
-/// A value that changes the model unless it is the neutral one.
+/// Treatment of a value that changes the model unless it is neutral.
 pub(super) const fn unless(neutral: &'static str, reason: &'static str) -> Treatment {
     Treatment::Reported { neutral, reason }
 }
 
-/// Something that always changes the model.
+/// Treatment of contents that always change the model.
 pub(super) const fn reported(reason: &'static str) -> Treatment {
     unless("", reason)
 }
 
-/// Something with which the file is not read.
+/// Treatment of contents that make the file unreadable.
 pub(super) const fn rejected(reason: &'static str, help: &'static str) -> Treatment {
     Treatment::Rejected {
         neutral: "",
@@ -101,10 +101,10 @@ pub(super) const fn rejected(reason: &'static str, help: &'static str) -> Treatm
     }
 }
 
-/// The neutral value of matrices: four rows of four numbers.
+/// Neutral value of 4 × 4 matrices.
 pub(super) const IDENTITY: &str = "identity";
 
-/// Whether a value consists of neutral numbers or words, or is the identity.
+/// Whether a value consists of neutral numbers or words, or is the identity matrix.
 pub(crate) fn is_neutral(value: &str, neutral: &str) -> bool {
     if neutral.is_empty() {
         return false;

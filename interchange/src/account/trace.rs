@@ -1,4 +1,4 @@
-//! What readers ask of elements, recorded for the test of the tables.
+//! Records which attributes and children readers request, to test the tables.
 
 use std::{cell::RefCell, collections::BTreeSet};
 
@@ -7,20 +7,20 @@ thread_local! {
     static CHILDREN: RefCell<BTreeSet<(String, String)>> = const { RefCell::new(BTreeSet::new()) };
 }
 
-/// Records that an attribute of an element was asked for.
+/// Records a request for an attribute.
 pub(crate) fn attribute(element: &str, name: &str) {
     ATTRIBUTES.with_borrow_mut(|all| all.insert((element.to_owned(), name.to_owned())));
 }
 
-/// Records that an element inside another was asked for.
+/// Records a request for a child element.
 pub(crate) fn child(element: &str, name: &str) {
     CHILDREN.with_borrow_mut(|all| all.insert((element.to_owned(), name.to_owned())));
 }
 
-/// Names of elements, with those of their attributes or of elements inside them.
+/// Pairs of an element and its attribute or child.
 type Asked = BTreeSet<(String, String)>;
 
-/// All attributes and children that were asked for on this thread, which are forgotten.
+/// Returns and clears the requests for attributes and children on this thread.
 pub(crate) fn take() -> (Asked, Asked) {
     (ATTRIBUTES.take(), CHILDREN.take())
 }

@@ -1,5 +1,4 @@
-//! URDF: the elements and attributes of urdfdom, of the notations of loops, and of the extensions of Gazebo, ROS 2
-//! control and Drake.
+//! Table of URDF: urdfdom, loop notations, and the extensions of Gazebo, ROS 2 control and Drake.
 
 use super::table::{Rule, Table, Treatment, rejected, reported, unless};
 use Treatment::{Container, Honoured, Irrelevant};
@@ -123,7 +122,7 @@ const RULES: &[Rule] = &[
         attributes: &[],
     },
     Rule {
-        // Of onshape-to-robot.
+        // Extension of onshape-to-robot.
         within: "joint",
         elements: "joint_properties",
         treatment: Container,
@@ -138,7 +137,7 @@ const RULES: &[Rule] = &[
         treatment: Irrelevant("sensors"),
         attributes: &[],
     },
-    // Closures of loops.
+    // Loop closures.
     Rule {
         within: "robot",
         elements: "loop",
@@ -193,7 +192,7 @@ const RULES: &[Rule] = &[
         treatment: Honoured,
         attributes: &[("value", Honoured)],
     },
-    // Transmissions, of ROS and inside <ros2_control>.
+    // ROS transmissions, also inside `<ros2_control>`.
     Rule {
         within: "robot",
         elements: "transmission",
@@ -243,7 +242,7 @@ const RULES: &[Rule] = &[
         attributes: &[],
     },
     Rule {
-        // Of PR2's transmissions.
+        // PR2 transmissions.
         within: "transmission",
         elements: "leftActuator rightActuator flexJoint rollJoint gap_joint compensator simulated_actuated_joint \
                    use_simulated_gripper_joint",
@@ -285,7 +284,6 @@ const RULES: &[Rule] = &[
         ),
         attributes: &[],
     },
-    // Gazebo.
     Rule {
         within: "robot",
         elements: "gazebo",
@@ -368,7 +366,6 @@ const RULES: &[Rule] = &[
         treatment: SIMULATION,
         attributes: &[],
     },
-    // Drake.
     Rule {
         within: "robot",
         elements: "ball_constraint",
@@ -417,7 +414,6 @@ const RULES: &[Rule] = &[
         treatment: reported("screws are not read from URDF"),
         attributes: &[],
     },
-    // MuJoCo's extension.
     Rule {
         within: "robot",
         elements: "mujoco",

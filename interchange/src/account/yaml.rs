@@ -1,4 +1,4 @@
-//! The YAML file beside a URDF: its keys.
+//! Table of the YAML file that accompanies a URDF: its keys.
 
 use super::table::{Rule, Table, Treatment};
 use Treatment::Honoured;

@@ -1,4 +1,4 @@
-//! Files that have every element and attribute which the tables honour.
+//! Files that contain every element and attribute that the tables honour.
 
 type File = (&'static str, String);
 

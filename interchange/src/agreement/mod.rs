@@ -1,4 +1,4 @@
-//! The tables against the readers, and against the schema of MuJoCo.
+//! Tests that the tables agree with the readers and with MuJoCo's schema.
 
 mod corpus;
 
@@ -10,10 +10,10 @@ use crate::{
 };
 use std::collections::BTreeSet;
 
-/// A reader of a format.
+/// Reader of a format.
 type Read = fn(&Files, usize, &Options) -> Option<Model>;
 
-/// Reads files, which have to be right, and returns what was asked of their elements.
+/// Reads valid files and returns the attributes and children that were requested.
 fn asked(read: Read, texts: &[(&str, String)]) -> (Pairs, Pairs) {
     drop(trace::take());
     let folder = tempfile::tempdir().expect("a folder");
@@ -38,11 +38,11 @@ fn asked(read: Read, texts: &[(&str, String)]) -> (Pairs, Pairs) {
 
 type Pairs = BTreeSet<(String, String)>;
 
-/// Every honoured attribute and element of a table is asked for, and nothing else is.
+/// Asserts that a reader requests exactly the honoured attributes and elements of a table.
 fn agree(table: &Table, asked: &(Pairs, Pairs)) {
     let (attributes, children) = asked;
     let mut wrong = Vec::new();
-    // Defaults of MJCF are read as a whole.
+    // MJCF defaults are read as a whole.
     let rules = || table.rules.iter().filter(|rule| rule.within != "default");
     for rule in rules() {
         for element in rule.elements.split_whitespace() {
@@ -105,7 +105,7 @@ fn the_reader_of_sdformat_agrees_with_its_table() {
     agree(&SDF, &asked(crate::sdf::read, &corpus::sdf()));
 }
 
-/// Each name of a format without elements is asked for in the source of its reader.
+/// Asserts that each key of a format without XML elements occurs in its reader's source.
 fn are_in(table: &Table, source: &str) {
     for rule in table.rules {
         for key in honoured(rule) {
@@ -145,8 +145,9 @@ fn every_name_of_a_table_has_one_treatment() {
     }
 }
 
-/// `mujoco_4.txt` is what `mj_printSchema` of MuJoCo 4.0 prints: an element a line, indented in its parent, with its
-/// attributes.
+/// `mujoco_4.txt` is the output of `mj_printSchema` in MuJoCo 4.0.
+///
+/// Each line has an element with its attributes, indented within its parent.
 #[test]
 fn the_table_of_mjcf_has_every_name_of_the_schema() {
     let index = Index::new(&MJCF);
@@ -157,13 +158,13 @@ fn the_table_of_mjcf_has_every_name_of_the_schema() {
         let (element, attributes) = line.trim_start().split_once(':').expect("an element");
         parents.truncate(depth);
         let (parent, around) = parents.last().copied().unwrap_or(("", None));
-        // The schema has the world's body and all others in one.
+        // The schema does not distinguish the world body from others.
         let parent = if (parent, element) == ("mujoco", "body") {
             "worldbody"
         } else {
             parent
         };
-        // What is left out as a whole has no rules inside.
+        // Omitted elements have no rules for their children.
         let is_open =
             |rule: &Rule| [Treatment::Honoured, Treatment::Container].contains(&rule.treatment);
         if depth > 0 && !around.is_some_and(is_open) {

@@ -1,4 +1,4 @@
-//! Chains that can be solved: ways between two bodies whose motion is known, through bodies whose motion is not.
+//! Finds solvable chains: paths between bodies of known motion through bodies of unknown motion.
 
 use super::{
     motion::rank,
@@ -7,27 +7,27 @@ use super::{
 use crate::model::Kind;
 use nalgebra::{DMatrix, Vector3};
 
-/// How a chain ends.
+/// Kind of closure at a chain's end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ending {
-    /// Its last edge is a ball, or a pin whose angle need not be known: a point of the last body meets the other.
+    /// Point closure: the last edge is a ball joint, or a revolute joint whose angle is not needed.
     Point,
-    /// Its last edge carries the body that it ends on.
+    /// Rigid closure: the last edge carries the final body.
     Rigid,
 }
 
-/// A chain: groups from one whose motion is known to another, and the edges between them.
+/// A chain: groups from one of known motion to another, and the edges between them.
 #[derive(Debug, Clone)]
 pub(crate) struct Ear {
     pub(crate) groups: Vec<usize>,
     pub(crate) edges: Vec<usize>,
     pub(crate) ending: Ending,
-    /// Joints that are solved.
+    /// Number of joint coordinates to solve for.
     pub(crate) unknowns: usize,
 }
 
 impl Ear {
-    /// What solving it costs, roughly.
+    /// Approximate cost of solving the chain.
     pub(crate) fn cost(&self) -> usize {
         let n = self.unknowns;
         match self.ending {
@@ -37,14 +37,14 @@ impl Ear {
     }
 }
 
-/// Most joints that a chain is solved for.
+/// Largest number of unknowns of a chain.
 const UNKNOWNS: usize = 6;
 /// Condition number above which a chain counts as singular.
 const SINGULAR: f64 = 1e6;
-/// Ways that are followed from one group.
+/// Largest number of paths explored from one group.
 const WAYS: usize = 20_000;
 
-/// How many revolute or prismatic joints stand for an edge that is entered from a group.
+/// Number of one-degree-of-freedom joints that represent an edge entered from a group.
 pub(crate) fn freedoms(network: &Network<'_>, edge: usize, to: usize, is_first: bool) -> usize {
     match network.edges[edge].kind {
         _ if follows(network, edge) => 0,
@@ -54,7 +54,7 @@ pub(crate) fn freedoms(network: &Network<'_>, edge: usize, to: usize, is_first: 
     }
 }
 
-/// Whether an edge's joint follows another.
+/// Whether an edge's joint is coupled to another.
 pub(crate) fn follows(network: &Network<'_>, edge: usize) -> bool {
     match network.edges[edge].origin {
         Origin::Joint(joint) => network.model.joints[joint].follow.is_some(),
@@ -62,7 +62,7 @@ pub(crate) fn follows(network: &Network<'_>, edge: usize) -> bool {
     }
 }
 
-/// The cheapest chain between groups that are solved, if there is any; it does not go through `kept` ones.
+/// Cheapest chain between solved groups that avoids `kept` groups, if there is one.
 pub(crate) fn cheapest(
     network: &Network<'_>,
     solved: &[bool],
@@ -108,13 +108,13 @@ impl Search<'_, '_> {
             if next == at || groups.contains(&next) || follows(self.network, index) {
                 continue;
             }
-            // Between two solved groups only a joint with a motor or friction is looked for.
+            // A single edge between two solved groups matters only if it has a motor or friction.
             if self.solved[next] && groups.len() == 1 && edge.is_free {
                 continue;
             }
             groups.push(next);
             edges.push(index);
-            // The ground is where chains start from, and none ends on it.
+            // Chains start at the ground and never end there.
             if next == 0 {
             } else if self.solved[next] {
                 self.try_ends(groups, edges);
@@ -169,7 +169,7 @@ impl Search<'_, '_> {
 }
 
 impl super::network::Edge {
-    /// Whether a ball has no torque of its own.
+    /// Whether the edge is a ball joint without torques.
     fn is_free_ball(&self, network: &Network<'_>) -> bool {
         match self.origin {
             Origin::Closure(_) => true,
@@ -181,7 +181,7 @@ impl super::network::Edge {
     }
 }
 
-/// The joints that stand for each edge of a chain; a rod's first ball is a universal joint.
+/// Number of joints for each edge of a chain; a rod's first ball joint is a universal joint.
 pub(crate) fn chain_freedoms(
     network: &Network<'_>,
     groups: &[usize],
@@ -193,7 +193,7 @@ pub(crate) fn chain_freedoms(
         .collect()
 }
 
-/// Whether the joints of a chain follow from the motion of its ends, in all configurations that are looked at.
+/// Whether the ends' motion determines the chain's joints in all sampled configurations.
 fn is_determined(network: &Network<'_>, ear: &Ear) -> bool {
     network.states.iter().enumerate().all(|(state, _)| {
         let matrix = jacobian(network, ear, state);
@@ -202,8 +202,9 @@ fn is_determined(network: &Network<'_>, ear: &Ear) -> bool {
     })
 }
 
-/// What the joints of a chain do to its end: its point's velocity, and of a rigid end its turning. Lengths are in
-/// units of the chain's own.
+/// Jacobian of a chain's end: point velocity, and angular velocity for a rigid closure.
+///
+/// Lengths are scaled by the chain's own size.
 fn jacobian(network: &Network<'_>, ear: &Ear, state: usize) -> DMatrix<f64> {
     let state = &network.states[state];
     let mut lines = Vec::new();

@@ -1,10 +1,12 @@
-//! Motions that move nothing but a body between two pins on one axis: by convention such a body does not turn.
+//! Removes idle spins: motions of a single body between two revolute joints on one axis.
+//!
+//! By convention such a body does not rotate.
 
 use super::network::{Network, Origin};
 use crate::model::{Kind, Model, Pose};
 use nalgebra::Rotation3;
 
-/// The model without idle pins, or none where it has no such pin.
+/// Model without idle spins of this kind; `None` if there are none.
 pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
     let mut model = network.model.clone();
     let mut is_changed = false;
@@ -49,7 +51,7 @@ pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
     is_changed.then_some(model)
 }
 
-/// Fixes a joint where it stands at home.
+/// Fixes a joint at its home position.
 fn lock(model: &mut Model, network: &Network<'_>, joint: usize) {
     let body = model.carried_by(joint);
     let own = &model.joints[joint];

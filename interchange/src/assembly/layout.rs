@@ -1,9 +1,11 @@
-//! Which joints are the independent coordinates, and which chains follow from them.
+//! Chooses the independent coordinates and the chains that they determine.
 //!
-//! The skeleton grows from the ground. Whatever chain is determined by the bodies that are known is taken as soon as
-//! it is; where there is none, the skeleton takes one more joint, and of all ways to do so the one is kept whose
-//! chains are cheapest to solve. Bodies that others hang on alone are kept for the skeleton at first; only where no
-//! skeleton does, chains may carry branches, whose joints are coordinates as well.
+//! The skeleton grows from the ground. A chain is added as soon as the known bodies determine it.
+//! If there is none, the skeleton is extended by one joint. Among all such extensions, the search
+//! keeps the layout whose chains are cheapest to solve.
+//!
+//! Bodies that alone connect others to the ground are reserved for the skeleton at first. If no
+//! such skeleton exists, chains may carry branches, whose joints are coordinates as well.
 
 use super::{
     ears::{Ear, cheapest, follows, freedoms},
@@ -13,13 +15,13 @@ use super::{
 use crate::{files::Files, model::Kind, options::Options};
 use nalgebra::{DMatrix, Vector3};
 
-/// Edges of a tree in their order, each with the group that it starts from.
+/// Edges of a tree in order, each with the group that it starts from.
 pub(crate) type Tree = Vec<(usize, usize)>;
 
-/// A leg beside the skeleton.
+/// Part of the layout besides the skeleton.
 #[derive(Debug, Clone)]
 pub(crate) enum Piece {
-    /// A chain, which follows from what it joins.
+    /// A chain, determined by the bodies that it connects.
     Chain(Ear),
     /// A tree on a body of a chain.
     Branch(Tree),
@@ -28,16 +30,16 @@ pub(crate) enum Piece {
 /// Skeleton, branches and chains.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
-    /// The tree on the ground.
+    /// Tree on the ground.
     pub(crate) skeleton: Tree,
-    /// Chains in the order in which they are solved, and branches behind what carries them.
+    /// Chains in the order of their solution; each branch follows the chain that carries it.
     pub(crate) pieces: Vec<Piece>,
-    /// Edges that follow from all others.
+    /// Redundant edges: the others imply their constraints.
     pub(crate) redundant: Vec<usize>,
 }
 
 impl Layout {
-    /// All edges whose joints are coordinates, in the order of the description.
+    /// Edges whose joints are coordinates, in the order of the description.
     pub(crate) fn coordinates(&self) -> Tree {
         let branches = self.pieces.iter().filter_map(|piece| match piece {
             Piece::Branch(tree) => Some(tree),
@@ -48,7 +50,7 @@ impl Layout {
     }
 }
 
-/// Ways to grow the skeleton that are tried.
+/// Largest number of extensions that are tried.
 const TRIES: usize = 3000;
 
 /// Finds skeleton and chains; `None` after an error.
@@ -115,8 +117,9 @@ fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<
     (found.len() == names.len()).then_some(found)
 }
 
-/// Groups behind which others stand that only they lead to: these have coordinates of their own, so that what carries
-/// them is part of the skeleton.
+/// Groups that alone connect others to the ground (cut vertices of the network).
+///
+/// They must be part of the skeleton, because the groups behind them have their own coordinates.
 fn required(network: &Network<'_>) -> Vec<bool> {
     let count = network.groups.len();
     let without = |cut: usize| {
@@ -145,19 +148,19 @@ fn required(network: &Network<'_>) -> Vec<bool> {
         .collect()
 }
 
-/// The tree that a group is part of.
+/// Tree that a group belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
-    /// That on the ground.
+    /// Tree on the ground.
     Skeleton,
-    /// The piece of this number.
+    /// Index of the branch in `pieces`.
     Branch(usize),
 }
 
 #[derive(Debug, Clone)]
 struct Partial {
     solved: Vec<bool>,
-    /// Of each group that is part of a tree, which.
+    /// Tree of each group, if it has one.
     part: Vec<Option<Part>>,
     used: Vec<bool>,
     skeleton: Tree,
@@ -166,7 +169,7 @@ struct Partial {
 }
 
 impl Partial {
-    /// The ground alone.
+    /// Partial layout with the ground only.
     fn start(network: &Network<'_>) -> Self {
         let count = network.groups.len();
         let mut own = Self {
@@ -182,7 +185,7 @@ impl Partial {
         own
     }
 
-    /// Puts an edge on a tree: on that of the group that it starts from, or on a new branch.
+    /// Adds an edge to the tree of its start group, or to a new branch.
     fn push(&mut self, edge: usize, from: usize, to: usize) {
         let part = self.part[from].unwrap_or_else(|| {
             self.pieces.push(Piece::Branch(Tree::new()));
@@ -201,7 +204,7 @@ impl Partial {
         self.part[to] = Some(part);
     }
 
-    /// The layout, of which some edges follow from all others.
+    /// Layout in which the unused edges are redundant.
     fn layout(&self) -> Layout {
         let unused = self.used.iter().enumerate().filter(|(_, used)| !**used);
         Layout {
@@ -219,7 +222,7 @@ struct Search<'s, 'm> {
     may_branch: bool,
     wanted: Option<Vec<usize>>,
     best: Option<(usize, Layout)>,
-    /// What was solved where most was.
+    /// Solved groups of the partial layout that solved most.
     furthest: Vec<bool>,
     tries: usize,
 }
@@ -258,13 +261,13 @@ impl Search<'_, '_> {
             if !independent(self.network, &next.layout().coordinates()) {
                 continue;
             }
-            // Among equals the skeleton whose bodies carry less is taken.
+            // On ties, prefer the skeleton with fewer joints.
             next.cost += 1;
             self.grow(next);
         }
     }
 
-    /// Edges that the skeleton may take next: one alone, where it has to be taken anyhow.
+    /// Candidate edges for the skeleton; a single one if that edge is required.
     fn candidates(&self, partial: &Partial) -> Vec<(usize, usize, usize)> {
         let mut all = Vec::new();
         for (index, edge) in self.network.edges.iter().enumerate() {
@@ -289,7 +292,7 @@ impl Search<'_, '_> {
                 }
             }
         }
-        // One block of loops after the other.
+        // Complete one block of loops before the next.
         let Some(&(_, first, _)) = all.first() else {
             return all;
         };
@@ -298,7 +301,7 @@ impl Search<'_, '_> {
             .collect()
     }
 
-    /// Whether two groups stand in one block of loops: no single group parts them.
+    /// Whether two groups belong to the same biconnected block.
     fn same_block(&self, a: usize, b: usize) -> bool {
         self.network.edges.len() < 400 && connected_without_cut(self.network, a, b)
     }
@@ -314,7 +317,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// The joints that stand for each edge of a skeleton.
+/// Number of one-degree-of-freedom joints for each edge of a skeleton.
 pub(crate) fn skeleton_freedoms(network: &Network<'_>, skeleton: &[(usize, usize)]) -> Vec<usize> {
     let of = |&(edge, from): &(usize, usize)| {
         let groups = network.edges[edge].groups;
@@ -323,7 +326,7 @@ pub(crate) fn skeleton_freedoms(network: &Network<'_>, skeleton: &[(usize, usize
     skeleton.iter().map(of).collect()
 }
 
-/// Whether removing an edge parts the network.
+/// Whether an edge is a bridge of the network.
 fn is_bridge(network: &Network<'_>, cut: usize) -> bool {
     let [a, b] = network.edges[cut].groups;
     !reaches(network, a, b, |index, _| index != cut)
@@ -354,13 +357,13 @@ fn reaches(network: &Network<'_>, a: usize, b: usize, may: impl Fn(usize, usize)
     seen[b]
 }
 
-/// Whether the skeleton's joints can move independently of each other.
+/// Whether the skeleton's joints can move independently.
 fn independent(network: &Network<'_>, skeleton: &[(usize, usize)]) -> bool {
     if network.model.closures.is_empty() {
         return true;
     }
     let freedoms: usize = skeleton_freedoms(network, skeleton).iter().sum();
-    // Home may be singular; of the others each has to do.
+    // Home may be singular; the skeleton must be independent in all other configurations.
     let looked_at = 1.min(network.states.len() - 1)..network.states.len();
     looked_at.into_iter().all(|state| {
         let twists = &network.twists[state];
@@ -369,8 +372,7 @@ fn independent(network: &Network<'_>, skeleton: &[(usize, usize)]) -> bool {
     })
 }
 
-/// The rates of the skeleton's joints for each motion that the network has in a configuration; `twists` has those of
-/// its groups.
+/// Rates of the skeleton's joints for each motion of the network, given the groups' `twists`.
 pub(crate) fn skeleton_rates(
     network: &Network<'_>,
     skeleton: &[(usize, usize)],

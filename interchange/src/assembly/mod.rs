@@ -1,4 +1,4 @@
-//! From bodies and closures to a skeleton and chains.
+//! Derives a skeleton and chains from bodies and closures.
 
 pub(crate) mod ears;
 pub(crate) mod idle;

@@ -1,5 +1,4 @@
-//! How a tree of bodies with closures moves: configurations in which the loops are closed, and the motions that
-//! they leave.
+//! Kinematics of a tree with closures: closed configurations, twists and the closure Jacobian.
 
 use crate::{
     geometry::exact,
@@ -7,42 +6,45 @@ use crate::{
 };
 use nalgebra::{DMatrix, DVector, Point3, Rotation3, Vector3};
 
-/// A configuration of the tree.
+/// Configuration of the tree.
 #[derive(Debug, Clone)]
 pub(crate) struct State {
-    /// Positions of the joints as the file counts them; balls have none.
+    /// Joint positions in the file's convention; unused for ball joints.
     pub(crate) positions: Vec<f64>,
-    /// Rotations of the balls.
+    /// Rotations of ball joints.
     pub(crate) turns: Vec<Rotation3<f64>>,
-    /// Frames of the bodies in the world.
+    /// Poses of the bodies in the world.
     pub(crate) poses: Vec<Pose>,
 }
 
-/// A coordinate of the tree: a joint, or one of the three rates of a ball about the axes of its body's placement.
+/// A coordinate of the tree: a joint, or one of the three rates of a ball joint.
+///
+/// Ball rates are about the axes of the body's placement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Coordinate {
     pub(crate) joint: usize,
     pub(crate) component: usize,
 }
 
-/// The tree and its coordinates.
+/// Tree with its coordinates.
 #[derive(Debug)]
 pub(crate) struct Motion<'m> {
     pub(crate) model: &'m Model,
     pub(crate) coordinates: Vec<Coordinate>,
 }
 
-/// Twists of a body, a column for each coordinate: velocity of the body's point in the world's origin, then the
-/// angular velocity.
+/// Twists of a body for unit rates, 6 × coordinates.
+///
+/// Rows: velocity of the body-fixed point at the world origin, then angular velocity.
 pub(crate) type Twists = DMatrix<f64>;
 
 impl<'m> Motion<'m> {
-    /// The motion of a model.
+    /// Kinematics of a model.
     pub(crate) fn new(model: &'m Model) -> Self {
         let mut coordinates = Vec::new();
         for (joint, own) in model.joints.iter().enumerate() {
             let count = match own.kind {
-                // Joints that became part of a ball carry nothing.
+                // Joints merged into a ball joint carry nothing.
                 _ if own.follow.is_some() || model.carried_by(joint) == 0 => 0,
                 Kind::Ball => 3,
                 Kind::Revolute | Kind::Prismatic => 1,
@@ -52,7 +54,7 @@ impl<'m> Motion<'m> {
         Self { model, coordinates }
     }
 
-    /// The configuration of the file's home.
+    /// Home configuration of the file.
     pub(crate) fn start(&self) -> State {
         let positions = self.model.joints.iter().map(|joint| joint.home).collect();
         let turns = vec![Rotation3::identity(); self.model.joints.len()];
@@ -65,7 +67,7 @@ impl<'m> Motion<'m> {
         state
     }
 
-    /// Places the bodies as the joints stand.
+    /// Computes the body poses from the joint positions.
     fn place(&self, state: &mut State) {
         for (at, joint) in self.model.joints.iter().enumerate() {
             if let Some(follow) = joint.follow {
@@ -84,7 +86,7 @@ impl<'m> Motion<'m> {
         state.poses = poses;
     }
 
-    /// What a joint does to the body that it carries.
+    /// Displacement of the body that a joint carries.
     fn moved(&self, state: &State, at: usize) -> Pose {
         let joint = &self.model.joints[at];
         let by = state.positions[at] - joint.reference;
@@ -116,7 +118,7 @@ impl<'m> Motion<'m> {
         all
     }
 
-    /// The columns to which a joint adds its twist.
+    /// Columns and factors to which a joint contributes its twist.
     fn columns(&self, state: &State, body: usize, joint: usize) -> Vec<(usize, f64, DVector<f64>)> {
         let own = &self.model.joints[joint];
         let (leader, factor) = own.follow.map_or((joint, 1.0), |f| (f.joint, f.factor));
@@ -141,7 +143,7 @@ impl<'m> Motion<'m> {
             .collect()
     }
 
-    /// How far the loops are from closed, m and rad: rows for each closure, and what each coordinate does to them.
+    /// Closure residuals (m, rad) and their Jacobian by coordinates.
     pub(crate) fn closure(&self, state: &State) -> (Vec<f64>, DMatrix<f64>) {
         let twists = self.twists(state);
         let (mut gaps, mut rows) = (Vec::new(), Vec::new());
@@ -153,7 +155,7 @@ impl<'m> Motion<'m> {
             for axis in 0..3 {
                 let e = Vector3::ith(axis, 1.0);
                 gaps.push((points[1] - points[0])[axis]);
-                // The velocity of the point: that at the origin and ω × p.
+                // Velocity of the point: velocity at the origin plus ω × p.
                 rows.push(along(&relative, &e, &point.cross(&e)));
             }
             let Some((gap, axes)) = turn else { continue };
@@ -166,7 +168,7 @@ impl<'m> Motion<'m> {
         (gaps, matrix)
     }
 
-    /// Moves the joints by so much.
+    /// Configuration after a step of the coordinates.
     pub(crate) fn moved_by(&self, state: &State, step: &DVector<f64>) -> State {
         let mut moved = state.clone();
         let mut turns = vec![Vector3::zeros(); self.model.joints.len()];
@@ -183,7 +185,9 @@ impl<'m> Motion<'m> {
         moved
     }
 
-    /// The closed configuration nearest to one; otherwise the largest gap and its row.
+    /// Projects a configuration onto the closures.
+    ///
+    /// On failure: the largest residual and its row.
     pub(crate) fn closed(&self, start: &State) -> Result<State, (f64, usize)> {
         let mut state = start.clone();
         let (mut best, mut since) = (f64::INFINITY, 0);
@@ -207,7 +211,7 @@ impl<'m> Motion<'m> {
                 Some(change) => -change,
                 None => return Err((gap, row)),
             };
-            // Half a radian at most: beyond, the linear equations say nothing.
+            // Limit steps to half a radian, the range in which the linearisation is useful.
             let size = change.amax();
             if size > 0.5 {
                 change *= 0.5 / size;
@@ -235,10 +239,10 @@ fn largest(gaps: &[f64]) -> (usize, f64) {
     })
 }
 
-/// Singular values below this part of the largest are none.
+/// Relative tolerance of singular values for ranks.
 pub(crate) const RANK: f64 = 1e-7;
 
-/// A short step that makes gaps smaller: where a direction hardly moves them, it is left alone until they are small.
+/// Damped least-squares step; directions with little effect stay damped until residuals are small.
 fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let svd = matrix.clone().try_svd(true, true, 1e-15, 10_000)?;
     let (u, v) = (svd.u?, svd.v_t?);
@@ -252,7 +256,7 @@ fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     step.iter().all(|v| v.is_finite()).then_some(step)
 }
 
-/// A basis of what a matrix maps to zero.
+/// Basis of the null space of a matrix.
 pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let n = matrix.ncols();
     let square = DMatrix::from_fn(matrix.nrows().max(n), n, |i, j| {
@@ -275,7 +279,7 @@ pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(n, kept.len(), |i, j| v[(kept[j], i)])
 }
 
-/// The rank of a matrix, and the ratio of its largest and smallest singular value.
+/// Rank of a matrix, and the ratio of its largest to its smallest singular value.
 pub(crate) fn rank(matrix: &DMatrix<f64>) -> (usize, f64) {
     if matrix.is_empty() {
         return (0, 1.0);
@@ -300,7 +304,7 @@ fn screw(velocity: &Vector3<f64>, rate: &Vector3<f64>) -> DVector<f64> {
     DVector::from_iterator(6, velocity.iter().chain(rate.iter()).copied())
 }
 
-/// What each column of twists does along a direction of velocity and of turning.
+/// Component of each twist along a direction of velocity and of angular velocity.
 fn along(twists: &Twists, velocity: &Vector3<f64>, rate: &Vector3<f64>) -> Vec<f64> {
     let weights = screw(velocity, rate);
     twists
@@ -309,10 +313,10 @@ fn along(twists: &Twists, velocity: &Vector3<f64>, rate: &Vector3<f64>) -> Vec<f
         .collect()
 }
 
-/// A gap of orientations, and the directions in which it counts.
+/// Orientation residual and the directions in which it is constrained.
 type Turn = Option<(Vector3<f64>, Vec<Vector3<f64>>)>;
 
-/// The points that meet, and of frames the turn between them.
+/// Closure points, and the orientation residual if the closure has one.
 fn ends(kind: &ClosureKind, state: &State) -> ([Point3<f64>; 2], Turn) {
     let both = |bodies: &[usize; 2], at: &[Pose; 2]| [0, 1].map(|i| state.poses[bodies[i]] * at[i]);
     let origins = |frames: &[Pose; 2]| frames.map(|f| Point3::from(f.translation.vector));
@@ -336,7 +340,7 @@ fn ends(kind: &ClosureKind, state: &State) -> ([Point3<f64>; 2], Turn) {
     }
 }
 
-/// The axis of a rotation times its angle, to the last digit for small ones, too.
+/// Rotation vector, also accurate for small angles.
 fn scaled_axis(rotation: &Rotation3<f64>) -> Vector3<f64> {
     let m = rotation.matrix();
     let sine = Vector3::new(

@@ -1,4 +1,4 @@
-//! Bodies that are fixed together as one, the joints between them as edges, at several closed configurations.
+//! Graph of rigid groups and joints, sampled at several closed configurations.
 
 use super::{
     motion::{Motion, State, null_space},
@@ -13,41 +13,41 @@ use nalgebra::{DMatrix, DVector, Point3, Vector3};
 /// A group of bodies that are fixed together.
 #[derive(Debug, Clone)]
 pub(crate) struct Group {
-    /// Its bodies, the first the one that names it.
+    /// Bodies; the first gives the group its name.
     pub(crate) bodies: Vec<usize>,
-    /// Its inertia in the world at home.
+    /// Inertia in the world frame at home.
     pub(crate) inertia: Option<Inertia>,
-    /// Whether one of its bodies has an inertia of which the file does not say how large it is.
+    /// Whether a body of the group has inertia of unknown value.
     pub(crate) has_unknown_inertia: bool,
-    /// A rod between two balls: it spins freely about their line.
+    /// Whether the group is a rod between two ball joints, with an idle spin about their line.
     pub(crate) spins: bool,
 }
 
-/// What an edge is.
+/// Origin of an edge in the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Origin {
     Joint(usize),
     Closure(usize),
 }
 
-/// A joint between two groups.
+/// A joint or closure between two groups.
 #[derive(Debug, Clone)]
 pub(crate) struct Edge {
     pub(crate) groups: [usize; 2],
     pub(crate) kind: Kind,
     pub(crate) origin: Origin,
-    /// Whether it turns without any torque of its own.
+    /// Whether it moves without friction, spring or motor torque.
     pub(crate) is_free: bool,
 }
 
-/// Where an edge's axis, or centre, is in a configuration.
+/// Axis or centre of an edge in a configuration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axis {
     pub(crate) point: Point3<f64>,
     pub(crate) direction: Vector3<f64>,
 }
 
-/// The network.
+/// Graph of groups and edges, with sampled configurations.
 #[derive(Debug)]
 pub(crate) struct Network<'m> {
     pub(crate) model: &'m Model,
@@ -55,17 +55,17 @@ pub(crate) struct Network<'m> {
     pub(crate) edges: Vec<Edge>,
     /// Closed configurations, home first.
     pub(crate) states: Vec<State>,
-    /// For each of them the twists that the groups can have, columns of a basis.
+    /// For each configuration: a basis of the twists of each group, as columns.
     pub(crate) twists: Vec<Vec<DMatrix<f64>>>,
-    /// Independent motions.
+    /// Number of independent motions.
     pub(crate) mobility: usize,
 }
 
-/// Configurations that are looked at besides home.
+/// Number of sampled configurations besides home.
 const SAMPLES: usize = 3;
 
 impl<'m> Network<'m> {
-    /// The network of a model; `None` after an error.
+    /// Builds the network of a model; `None` after an error.
     pub(crate) fn new(files: &Files, model: &'m Model) -> Option<Self> {
         let motion = Motion::new(model);
         let home = match motion.closed(&motion.start()) {
@@ -91,7 +91,7 @@ impl<'m> Network<'m> {
         Some(network)
     }
 
-    /// Groups with two balls and nothing else.
+    /// Marks groups whose only edges are two ball joints.
     fn find_spins(&mut self) {
         for at in 1..self.groups.len() {
             let mut own = self.edges.iter().filter(|edge| edge.groups.contains(&at));
@@ -100,7 +100,7 @@ impl<'m> Network<'m> {
         }
     }
 
-    /// Configurations near home, and what can move in them.
+    /// Samples closed configurations near home and the motions in each.
     fn sample(&mut self, motion: &Motion<'_>) {
         let mut random = Random(1);
         let home = self.states[0].clone();
@@ -124,11 +124,11 @@ impl<'m> Network<'m> {
             self.twists.push(self.groups.iter().map(of).collect());
             ranks.push(basis.ncols());
         }
-        // Home may be singular, and then has more motions than others.
+        // Home may be singular and then has additional motions; take the smallest rank.
         self.mobility = ranks.iter().copied().min().unwrap_or(0);
     }
 
-    /// A basis of the rates of the tree's coordinates that keep loops closed and rods from spinning.
+    /// Basis of the coordinate rates that keep loops closed and rods without spin.
     pub(crate) fn motions(&self, motion: &Motion<'_>, state: &State) -> DMatrix<f64> {
         if self.model.closures.is_empty() && !self.groups.iter().any(|group| group.spins) {
             let count = motion.coordinates.len();
@@ -154,7 +154,7 @@ impl<'m> Network<'m> {
         null_space(&matrix)
     }
 
-    /// The direction from one ball of a rod to the other.
+    /// Direction from one ball joint of a rod to the other.
     pub(crate) fn line(&self, group: usize, state: &State) -> Vector3<f64> {
         let own = self
             .edges
@@ -166,7 +166,8 @@ impl<'m> Network<'m> {
             .unwrap_or_else(Vector3::x)
     }
 
-    /// Where an edge is; its direction is that of a turn of the second group against the first.
+    /// Axis of an edge; it has the direction of a rotation of the second group relative to the
+    /// first.
     pub(crate) fn axis(&self, edge: &Edge, state: &State) -> Axis {
         match edge.origin {
             Origin::Joint(joint) => {
@@ -194,7 +195,7 @@ impl<'m> Network<'m> {
         }
     }
 
-    /// The name of an edge.
+    /// Name of an edge.
     pub(crate) fn edge_name(&self, edge: &Edge) -> &str {
         match edge.origin {
             Origin::Joint(joint) => &self.model.joints[joint].name,
@@ -202,13 +203,13 @@ impl<'m> Network<'m> {
         }
     }
 
-    /// The name of a group.
+    /// Name of a group.
     pub(crate) fn group_name(&self, group: usize) -> &str {
         &self.model.bodies[self.groups[group].bodies[0]].name
     }
 }
 
-/// Numbers between -1 and 1, the same ones every time.
+/// Deterministic pseudo-random numbers between −1 and 1.
 struct Random(u64);
 
 impl Random {
@@ -222,7 +223,7 @@ impl Random {
     }
 }
 
-/// The group of each body.
+/// Group of each body.
 fn grouped(model: &Model) -> Vec<usize> {
     let mut of_body: Vec<usize> = (0..model.bodies.len()).collect();
     let root = |of: &[usize], mut at: usize| {

@@ -1,10 +1,12 @@
-//! A model in fewer joints: three passive revolute joints that meet in a point, without mass between them, are a
-//! ball, and two pins on one axis are one.
+//! Simplifies a model: merges revolute joints into ball joints and drops trivial closures.
+//!
+//! Three passive revolute joints with intersecting axes and massless bodies between them are a ball
+//! joint. Two revolute joints on one axis are one.
 
 use crate::model::{ClosureKind, Inertia, Joint, Kind, Model};
 use nalgebra::Matrix3;
 
-/// Takes successive revolute joints of zero distance for balls.
+/// Merges successive revolute joints with intersecting axes into ball joints.
 pub(crate) fn join_balls(model: &mut Model) {
     while let Some([first, second, third]) = (1..model.bodies.len()).find_map(|at| ball(model, at))
     {
@@ -30,7 +32,7 @@ pub(crate) fn join_balls(model: &mut Model) {
         );
         let last = &mut model.bodies[third];
         (last.joint, last.placement, last.parent) = (Some(own), placement, parent);
-        // The two between them stay where they are, without a joint and without anything on them.
+        // The two intermediate bodies keep their pose, without joint or contents.
         for empty in [first, second] {
             model.bodies[empty].joint = None;
             model.bodies[empty].inertia = None;
@@ -39,7 +41,7 @@ pub(crate) fn join_balls(model: &mut Model) {
     }
 }
 
-/// The three bodies whose joints are a ball, the last of which stands at `at`.
+/// Three bodies whose joints form a ball joint, the last of which is `third`.
 fn ball(model: &Model, third: usize) -> Option<[usize; 3]> {
     let second = model.bodies[third].parent;
     let first = model.bodies[second].parent;
@@ -79,7 +81,7 @@ fn ball(model: &Model, third: usize) -> Option<[usize; 3]> {
     if bodies.into_iter().any(leads) {
         return None;
     }
-    // In the frame of the first body, as all joints stand at their reference.
+    // In the frame of the first body, with all joints at their reference.
     let second_in = model.bodies[second].placement;
     let third_in = second_in * model.bodies[third].placement;
     let [a, b, c] = joints.map(|joint| joint.cloned());
@@ -103,7 +105,7 @@ pub(crate) fn is_massless(inertia: Option<&Inertia>) -> bool {
     inertia.is_none_or(|inertia| inertia.mass == 0.0 && inertia.tensor == Matrix3::zeros())
 }
 
-/// Whether a joint turns without a motor and without any torque of its own.
+/// Whether a revolute joint has neither motor nor coupling nor torques.
 pub(crate) fn is_free(joint: &Joint) -> bool {
     joint.kind == Kind::Revolute
         && !joint.actuated
@@ -114,7 +116,7 @@ pub(crate) fn is_free(joint: &Joint) -> bool {
         && joint.spring.is_none()
 }
 
-/// What two names begin with, or the first of them.
+/// Common prefix of two names, or the first name.
 fn common(a: &str, b: &str) -> String {
     let same = a.chars().zip(b.chars()).take_while(|(a, b)| a == b);
     let text: String = same.map(|(a, _)| a).collect();
@@ -128,8 +130,7 @@ fn common(a: &str, b: &str) -> String {
     }
 }
 
-/// Closures that stand apart by more than their own gap hold frames; those of a weld on a body's own parent are
-/// dropped where nothing moves between them.
+/// Drops closures between bodies that are already fixed together.
 pub(crate) fn drop_closures_on_one_body(model: &mut Model) {
     let fixed = |body: usize| {
         let mut at = body;

@@ -1,4 +1,4 @@
-//! The successive angles of a ball, or of the universal joint that stands for it on a rod, and their rates.
+//! Successive angles and rates of ball joints, and of universal joints at rods.
 
 use crate::{
     assembly::{
@@ -9,21 +9,24 @@ use crate::{
 };
 use nalgebra::{DMatrix, Matrix3, Rotation3, Unit, Vector3};
 
-/// A ball as the description has it: turns about axes one after the other, the first of which is fixed on the body
-/// that it starts from. All vectors are those of the world at home.
+/// A ball joint as in the description: successive rotations, the first about a fixed axis of its
+/// base.
+///
+/// All vectors are expressed in the world frame at home.
 #[derive(Clone)]
 pub(super) struct Ball {
     from: usize,
     to: usize,
     axes: Vec<Vector3<f64>>,
-    /// Of a rod, which has two angles, the direction of its line at home.
+    /// For a rod (two angles): direction of its line at home.
     line: Option<Vector3<f64>>,
-    /// Where it starts from a rod, the universal joint of that rod. The file lets it spin, the description does not.
+    /// If the joint starts on a rod: the universal joint of that rod. The file lets the rod spin;
+    /// the description does not.
     rod: Option<Box<Ball>>,
 }
 
 impl Ball {
-    /// The ball of an edge that is gone along from one group to another, about these axes at home, behind others.
+    /// Ball joint of an edge traversed from one group to another, with axes at home.
     pub(super) fn new(
         network: &Network<'_>,
         edge: &Edge,
@@ -45,13 +48,13 @@ impl Ball {
         })
     }
 
-    /// How far a group has turned from home.
+    /// Rotation of a group from home.
     fn turned(network: &Network<'_>, group: usize, state: &State) -> Rotation3<f64> {
         let body = network.groups[group].bodies[0];
         state.poses[body].rotation * network.states[0].poses[body].rotation.inverse()
     }
 
-    /// How far the body that it starts from has turned from home, a rod as its universal joint turns it.
+    /// Rotation of the base body from home; a rod rotates as its universal joint does.
     fn start(&self, network: &Network<'_>, state: &State) -> Rotation3<f64> {
         match &self.rod {
             None => Self::turned(network, self.from, state),
@@ -59,7 +62,7 @@ impl Ball {
         }
     }
 
-    /// Its axes where they stand, and how far they have turned what it carries from home.
+    /// Current axes, and the rotation of the carried body from home.
     fn turns(&self, network: &Network<'_>, state: &State) -> (Vec<Vector3<f64>>, Rotation3<f64>) {
         let angles = self.angles(network, state);
         let mut turned = self.start(network, state);
@@ -71,7 +74,7 @@ impl Ball {
         (axes, turned)
     }
 
-    /// The angular velocity of the body that it starts from for each motion.
+    /// Angular velocity of the base body for each motion.
     fn start_rates(
         &self,
         network: &Network<'_>,
@@ -89,7 +92,7 @@ impl Ball {
         Some(all)
     }
 
-    /// Its angles, zero at home.
+    /// Angles, zero at home.
     pub(super) fn angles(&self, network: &Network<'_>, state: &State) -> Vec<f64> {
         let a = self.start(network, state);
         let b = Self::turned(network, self.to, state);
@@ -120,7 +123,7 @@ impl Ball {
         }
     }
 
-    /// The rates of its angles for each motion; `twists` has those of the groups.
+    /// Rates of its angles for each motion, given the groups' `twists`.
     pub(super) fn rates(
         &self,
         network: &Network<'_>,

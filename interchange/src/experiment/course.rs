@@ -1,43 +1,43 @@
-//! A run, gone along in small steps: whether the loops close all the way, away from singular configurations and
-//! inside the limits of all joints.
+//! Traces a run in small steps and checks closures, singularities and joint limits.
 
 use super::{guide::Guide, harmonics::Shape};
 use crate::{assembly::motion::State, model::Kind};
 use nalgebra::{DMatrix, DVector};
 
-/// What stands in the way of a run.
+/// Reason why a run is not feasible.
 pub(super) enum Trouble {
-    /// A joint beyond its limits, and how much each coordinate does to it.
+    /// A joint exceeds its limits; `share` is the contribution of each coordinate.
     Limit { joint: usize, share: Vec<f64> },
-    /// A configuration that is nearly singular, or in which the loops do not close.
+    /// The configuration is nearly singular, or the loops do not close.
     Singular,
 }
 
-/// The configurations of a run over one period.
+/// Configurations of a run over one period.
 pub(super) struct Course {
     pub(super) stops: Vec<Stop>,
 }
 
-/// A configuration of a run.
+/// One configuration of a run.
 pub(super) struct Stop {
     pub(super) state: State,
-    /// Velocities of the tree's coordinates for each coordinate's rate.
+    /// Velocities of the tree's coordinates for unit rates of the coordinates.
     pub(super) tree: DMatrix<f64>,
-    /// Those of the driven joints.
+    /// Velocities of the actuated joints for unit rates of the coordinates.
     pub(super) actuators: DMatrix<f64>,
-    /// Rates and accelerations of the coordinates, in periods of the first harmonic.
+    /// Rates and accelerations of the coordinates, with the period of the first harmonic as time
+    /// unit.
     pub(super) rates: DVector<f64>,
     pub(super) accelerations: DVector<f64>,
 }
 
-/// Largest speed of a joint of which the file tells none, rad/s and m/s.
+/// Default speed limit, rad/s and m/s, if the file gives none.
 const USUAL: [f64; 2] = [6.0, 1.0];
-/// Steps of a period, and those from home to its start.
+/// Steps of one period, and steps from home to its start.
 const STEPS: u32 = 120;
 const APPROACH: u32 = 8;
 
 impl Course {
-    /// The run of these shapes and sizes about home.
+    /// Traces the run with given shapes and amplitudes about home.
     pub(super) fn along(
         guide: &Guide<'_, '_>,
         shapes: &[Shape],
@@ -63,7 +63,7 @@ impl Course {
             state = guide
                 .step(&state, &rates, &(&next - &now))
                 .ok_or(Trouble::Singular)?;
-            // Joints of the file are told where they stand, so that small errors do not add up.
+            // Read positions back from the joints, so that small errors do not accumulate.
             let positions = guide.positions(&state).into_iter().enumerate();
             now =
                 DVector::from_iterator(sizes.len(), positions.map(|(at, p)| p.unwrap_or(next[at])));
@@ -93,7 +93,7 @@ impl Course {
         Ok(Self { stops })
     }
 
-    /// The largest speed of any joint as a part of that which it may have, at one period in a second.
+    /// Largest ratio of joint speed to its limit, at one period per second.
     pub(super) fn fastest(&self, guide: &Guide<'_, '_>) -> f64 {
         let joints = &guide.network.model.joints;
         let coordinates = &guide.motion.coordinates;
@@ -113,7 +113,7 @@ impl Course {
     }
 }
 
-/// How much each coordinate moves a joint where the run meets its limit.
+/// Contribution of each coordinate to the motion of a joint at its limit.
 fn share(guide: &Guide<'_, '_>, tree: &DMatrix<f64>, joint: usize, sizes: &[f64]) -> Vec<f64> {
     let follow = guide.network.model.joints[joint].follow;
     let leader = follow.map_or(joint, |f| f.joint);

@@ -1,4 +1,4 @@
-//! Which motion of the file's tree goes with a motion of the coordinates.
+//! Maps motions of the description's coordinates to motions of the file's tree.
 
 use super::balls::Ball;
 use crate::{
@@ -13,35 +13,35 @@ use crate::{
 };
 use nalgebra::{DMatrix, DVector};
 
-/// A robot that is led along its coordinates.
+/// Kinematics of a robot driven along its coordinates.
 pub(super) struct Guide<'g, 'm> {
     pub(super) network: &'g Network<'m>,
     layout: &'g Layout,
-    /// Balls of the skeleton, by their edge.
+    /// Ball joints of the skeleton, by edge.
     balls: Vec<(usize, Ball)>,
     pub(super) motion: Motion<'m>,
-    /// Driven joints of the file.
+    /// Actuated joints of the file.
     pub(super) actuators: Vec<usize>,
-    /// Smallest and largest position of each joint, home between them.
+    /// Limits of each joint, extended if home is at a limit.
     pub(super) limits: Vec<Option<[f64; 2]>>,
     smallest: [f64; 2],
 }
 
-/// Velocities in a configuration for a unit rate of each coordinate.
+/// Velocities in a configuration for unit rates of the coordinates.
 pub(super) struct Rates {
-    /// Of the tree's coordinates.
+    /// Velocities of the tree's coordinates.
     pub(super) tree: DMatrix<f64>,
-    /// Of the driven joints.
+    /// Velocities of the actuated joints.
     pub(super) actuators: DMatrix<f64>,
 }
 
-/// How much nearer to a singular configuration than home a motion may come.
+/// Smallest admissible ratio of singular values to those at home.
 const NEARER: f64 = 0.35;
-/// A home that is nearer to a limit than this stands on it, rad or m.
+/// Distance from a limit within which home counts as at the limit, rad or m.
 const AT_LIMIT: f64 = 1e-3;
 
 impl<'g, 'm> Guide<'g, 'm> {
-    /// A guide; none where the coordinates do not determine the motion at home.
+    /// Creates a guide; `None` if the coordinates do not determine the motion at home.
     pub(super) fn new(network: &'g Network<'m>, layout: &'g Layout, plan: &Plan) -> Option<Self> {
         let model = network.model;
         let limits = model.joints.iter().enumerate().map(|(at, joint)| {
@@ -74,18 +74,18 @@ impl<'g, 'm> Guide<'g, 'm> {
         (own.smallest[0] > 1e-9).then_some(own)
     }
 
-    /// How many coordinates there are.
+    /// Number of coordinates.
     pub(super) fn count(&self) -> usize {
         self.network.mobility
     }
 
-    /// Velocities in a configuration; none where it is nearly singular.
+    /// Velocities in a configuration; `None` if it is nearly singular.
     pub(super) fn rates(&self, state: &State) -> Option<Rates> {
         let (rates, sizes) = self.raw(state)?;
         (sizes[0] >= self.smallest[0] && sizes[1] >= self.smallest[1]).then_some(rates)
     }
 
-    /// Velocities, and the smallest singular values of coordinates and of actuators.
+    /// Velocities, and the smallest singular values of coordinates and actuators.
     fn raw(&self, state: &State) -> Option<(Rates, [f64; 2])> {
         let basis = self.network.motions(&self.motion, state);
         let bodies = self.motion.twists(state);
@@ -119,7 +119,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Some((Rates { tree, actuators }, [size, driven]))
     }
 
-    /// The rates of the coordinates for each motion.
+    /// Rates of the coordinates for each motion.
     fn own_rates(&self, state: &State, groups: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for step in &self.layout.coordinates() {
@@ -138,13 +138,14 @@ impl<'g, 'm> Guide<'g, 'm> {
         Some(DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]))
     }
 
-    /// The configuration behind a step of the coordinates; none where the loops do not close there.
+    /// Configuration after a step of the coordinates; `None` if the loops do not close.
     pub(super) fn step(&self, state: &State, rates: &Rates, by: &DVector<f64>) -> Option<State> {
         let moved = self.motion.moved_by(state, &(&rates.tree * by));
         self.motion.closed(&moved).ok()
     }
 
-    /// How far from home the coordinates stand; of closures, which are no joints of the file, nothing is told.
+    /// Displacement of the coordinates from home; `None` for closures, which are no joints of the
+    /// file.
     pub(super) fn positions(&self, state: &State) -> Vec<Option<f64>> {
         let of = |&(index, from): &(usize, usize)| {
             if let Some((_, ball)) = self.balls.iter().find(|(edge, _)| *edge == index) {
@@ -168,7 +169,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.layout.coordinates().iter().flat_map(of).collect()
     }
 
-    /// The joint that stands beyond its limits.
+    /// First joint beyond its limits.
     pub(super) fn beyond(&self, state: &State) -> Option<usize> {
         let is_beyond = |joint: usize| {
             self.limits[joint].is_some_and(|[low, high]| {
@@ -179,13 +180,13 @@ impl<'g, 'm> Guide<'g, 'm> {
         (0..self.limits.len()).find(|&joint| is_beyond(joint))
     }
 
-    /// The numbers of driven joints, in another order.
+    /// Indices of actuated joints in another order.
     pub(super) fn actuators_in_order(&self, joints: &[usize]) -> Vec<usize> {
         let at = |joint: &usize| self.actuators.iter().position(|own| own == joint);
         joints.iter().filter_map(at).collect()
     }
 
-    /// Limits that home stands on, and which the motion therefore passes.
+    /// Notes on joint limits at home, which the motion therefore passes.
     pub(super) fn notes(&self) -> Vec<String> {
         let joints = self.network.model.joints.iter().enumerate();
         let passed =
@@ -203,7 +204,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 }
 
-/// The balls of the skeleton with the axes that the description gives them; none where it has others.
+/// Ball joints of the skeleton with the description's axes; `None` if the axes do not match.
 fn balls(network: &Network<'_>, layout: &Layout, plan: &Plan) -> Option<Vec<(usize, Ball)>> {
     let mut axes = plan.axes.iter();
     let mut balls = Vec::new();

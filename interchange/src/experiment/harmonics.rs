@@ -1,16 +1,16 @@
-//! Sums of sines about home whose largest value is known.
+//! Sums of sines about home, normalised to a known amplitude.
 
 use super::Term;
 use std::f64::consts::TAU;
 
-/// Periods of the first harmonic in a run.
+/// Number of periods of the first harmonic in a run.
 pub(super) const PERIODS: f64 = 5.0;
-/// Sizes of the harmonics beside each other: higher ones are smaller, so that velocities stay small.
+/// Relative amplitudes of the harmonics; higher ones are smaller to limit velocities.
 const SIZES: [f64; 5] = [1.0, 0.7, 0.5, 0.35, 0.3];
-/// Instants of a period at which its largest value is sought.
+/// Samples of a period for finding the largest value.
 const INSTANTS: u32 = 360;
 
-/// A sum of sines of largest magnitude 1.
+/// Sum of sines with largest magnitude 1.
 #[derive(Debug, Clone)]
 pub(super) struct Shape {
     /// Amplitude and phase (whole degrees) of each harmonic.
@@ -18,8 +18,9 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The sum of a coordinate in a run: phases are multiples of the golden ratio, which are spread evenly however
-    /// many there are.
+    /// Shape of a coordinate in a run; phases are multiples of the golden ratio.
+    ///
+    /// Such phases are spread evenly for any number of harmonics.
     pub(super) fn new(coordinate: usize, run: usize) -> Self {
         let golden = 0.618_033_988_749_894_9;
         let raw = SIZES.iter().enumerate().map(|(at, size)| {
@@ -39,7 +40,7 @@ impl Shape {
         own
     }
 
-    /// Value, first and second derivative by the part of a period that is over.
+    /// Value, first and second derivative at a fraction of the period.
     pub(super) fn at(&self, part: f64) -> (f64, f64, f64) {
         let mut sum = (0.0, 0.0, 0.0);
         let mut rate = 0.0;
@@ -53,7 +54,7 @@ impl Shape {
         sum
     }
 
-    /// The terms of a description for a largest displacement in rad or m.
+    /// Terms of the description for an amplitude in rad or m.
     pub(super) fn terms(&self, name: &str, is_angle: bool, size: f64) -> Vec<Term> {
         let unit = if is_angle { size.to_degrees() } else { size };
         let term = |(at, (amplitude, phase)): (usize, &(f64, f64))| Term {
@@ -67,7 +68,7 @@ impl Shape {
     }
 }
 
-/// A number with so many digits.
+/// Rounds a number to `digits` significant digits.
 pub(super) fn ready(value: f64, digits: usize) -> f64 {
     let text = format!("{value:.*e}", digits - 1);
     text.parse().unwrap_or(value)

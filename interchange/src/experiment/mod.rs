@@ -1,5 +1,7 @@
-//! A virtual experiment for a robot that came without one: motions inside the limits of its joints that keep off
-//! singular configurations, and noise in proportion to its torques.
+//! Designs a virtual experiment for a robot whose file has none.
+//!
+//! Motions stay within joint limits and away from singular configurations. Noise is proportional to
+//! the torques.
 
 mod balls;
 mod course;
@@ -16,24 +18,24 @@ use course::{Course, Trouble};
 use guide::Guide;
 use harmonics::{PERIODS, Shape, ready};
 
-/// What `overact simulate` needs of a robot.
+/// Virtual experiment for `overact simulate`.
 #[derive(Debug)]
 pub(crate) struct Experiment {
     /// Frequency of the first harmonic, Hz.
     pub(crate) fundamental: f64,
     /// Duration of each run, s.
     pub(crate) duration: f64,
-    /// The runs to identify from, and the last one, which is held out.
+    /// Training runs, and as the last one the validation run.
     pub(crate) runs: [Vec<Term>; RUNS],
     /// Resolution of each actuator's encoder, rad or m, in the order of the description.
     pub(crate) encoders: Vec<f64>,
     /// Standard deviation of each actuator's measured torque, N m or N.
     pub(crate) noise: Vec<f64>,
-    /// What a reader has to know of it.
+    /// Notes for the reader of the description.
     pub(crate) notes: Vec<String>,
 }
 
-/// A harmonic of a coordinate.
+/// One harmonic of a coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Term {
     pub(crate) coordinate: String,
@@ -45,25 +47,25 @@ pub(crate) struct Term {
     pub(crate) phase: f64,
 }
 
-/// The held-out run is that much faster than the other.
+/// Ratio of the validation run's speed to that of the training runs.
 pub(crate) const FASTER: f64 = 1.2;
 
-/// Runs, the last of which is held out.
+/// Number of runs, the last of which is the validation run.
 const RUNS: usize = 3;
-/// Most coordinates for which runs are sought.
+/// Largest number of coordinates for which runs are designed.
 const MOST: usize = 40;
-/// Largest displacement of a coordinate, rad and m.
+/// Largest amplitude of a coordinate, rad and m.
 const LARGEST: [f64; 2] = [0.5, 0.1];
-/// Smallest one below which there is no room for a motion.
+/// Smallest useful amplitude, rad or m.
 const SMALLEST: f64 = 4e-3;
-/// Largest ratio of the inertias that the coordinates feel along a run.
+/// Largest admissible ratio of the mass matrix along a run to that at its start.
 const GROWTH: f64 = 8.0;
-/// How often a motion that meets a limit is made smaller.
+/// Largest number of amplitude reductions.
 const TRIES: usize = 30;
 /// Frequencies of the first harmonic, Hz.
 const FUNDAMENTALS: [f64; 7] = [1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05];
 
-/// An experiment, or why there is none.
+/// Designs an experiment; the error is the reason why there is none.
 pub(crate) fn design(
     network: &Network<'_>,
     layout: &Layout,
@@ -92,7 +94,7 @@ pub(crate) fn design(
     let mut tries = 0;
     while courses.len() < RUNS {
         let reason = match Course::along(&guide, &shapes[courses.len()], &sizes) {
-            // A tree has no configuration in which a small motion becomes a large one.
+            // In a serial robot, no configuration turns small motions into large ones.
             Ok(course) if is_tree || torques::growth(&guide, &course) < GROWTH => {
                 courses.push(course);
                 continue;
@@ -110,7 +112,7 @@ pub(crate) fn design(
                 "a singular configuration is near".to_owned()
             }
         };
-        // A smaller motion is another one: both are gone along again.
+        // A smaller amplitude is another motion, so all runs are traced again.
         courses.clear();
         tries += 1;
         if tries > TRIES || sizes.iter().all(|size| *size < SMALLEST) {
@@ -153,7 +155,7 @@ pub(crate) fn design(
     })
 }
 
-/// The coordinates of the description: joints of its skeleton, and whether they are angles.
+/// Coordinates of the description: names of skeleton joints, and whether they are angles.
 fn coordinates(plan: &Plan) -> Vec<(String, bool)> {
     let trees = plan.legs.iter().enumerate();
     let trees = trees.filter(|(_, leg)| leg.end.is_none());
@@ -172,7 +174,7 @@ fn coordinates(plan: &Plan) -> Vec<(String, bool)> {
     trees.flat_map(of_tree).collect()
 }
 
-/// The joints of the file that are driven, in the order of the description.
+/// Actuated joints of the file, in the order of the description.
 fn actuators(plan: &Plan) -> Vec<usize> {
     let joints = plan.legs.iter().flat_map(|leg: &Leg| &leg.joints);
     joints
@@ -181,7 +183,7 @@ fn actuators(plan: &Plan) -> Vec<usize> {
         .collect()
 }
 
-/// Makes those coordinates smaller that move a joint most towards its limit.
+/// Reduces the coordinates that contribute most to a joint's limit violation.
 fn shorten(sizes: &mut [f64], share: &[f64]) {
     let largest = share.iter().copied().fold(0.0, f64::max);
     for (size, share) in sizes.iter_mut().zip(share) {

@@ -1,4 +1,4 @@
-//! How large torques are along a run: inertia and weight, shared out to the motors, and their friction.
+//! Typical motor torques along a run: inertia, gravity and friction.
 
 use super::{
     course::{Course, Stop},
@@ -7,8 +7,9 @@ use super::{
 use crate::model::Inertia;
 use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
 
-/// Root mean square of each driven joint's torque at a frequency of the first harmonic, Hz. None where the masses and
-/// inertias leave an acceleration free.
+/// Root mean square torque of each actuated joint for a fundamental frequency in Hz.
+///
+/// `None` if the masses and inertias leave an acceleration undetermined.
 pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) -> Option<Vec<f64>> {
     let model = guide.network.model;
     if guide.actuators.is_empty() {
@@ -21,7 +22,7 @@ pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) ->
             return None;
         }
         let forces = mass * &stop.accelerations * fundamental.powi(2) - weight;
-        // Of all torques that do this the smallest, as a controller without internal torques has them.
+        // Least-norm torques, as of a controller without internal torques.
         let shared = stop.actuators.transpose().pseudo_inverse(1e-12).ok()? * forces;
         for (sum, torque) in sums.iter_mut().zip(shared.iter()) {
             *sum += torque * torque;
@@ -34,13 +35,15 @@ pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) ->
         .map(|(&joint, sum)| (sum / count).sqrt() + model.joints[joint].friction)
         .collect();
     let largest = sizes.iter().copied().fold(0.0, f64::max);
-    // A motor without any torque still has a sensor with noise.
+    // A motor without torque still has sensor noise.
     let noisy = sizes.iter().map(|size| size.max(1e-3 * largest).max(1e-6));
     Some(noisy.collect())
 }
 
-/// By how much the inertia that the coordinates feel grows along a run, in the direction in which it grows most: a
-/// controller is laid out for a robot that stays about the same. One where masses leave an acceleration free.
+/// Largest growth of the reduced mass matrix along a run (generalised eigenvalue).
+///
+/// Controllers are designed for a robot of nearly constant inertia. The result is 1 if the mass
+/// matrix is singular.
 pub(super) fn growth(guide: &Guide<'_, '_>, course: &Course) -> f64 {
     let masses = course.stops.iter().map(|stop| reduced(guide, stop).0);
     let masses: Vec<DMatrix<f64>> = masses.collect();
@@ -60,7 +63,7 @@ pub(super) fn growth(guide: &Guide<'_, '_>, course: &Course) -> f64 {
     largest / smallest.max(f64::MIN_POSITIVE)
 }
 
-/// Inertia and weight that the coordinates feel.
+/// Reduced mass matrix and gravity forces of the coordinates.
 fn reduced(guide: &Guide<'_, '_>, stop: &Stop) -> (DMatrix<f64>, DVector<f64>) {
     let model = guide.network.model;
     let gravity = Vector3::from(model.gravity);
@@ -84,7 +87,7 @@ fn reduced(guide: &Guide<'_, '_>, stop: &Stop) -> (DMatrix<f64>, DVector<f64>) {
     (tree.transpose() * mass * tree, tree.transpose() * weight)
 }
 
-/// Whether every acceleration needs a force.
+/// Whether a mass matrix is positive definite.
 fn is_positive(mass: &DMatrix<f64>) -> bool {
     let scale: Vec<f64> = mass.diagonal().iter().map(|v| v.sqrt()).collect();
     let scaled = DMatrix::from_fn(mass.nrows(), mass.ncols(), |i, j| {
@@ -93,7 +96,7 @@ fn is_positive(mass: &DMatrix<f64>) -> bool {
     scaled.iter().all(|v| v.is_finite()) && scaled.symmetric_eigenvalues().min() > 1e-9
 }
 
-/// Inertia about the world's origin of a body that is seen from there, for a velocity of the point there and a rate.
+/// Spatial inertia about the world origin, for (velocity, angular velocity).
 fn spatial(inertia: &Inertia) -> Matrix6<f64> {
     let mut all = Matrix6::zeros();
     let cross = inertia.centre.coords.cross_matrix() * inertia.mass;

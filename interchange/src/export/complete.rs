@@ -1,16 +1,17 @@
-//! Moments that the robot's motion does not feel, chosen so that the others belong to a body that can be.
+//! Completes inertial parameters that the motion does not determine to a consistent body.
 //!
-//! A body can be where its pseudo-inertia is positive: with Σ = ½ tr(I) 1 - I, the matrix [Σ, h; hᵀ, m] of second,
-//! first and zeroth moments. Of what an identification leaves open the nearest to the file's values is sought, by
-//! projections in turn on the moments that are given and on positive matrices.
+//! A body is physically consistent if its pseudo-inertia [Σ, h; hᵀ, m] with Σ = ½ tr(I) 1 − I is
+//! positive definite (Wensing et al. 2018). Among the free parameters, the values nearest to the
+//! file's are sought. The algorithm alternates projections onto the given parameters and onto
+//! positive definite matrices.
 
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen};
 
-/// Projections at most.
+/// Largest number of projections.
 const ROUNDS: usize = 20_000;
-/// Smallest eigenvalue that is aimed at, as a part of the mean.
+/// Smallest eigenvalue to reach, relative to the mean eigenvalue.
 const FLOOR: f64 = 1e-4;
-/// Places of the ten independent entries.
+/// Indices of the ten independent entries of the pseudo-inertia.
 const ENTRIES: [(usize, usize); 10] = [
     (0, 0),
     (0, 1),
@@ -24,10 +25,11 @@ const ENTRIES: [(usize, usize); 10] = [
     (3, 3),
 ];
 
-/// The ten parameters xx, xy, xz, yy, yz, zz, mx, my, mz and m with the values that are fixed, the others such that a
-/// body can have them. None where no such values were found.
+/// Changes the parameters that are not fixed so that the body is physically consistent.
+///
+/// The order is xx, xy, xz, yy, yz, zz, mx, my, mz, m. `None` if no such values were found.
 pub(super) fn completed(values: &[f64; 10], is_fixed: [bool; 10]) -> Option<[f64; 10]> {
-    // Lengths are measured in units of the body's own, so that all entries have one size.
+    // Scale lengths by the body's own size, so that all entries have similar magnitude.
     let trace = values[0].abs() + values[3].abs() + values[5].abs();
     let first = values[6..9]
         .iter()
@@ -47,7 +49,7 @@ pub(super) fn completed(values: &[f64; 10], is_fixed: [bool; 10]) -> Option<[f64
         _ => mass,
     };
     let fixed: Vec<usize> = (0..10).filter(|&at| is_fixed[at]).collect();
-    // Each fixed parameter as a sum of entries, off-diagonal ones counted twice in lengths.
+    // Each fixed parameter as a sum of entries; off-diagonal entries count twice in the norm.
     let rows = DMatrix::from_fn(fixed.len(), 10, |i, j| row(fixed[i])[j] / weight(j));
     let right = DVector::from_fn(fixed.len(), |i, _| values[fixed[i]] / unit(fixed[i]));
     let inverse = rows.clone().pseudo_inverse(1e-12).ok()?;
@@ -80,7 +82,7 @@ pub(super) fn completed(values: &[f64; 10], is_fixed: [bool; 10]) -> Option<[f64
     None
 }
 
-/// Off-diagonal entries stand in a symmetric matrix twice.
+/// Weight of an entry in the Frobenius norm: off-diagonal entries occur twice.
 fn weight(entry: usize) -> f64 {
     let (i, j) = ENTRIES[entry];
     if i == j {
@@ -90,7 +92,7 @@ fn weight(entry: usize) -> f64 {
     }
 }
 
-/// A parameter as a sum of the entries of the pseudo-inertia.
+/// Coefficients of a parameter in the entries of the pseudo-inertia.
 fn row(parameter: usize) -> [f64; 10] {
     let mut row = [0.0; 10];
     match parameter {
@@ -150,7 +152,8 @@ mod tests {
 
     #[test]
     fn what_is_open_makes_a_body_of_the_rest() {
-        // A moment about z that is larger than the file's two others together, which nobody feels.
+        // A moment about z that exceeds the sum of the file's other two moments, which the motion
+        // does not determine.
         let values = [1e-3, 0.0, 0.0, 1e-3, 0.0, 5e-3, 0.02, 0.01, 0.0, 0.05];
         let mut is_fixed = [false; 10];
         for at in [5, 6, 7] {

@@ -1,10 +1,10 @@
-//! Parameters in MJCF: attributes of `<inertial>` and `<joint>`.
+//! Writes parameters to MJCF: attributes of `<inertial>` and `<joint>`.
 
 use super::patch::{Patch, numbers};
 use crate::model::Inertia;
 use roxmltree::Node;
 
-/// The attribute of a joint that a parameter is.
+/// Attribute of `<joint>` for a parameter.
 pub(super) fn attribute(symbol: &str) -> Option<&'static str> {
     Some(match symbol {
         "ia" => "armature",
@@ -15,7 +15,7 @@ pub(super) fn attribute(symbol: &str) -> Option<&'static str> {
     })
 }
 
-/// A body's mass, centre and inertia about it in the axes of the body, which `fullinertia` says without a turn.
+/// Writes a body's inertia as mass, position and `fullinertia`, which needs no rotation.
 pub(super) fn inertia(patch: &mut Patch, text: &str, body: Node<'_, '_>, own: &Inertia) {
     let Some(inertial) = body.children().find(|child| child.has_tag_name("inertial")) else {
         return;
@@ -40,7 +40,7 @@ pub(super) fn inertia(patch: &mut Patch, text: &str, body: Node<'_, '_>, own: &I
     }
 }
 
-/// A parameter of a joint.
+/// Writes the parameters of a joint.
 pub(super) fn joint(patch: &mut Patch, joint: Node<'_, '_>, values: &[(&'static str, f64)]) {
     for (name, value) in values {
         patch.set(joint, name, &numbers(&[*value]));

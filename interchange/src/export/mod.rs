@@ -1,7 +1,7 @@
-//! The export of identified parameters into the file that a description was made of.
+//! Export of identified parameters to the file that a description was imported from.
 //!
-//! The file is imported again, which tells where in it each body and joint of the description stands, and what it
-//! says of them; what differs from that is changed in the text, and nothing else.
+//! The file is imported again to find the location and value of each body and joint. Only text of
+//! values that differ is changed.
 
 mod complete;
 mod mjcf;
@@ -24,28 +24,31 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Files with other parameters.
+/// Files with changed parameters.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Exported {
-    /// The format of the file.
+    /// Format of the file.
     pub format: Format,
-    /// The text of the file itself.
+    /// Text of the main file.
     pub text: String,
-    /// Files that it includes and in which something changed, with their paths and new texts.
+    /// Changed included files, with their paths and new texts.
     pub included: Vec<(PathBuf, String)>,
-    /// All files that were read.
+    /// Paths of all files read.
     pub inputs: Vec<PathBuf>,
-    /// Bodies and joints of which the file says something else now.
+    /// Names of the changed bodies and joints.
     pub changed: Vec<String>,
-    /// What the file has no place for, or can't be; sentences.
+    /// Parameters that the file cannot express or that are not physically consistent, as sentences.
     pub notes: Vec<String>,
 }
 
-/// Puts parameters, a TOML text as `overact identify --parameters` writes it, into the file of a robot. Options are
-/// those of the import, since names of parameters depend on them; parameters that are not given stay as they are.
+/// Writes parameters into a robot file.
+///
+/// `parameters` is a TOML file as `overact identify --parameters` writes it. The options must be
+/// those of the import, because parameter names depend on them. Parameters that are not given keep
+/// their values.
 ///
 /// # Errors
-/// All that is wrong with one of the files, each at its line.
+/// All errors of one of the files, each with its line.
 pub fn export(path: &Path, parameters: &Path, options: &Options) -> Result<Exported, Errors> {
     let files = Files::default();
     let exported = exported(&files, path, parameters, options);
@@ -68,7 +71,7 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
         return None;
     }
     let robot = Robot::new(files, &model, options)?;
-    // Names of parameters do not depend on a virtual experiment.
+    // Parameter names do not depend on the virtual experiment.
     let text = robot
         .toml(files, &Err("none is needed".to_owned()), path, options)
         .text;
@@ -103,7 +106,7 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
     })
 }
 
-/// The parameters that a file gives, by the names of the description.
+/// Reads the parameter values by their names in the description.
 fn values(files: &Files, parameters: &Path, toml: &str) -> Option<BTreeMap<String, f64>> {
     let file = files.read(parameters, None)?;
     let source = Source::new(files.name(file), files.text(file));
@@ -128,7 +131,7 @@ fn values(files: &Files, parameters: &Path, toml: &str) -> Option<BTreeMap<Strin
     }
 }
 
-/// What shall change, by the place of the element that says it.
+/// Changes to make, by the location of the element.
 #[derive(Debug, Default)]
 struct Wanted {
     inertias: BTreeMap<(usize, usize), crate::model::Inertia>,
@@ -141,15 +144,15 @@ struct Export<'e, 'm> {
     network: &'e Network<'m>,
     format: Format,
     values: BTreeMap<String, f64>,
-    /// Names of parameters that found their place, or stay as they are.
+    /// Names of parameters that are exported or unchanged.
     told: BTreeSet<String>,
     wanted: Wanted,
     notes: Vec<String>,
 }
 
-/// Moments and mass of a body in the order of their columns.
+/// Inertial parameters of a body in the order of their columns.
 const INERTIAL: [&str; 10] = ["xx", "xy", "xz", "yy", "yz", "zz", "mx", "my", "mz", "m"];
-/// Part of the largest moment of its kind below which a difference is rounding.
+/// Relative difference that counts as rounding.
 const SAME: f64 = 1e-13;
 
 impl Export<'_, '_> {
@@ -167,7 +170,7 @@ impl Export<'_, '_> {
         }
     }
 
-    /// The body of a joint, where its parameters differ from those of the file.
+    /// Compares the inertia of a joint's body with the file's and records changes.
     fn body(&mut self, joint: &Joint, of: &str) {
         let Some((group, frame)) = joint.carries else {
             return;
@@ -233,7 +236,7 @@ impl Export<'_, '_> {
         }
     }
 
-    /// Friction, rotor and spring of a joint, where they differ from those of the file.
+    /// Compares friction, rotor inertia and spring with the file's and records changes.
     fn torques(&mut self, joint: &Joint, of: &str) {
         let Some(own) = joint.of else { return };
         let file_joint = &self.network.model.joints[own];
@@ -267,7 +270,7 @@ impl Export<'_, '_> {
         }
     }
 
-    /// What the file has no place for.
+    /// Note on parameters that the file cannot express.
     fn left_out(&self) -> Option<String> {
         let left = self
             .values
@@ -286,7 +289,7 @@ impl Export<'_, '_> {
             .then(|| format!("{format} has no place for {}: left out.", left.join(", ")))
     }
 
-    /// The texts of the files in which something changes; `None` after an error.
+    /// Texts of the changed files; `None` after an error.
     fn patched(&self) -> Option<BTreeMap<usize, String>> {
         let keys = self.wanted.inertias.keys().chain(self.wanted.joints.keys());
         let files: BTreeSet<usize> = keys.map(|(file, _)| *file).collect();
@@ -327,7 +330,7 @@ impl Export<'_, '_> {
     }
 }
 
-/// Whether two sets of parameters are one but for rounding.
+/// Whether two parameter sets are equal up to rounding.
 fn is_same(before: &[f64; 10], after: &[f64; 10]) -> bool {
     [0..6, 6..9, 9..10].into_iter().all(|kind| {
         let scale = before[kind.clone()]

@@ -1,22 +1,22 @@
-//! Changes of a file's text that leave everything else as it is, to the byte.
+//! Text edits that leave the rest of a file unchanged, byte for byte.
 
 use crate::geometry::digits::fine;
 use roxmltree::Node;
 use std::ops::Range;
 
-/// Texts in the place of others of a file.
+/// Replacements of byte ranges.
 #[derive(Debug, Default)]
 pub(super) struct Patch {
     edits: Vec<(Range<usize>, String)>,
 }
 
 impl Patch {
-    /// Whether nothing changes.
+    /// Whether there are no edits.
     pub(super) fn is_empty(&self) -> bool {
         self.edits.is_empty()
     }
 
-    /// The text with all changes.
+    /// Text with all edits applied.
     pub(super) fn applied(mut self, text: &str) -> String {
         self.edits
             .sort_by_key(|(range, _)| (range.start, range.end));
@@ -35,7 +35,7 @@ impl Patch {
         self.edits.push((range, with.into()));
     }
 
-    /// Sets an attribute; where the element has none of the name, behind its last one.
+    /// Sets an attribute, or adds it after the element's last attribute.
     pub(super) fn set(&mut self, node: Node<'_, '_>, name: &str, value: &str) {
         match node.attribute_node(name) {
             Some(attribute) => self.replace(attribute.range_value(), value),
@@ -48,7 +48,7 @@ impl Patch {
         }
     }
 
-    /// Puts an attribute in the place of one of another name.
+    /// Replaces an attribute by one with another name.
     pub(super) fn rename(&mut self, node: Node<'_, '_>, from: &str, to: &str, value: &str) {
         match node.attribute_node(from) {
             Some(attribute) => self.replace(attribute.range(), format!("{to}=\"{value}\"")),
@@ -56,7 +56,7 @@ impl Patch {
         }
     }
 
-    /// Takes an attribute out, with the blanks before it.
+    /// Removes an attribute and the blanks before it.
     pub(super) fn remove(&mut self, text: &str, node: Node<'_, '_>, name: &str) {
         let Some(attribute) = node.attribute_node(name) else {
             return;
@@ -66,7 +66,7 @@ impl Patch {
         self.replace(before..range.end, "");
     }
 
-    /// Adds an element behind the last one in another, on a line of its own where that one has such.
+    /// Appends a child element, on its own line if the other children have theirs.
     pub(super) fn append(&mut self, text: &str, node: Node<'_, '_>, element: &str) {
         match node.children().rfind(Node::is_element) {
             Some(last) => {
@@ -98,7 +98,7 @@ impl Patch {
     }
 }
 
-/// The element that begins at a byte.
+/// Element whose start tag begins at a byte offset.
 pub(super) fn element_at<'a, 'i>(
     document: &'a roxmltree::Document<'i>,
     start: usize,
@@ -107,7 +107,7 @@ pub(super) fn element_at<'a, 'i>(
     all.find(|node| node.is_element() && node.range().start == start)
 }
 
-/// Numbers with blanks between them, as short as their own rounding allows.
+/// Formats numbers with blanks between them, rounded as far as their precision allows.
 pub(super) fn numbers(values: &[f64]) -> String {
     let scale = values.iter().copied().map(f64::abs).fold(0.0, f64::max);
     let shown: Vec<String> = values.iter().map(|value| fine(*value, scale)).collect();

@@ -1,4 +1,4 @@
-//! The parameters of bodies that are one in the description, shared out to those of the file.
+//! Distributes the inertia of a rigid group over the bodies of the file.
 
 use crate::{
     assembly::network::Network,
@@ -6,13 +6,13 @@ use crate::{
 };
 use nalgebra::{Matrix3, Point3, Vector3};
 
-/// What a file shall say of a body, in the body's own frame.
+/// New inertia of a body, in the body's own frame.
 pub(super) struct Share {
     pub(super) body: usize,
     pub(super) inertia: Inertia,
 }
 
-/// The inertia that ten parameters about a frame say; none where a mass of zero has moments.
+/// Inertia from ten parameters about a frame; `None` if a zero mass has moments.
 pub(super) fn inertia(parameters: [f64; 10], frame: &Pose) -> Option<Inertia> {
     let [xx, xy, xz, yy, yz, zz, mx, my, mz, mass] = parameters;
     let first = Vector3::new(mx, my, mz);
@@ -37,9 +37,13 @@ pub(super) fn inertia(parameters: [f64; 10], frame: &Pose) -> Option<Inertia> {
     )
 }
 
-/// Shares a group's inertia, seen from the world at home, out to its bodies. The others keep what the file says of
-/// them and the heaviest takes the rest; where it can't, they grow with the whole; where that can't be either, it is
-/// all of the heaviest. Tells whether the last had to be.
+/// Distributes a group's inertia, in the world frame at home, over its bodies.
+///
+/// 1. The heaviest body takes the difference, and the others keep the file's inertia.
+/// 2. If its inertia is then not physically consistent, all bodies are scaled.
+/// 3. If that fails too, the heaviest body takes the whole inertia.
+///
+/// The flag reports case 3.
 pub(super) fn among(network: &Network<'_>, group: usize, whole: &Inertia) -> (Vec<Share>, bool) {
     let model = network.model;
     let own: Vec<(usize, Inertia)> = network.groups[group]
@@ -78,14 +82,15 @@ pub(super) fn among(network: &Network<'_>, group: usize, whole: &Inertia) -> (Ve
     (Vec::new(), false)
 }
 
-/// Whether a mass can be so: positive, and its principal moments no more than the sum of the others.
+/// Whether an inertia is physically consistent: positive mass and triangle inequality of the
+/// moments.
 pub(super) fn is_body(inertia: &Inertia) -> bool {
     let moments = inertia.tensor.symmetric_eigenvalues();
     let (sum, largest) = (moments.sum(), moments.max());
     inertia.mass > 0.0 && moments.min() >= -1e-9 * largest && 2.0 * largest <= sum * (1.0 + 1e-9)
 }
 
-/// The inertia of a mass in a point about the origin.
+/// Inertia of a point mass about the origin.
 fn point(mass: f64, at: &Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() * at.norm_squared() - at * at.transpose()) * mass
 }

@@ -1,10 +1,10 @@
-//! Parameters in URDF: elements of `<inertial>`, and `<dynamics>` of joints.
+//! Writes parameters to URDF: elements of `<inertial>` and `<dynamics>` of joints.
 
 use super::patch::{Patch, numbers};
 use crate::{files::Files, model::Inertia, urdf, xml};
 use roxmltree::Node;
 
-/// The attribute of `<dynamics>` that a parameter is.
+/// Attribute of `<dynamics>` for a parameter.
 pub(super) fn attribute(symbol: &str) -> Option<&'static str> {
     Some(match symbol {
         "fv" => "damping",
@@ -13,7 +13,7 @@ pub(super) fn attribute(symbol: &str) -> Option<&'static str> {
     })
 }
 
-/// A link's mass, centre and inertia about it; the turn of the frame that the file gives it stays.
+/// Writes a link's inertia; the rotation of the file's inertial frame is kept.
 pub(super) fn inertia(
     patch: &mut Patch,
     files: &Files,
@@ -69,7 +69,7 @@ pub(super) fn inertia(
     }
 }
 
-/// Parameters of a joint.
+/// Writes the parameters of a joint.
 pub(super) fn joint(
     patch: &mut Patch,
     text: &str,

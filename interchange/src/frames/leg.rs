@@ -1,36 +1,38 @@
-//! The frames of a leg: each joint's z axis along its axis, each x axis along the common normal to the joint that
-//! follows, so that most of the six constants are zero.
+//! Modified Denavit-Hartenberg frames of a leg.
+//!
+//! Each z axis is a joint axis; each x axis is the common normal to the next joint axis. Most of
+//! the six constants are then zero.
 
 use super::step::{NEARLY, PARALLEL, Step, feet};
 use crate::model::Pose;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
-/// A joint of a leg with a single axis, as it stands at home.
+/// A joint with one degree of freedom, at its home position.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
-    /// The joint before it; none on the base.
+    /// Preceding joint; `None` on the base.
     pub(crate) antecedent: Option<usize>,
     pub(crate) is_prismatic: bool,
-    /// Whether it slides as another joint turns, and stands on its axis.
+    /// Whether it is the slide of a screw, which must lie on the screw axis.
     pub(crate) is_screw: bool,
     pub(crate) point: Point3<f64>,
     pub(crate) direction: Vector3<f64>,
-    /// Its position at home, of which its constants are free.
+    /// Home position, which is not part of the constants.
     pub(crate) home: f64,
 }
 
 /// A joint with its constants.
 #[derive(Debug, Clone)]
 pub(crate) struct Framed {
-    /// Whether a massless body that is turned by 90° about x stands before it.
+    /// Whether a massless body, rotated by 90° about x, precedes it.
     pub(crate) is_behind_turn: bool,
-    /// The constants; of the joint's own variable without its position at home.
+    /// Constants; the joint variable excludes the home position.
     pub(crate) step: Step,
-    /// Its frame in the world at home.
+    /// Frame in the world at home.
     pub(crate) frame: Pose,
 }
 
-/// What follows a joint.
+/// Element that follows a joint.
 enum Next {
     Line {
         point: Point3<f64>,
@@ -41,7 +43,7 @@ enum Next {
     Nothing,
 }
 
-/// The turn of a massless body between axes that are nearly parallel.
+/// Rotation of the massless body that is inserted between nearly parallel axes.
 pub(crate) fn quarter() -> Pose {
     Pose::from_parts(
         Vector3::zeros().into(),
@@ -49,7 +51,7 @@ pub(crate) fn quarter() -> Pose {
     )
 }
 
-/// The frame that a leg's first joint would like to start from, so that it needs no constants.
+/// Base frame for which a leg's first joint needs no constants.
 pub(crate) fn base(nodes: &[Node], on: &Pose, end: Option<Point3<f64>>) -> Pose {
     let Some(first) = nodes.first() else {
         return *on;
@@ -65,7 +67,7 @@ pub(crate) fn base(nodes: &[Node], on: &Pose, end: Option<Point3<f64>>) -> Pose 
     frame * back
 }
 
-/// The joints with their constants.
+/// Joints with their constants.
 pub(crate) fn framed(nodes: &[Node], base: &Pose, end: Option<Point3<f64>>) -> Vec<Framed> {
     let mut all: Vec<Framed> = Vec::new();
     for (at, node) in nodes.iter().enumerate() {
@@ -82,7 +84,7 @@ pub(crate) fn framed(nodes: &[Node], base: &Pose, end: Option<Point3<f64>>) -> V
                 )
             }
         };
-        // As the constants say it, so that rounding does not add up.
+        // Recompute the frame from the constants, so that rounding errors do not accumulate.
         let frame = before * step.frame();
         let mut step = step;
         match node.is_prismatic {
@@ -98,7 +100,7 @@ pub(crate) fn framed(nodes: &[Node], base: &Pose, end: Option<Point3<f64>>) -> V
     all
 }
 
-/// An angle within half a turn.
+/// Angle normalised to a half turn in either direction.
 pub(crate) fn wrapped(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     let left = angle.rem_euclid(turn);
@@ -122,7 +124,7 @@ fn next(nodes: &[Node], at: usize, end: Option<Point3<f64>>) -> Next {
     }
 }
 
-/// The frame of a joint at home.
+/// Frame of a joint at home.
 fn placed(node: &Node, before: &Pose, next: &Next) -> Pose {
     let z = node.direction;
     let (foot, normal) = incoming(node, before);
@@ -181,11 +183,11 @@ fn placed(node: &Node, before: &Pose, next: &Next) -> Pose {
     )
 }
 
-/// Where the common normal of the axis before meets a joint's own, and its direction.
+/// Foot on the joint axis of its common normal with the preceding axis, and the normal's direction.
 fn incoming(node: &Node, before: &Pose) -> (Point3<f64>, Vector3<f64>) {
     let (z, start) = (node.direction, Point3::from(before.translation.vector));
     let [x_before, z_before] = [Vector3::x(), Vector3::z()].map(|e| before.rotation * e);
-    // A slide may stand anywhere along its way, but for that of a screw.
+    // A prismatic joint may lie anywhere along its direction, except for the slide of a screw.
     let may_stand = node.is_prismatic && !node.is_screw;
     let point = if may_stand { start } else { node.point };
     let across = |v: Vector3<f64>| (v - z * z.dot(&v)).try_normalize(1e-9);
@@ -205,7 +207,7 @@ fn incoming(node: &Node, before: &Pose) -> (Point3<f64>, Vector3<f64>) {
     (foot, x)
 }
 
-/// Some direction across another.
+/// Unit vector perpendicular to `z`.
 pub(crate) fn any_across(z: &Vector3<f64>) -> Vector3<f64> {
     let helper = if z.x.abs() < 0.7 {
         Vector3::x()

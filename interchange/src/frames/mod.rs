@@ -1,4 +1,4 @@
-//! Frames of the description: modified Denavit-Hartenberg constants from axes in space.
+//! Computes modified Denavit-Hartenberg constants from axes in space.
 
 pub(crate) mod leg;
 pub(crate) mod step;

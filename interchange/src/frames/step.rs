@@ -1,4 +1,4 @@
-//! The six constants that lead from one frame to another, as Khalil and Kleinfinger have them.
+//! The six constants between two frames (Khalil and Kleinfinger).
 
 use crate::{
     geometry::exact::{about, cleaned, fifteenths},
@@ -18,12 +18,11 @@ pub(crate) struct Step {
     pub(crate) r: f64,
 }
 
-/// Sine of the angle between two axes below which they are parallel but for rounding.
+/// Sine of the angle below which two axes count as parallel.
 pub(crate) const PARALLEL: f64 = 1e-11;
 
 impl Step {
-    /// The step from one frame to another. `None` where the axes are so nearly parallel that the constants would lose
-    /// digits.
+    /// Constants between two frames; `None` if nearly parallel axes would lose digits.
     pub(crate) fn between(from: &Pose, to: &Pose) -> Option<Self> {
         let relative = from.inv_mul(to);
         let (rotation, at) = (cleaned(&relative.rotation), relative.translation.vector);
@@ -74,7 +73,7 @@ impl Step {
         }
     }
 
-    /// The frame at the end of the step.
+    /// Frame after the step.
     pub(crate) fn frame(&self) -> Pose {
         let along = |axis: usize, by: f64| {
             Pose::from_parts(Vector3::ith(axis, by).into(), Rotation3::identity())
@@ -93,7 +92,7 @@ impl Step {
 /// Sine of the angle between two axes below which a step loses digits.
 pub(crate) const NEARLY: f64 = 2e-3;
 
-/// γ within a quarter turn, what it turns with the other sign where need be.
+/// Normalises γ to a quarter turn in either direction; `other` changes sign if needed.
 fn near(gamma: f64, other: f64) -> (f64, f64) {
     if gamma > PI / 2.0 + 1e-9 {
         (gamma - PI, -other)
@@ -104,20 +103,20 @@ fn near(gamma: f64, other: f64) -> (f64, f64) {
     }
 }
 
-/// What is left to turn about z.
+/// Remaining rotation about z.
 fn turn(gamma: f64, alpha: f64, rotation: &Rotation3<f64>) -> f64 {
     let left = (about(2, gamma) * about(0, alpha)).inverse() * rotation;
     let m = left.matrix();
     round(m[(1, 0)].atan2(m[(0, 0)]))
 }
 
-/// Multiples of 15° to the last digit.
+/// Rounds to a multiple of 15° if the angle is one up to rounding.
 pub(crate) fn round(angle: f64) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "a small whole number")]
     fifteenths(angle, 1e-12).map_or(angle, |k| k as f64 * PI / 12.0)
 }
 
-/// The feet of the common normal of two lines that are not parallel.
+/// Feet of the common normal of two lines that are not parallel.
 pub(crate) fn feet(
     (p, u): (Point3<f64>, Vector3<f64>),
     (q, w): (Point3<f64>, Vector3<f64>),

@@ -1,15 +1,15 @@
-//! Numbers as texts: with the digits that a file gave them, though arithmetic stood between.
+//! Formats numbers with the digits of the file, despite rounding in between.
 
 use super::exact::fifteenths;
 use std::f64::consts::PI;
 
-/// What arithmetic may have changed in a number, in units of the larger of it and one.
+/// Rounding error to allow for, relative to the number's magnitude.
 const ROUNDING: f64 = 4e-15;
 
-/// Lengths and angles below this are rounding, m and rad.
+/// Lengths and angles below this are rounding errors, m and rad.
 const NOTHING: f64 = 1e-13;
 
-/// The shortest decimal that a number may have been before rounding.
+/// Shortest decimal within the rounding error of a number.
 #[must_use]
 pub(crate) fn decimal(value: f64) -> String {
     let slack = ROUNDING * value.abs().clamp(0.05, 1e6);
@@ -19,7 +19,7 @@ pub(crate) fn decimal(value: f64) -> String {
     relative(value, slack)
 }
 
-/// The shortest decimal nearer to a number than its own rounding, for numbers of any size such as inertias.
+/// Shortest decimal within the rounding error relative to `scale`, for numbers of any magnitude.
 #[must_use]
 pub(crate) fn fine(value: f64, scale: f64) -> String {
     let slack = ROUNDING * scale.abs();
@@ -40,7 +40,7 @@ fn relative(value: f64, slack: f64) -> String {
     plain(&format!("{value:e}"))
 }
 
-/// A number in powers of ten as people write it where that is short.
+/// Replaces scientific notation by positional notation if that is short.
 fn plain(text: &str) -> String {
     let value: f64 = text.parse().unwrap_or(0.0);
     let usual = format!("{value}");
@@ -51,7 +51,7 @@ fn plain(text: &str) -> String {
     }
 }
 
-/// An angle as a value of a description: multiples of 15° and round degrees in degrees.
+/// Angle as a TOML value: degrees for multiples of 15° and round degrees.
 #[must_use]
 pub(crate) fn angle(value: f64) -> String {
     if let Some(k) = fifteenths(value, 1e-12) {
@@ -65,7 +65,7 @@ pub(crate) fn angle(value: f64) -> String {
     }
 }
 
-/// Whether a number is nothing but rounding.
+/// Whether a number is zero up to rounding.
 #[must_use]
 pub(crate) fn is_zero(value: f64) -> bool {
     value.abs() <= NOTHING

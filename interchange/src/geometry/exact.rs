@@ -1,12 +1,12 @@
-//! Angles that are meant to be exact: a file's 1.5707963 is a right angle.
+//! Restores exact angles and rotations: 1.5707963 in a file is a right angle.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
-/// An angle counts as a multiple of 15° if it is nearer to one than this, rad: eight digits of a file.
+/// Tolerance for multiples of 15°, rad; it corresponds to eight digits in a file.
 pub(crate) const TOLERANCE: f64 = 5e-8;
 
-/// The multiple of 15° that an angle is, if it is one.
+/// Multiple of 15° that an angle equals, if there is one.
 #[must_use]
 pub(crate) fn fifteenths(angle: f64, tolerance: f64) -> Option<i64> {
     let steps = angle / (PI / 12.0);
@@ -16,20 +16,20 @@ pub(crate) fn fifteenths(angle: f64, tolerance: f64) -> Option<i64> {
     is_near.then_some(nearest as i64)
 }
 
-/// The angle without what is rounding in a file.
+/// Angle, rounded to a multiple of 15° if it is near one.
 #[must_use]
 pub(crate) fn angle(value: f64) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "a small whole number")]
     fifteenths(value, TOLERANCE).map_or(value, |k| k as f64 * PI / 12.0)
 }
 
-/// Sine and cosine, those of multiples of 15° to the last digit.
+/// Sine and cosine, exact for multiples of 15°.
 #[must_use]
 pub(crate) fn sin_cos(value: f64) -> (f64, f64) {
     let Some(k) = fifteenths(value, 1e-14 * value.abs().max(1.0)) else {
         return value.sin_cos();
     };
-    // Of multiples of 90° sine and cosine are whole numbers, which a rounded π misses.
+    // Multiples of 90° have integer values, which a rounded π would miss.
     match (k.rem_euclid(24), k.rem_euclid(6)) {
         (0, _) => (0.0, 1.0),
         (6, _) => (1.0, 0.0),
@@ -39,7 +39,7 @@ pub(crate) fn sin_cos(value: f64) -> (f64, f64) {
     }
 }
 
-/// The turn by an angle about the axis x, y or z, counted from 0.
+/// Rotation about the axis x, y or z (0, 1, 2).
 #[must_use]
 pub(crate) fn about(axis: usize, value: f64) -> Rotation3<f64> {
     let (s, c) = sin_cos(value);
@@ -51,7 +51,7 @@ pub(crate) fn about(axis: usize, value: f64) -> Rotation3<f64> {
     Rotation3::from_matrix_unchecked(Matrix3::from_fn(|i, j| rows[i][j]))
 }
 
-/// The turn by an angle about any axis of length 1.
+/// Rotation about a unit axis.
 #[must_use]
 pub(crate) fn turn(axis: &Vector3<f64>, value: f64) -> Rotation3<f64> {
     let (s, c) = sin_cos(value);
@@ -60,7 +60,7 @@ pub(crate) fn turn(axis: &Vector3<f64>, value: f64) -> Rotation3<f64> {
     Rotation3::from_matrix_unchecked(matrix)
 }
 
-/// The direction of an axis, of length 1 and without what rounding left in it; `None` for one of no length.
+/// Unit vector of an axis with rounding errors removed; `None` for a zero vector.
 #[must_use]
 pub(crate) fn direction(xyz: [f64; 3]) -> Option<Vector3<f64>> {
     let clean = |v: f64| {
@@ -74,12 +74,12 @@ pub(crate) fn direction(xyz: [f64; 3]) -> Option<Vector3<f64>> {
     Some(found.map(clean).normalize())
 }
 
-/// Axes that are shorter have no direction.
+/// Shortest vector that has a direction.
 pub(crate) const SHORTEST: f64 = 1e-9;
 
-/// A vector of length 1 in the direction of another, whatever its size; `None` if that is not longer than `shortest`.
+/// Unit vector; `None` if the vector is not longer than `shortest`.
 ///
-/// The squares of components beyond 1e154 are infinite; such vectors are divided by their largest component first.
+/// Vectors with large components are scaled first, because squares above 1e154 are infinite.
 #[must_use]
 pub(crate) fn unit(vector: &Vector3<f64>, shortest: f64) -> Option<Vector3<f64>> {
     let largest = vector.amax();
@@ -90,16 +90,16 @@ pub(crate) fn unit(vector: &Vector3<f64>, shortest: f64) -> Option<Vector3<f64>>
     }
 }
 
-/// Components whose squares are far from the largest number.
+/// Magnitude above which components are scaled before they are squared.
 const LARGE: f64 = 1e100;
 
-/// The rotation of URDF's roll, pitch and yaw.
+/// Rotation of URDF's roll, pitch and yaw.
 #[must_use]
 pub(crate) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> Rotation3<f64> {
     about(2, angle(yaw)) * about(1, angle(pitch)) * about(0, angle(roll))
 }
 
-/// The rotation of a quaternion w, x, y, z; `None` for one of no length.
+/// Rotation of a quaternion w, x, y, z; `None` for a zero quaternion.
 #[must_use]
 pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Option<Rotation3<f64>> {
     let raw = nalgebra::Quaternion::new(w, x, y, z);
@@ -111,7 +111,7 @@ pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Option<Rotation3<f64>> {
     })
 }
 
-/// A rotation whose entries are freed of what rounding has left of zeros and ones.
+/// Rotation whose entries near −1, 0 and 1 are rounded to these.
 #[must_use]
 pub(crate) fn cleaned(rotation: &Rotation3<f64>) -> Rotation3<f64> {
     let clean = |value: f64| {
@@ -130,7 +130,7 @@ mod tests {
     use super::{angle, direction, quaternion, roll_pitch_yaw};
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
-    /// The number that a file writes with so many digits.
+    /// Number as a file writes it with some digits.
     fn written(value: f64, digits: usize) -> f64 {
         format!("{value:.digits$}").parse().expect("a number")
     }

@@ -1,4 +1,4 @@
-//! Actuators: which joints they drive, and through which gear.
+//! Actuators: the joints that they drive, and their gears.
 
 use super::{
     Reader,
@@ -29,7 +29,7 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         .attribute("joint")
         .or_else(|| element.attribute("jointinparent"))
     else {
-        // The table rejects what else an actuator may act on.
+        // The table rejects other transmission targets.
         if files.is_clean() {
             let message = format!("the actuator `{name}` acts on nothing");
             files.report(&element.place, message, "write joint=\"…\"");
@@ -55,7 +55,7 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         .list(files, "gear")
         .and_then(|gear| gear.first().copied())
         .unwrap_or(1.0);
-    // Rotor and damper of the actuator, seen at the joint.
+    // Rotor inertia and damping of the actuator, at the joint.
     own.armature += gear * gear * element.number(files, "armature", 0.0);
     own.damping += gear * gear * first(files, element, "damping");
     if gear != 1.0 {

@@ -1,5 +1,7 @@
-//! What `<compiler>` and `springdamper` change after the bodies were read, in MuJoCo's order: bounds, balance, total
-//! mass, springs.
+//! Inertia adjustments of `<compiler>`, and springs given by `springdamper`.
+//!
+//! They are applied after all bodies were read, in MuJoCo's order: bounds, balance, total mass,
+//! springs.
 
 use super::Compiler;
 use crate::{
@@ -17,14 +19,14 @@ pub(super) struct Adjustments {
     least_mass: f64,
     least_inertia: f64,
     is_balanced: bool,
-    /// The mass of all bodies together; none where they keep theirs.
+    /// Total mass of all bodies; `None` keeps the masses.
     total_mass: Option<f64>,
-    /// Whether bodies that stand still are part of the world, whose mass does not count.
+    /// Whether static bodies are fused into the world, so that their mass does not count.
     is_static_fused: bool,
 }
 
 impl Adjustments {
-    /// Overwrites what an element gives.
+    /// Overrides the settings with the element's attributes.
     pub(super) fn read(&mut self, files: &Files, compiler: &Element) {
         self.least_mass = compiler.number(files, "boundmass", self.least_mass);
         self.least_inertia = compiler.number(files, "boundinertia", self.least_inertia);
@@ -45,7 +47,7 @@ impl Adjustments {
 pub(super) fn inertias(files: &Files, root: &Element, compiler: &Compiler, model: &mut Model) {
     let adjustments = compiler.adjustments;
     let is_moving = moving(model);
-    // Bodies without a place stand between the joints of one body, and are none of MuJoCo's.
+    // Bodies without a location are auxiliary bodies between joints and do not exist in MuJoCo.
     let is_own = |at: usize| {
         model.bodies[at].place.is_some() && (is_moving[at] || !adjustments.is_static_fused)
     };
@@ -88,7 +90,7 @@ const NOTHING: Inertia = Inertia {
     tensor: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
 };
 
-/// Which bodies a joint moves.
+/// Bodies that a joint moves.
 fn moving(model: &Model) -> Vec<bool> {
     let mut moving = vec![false; model.bodies.len()];
     for (at, body) in model.bodies.iter().enumerate().skip(1) {
@@ -97,7 +99,9 @@ fn moving(model: &Model) -> Vec<bool> {
     moving
 }
 
-/// An inertia whose mass and principal moments are not below their bounds, nor one moment above the sum of the others.
+/// Inertia with mass and principal moments at or above their bounds.
+///
+/// `balanceinertia` also enforces the triangle inequality of the moments.
 fn bounded(inertia: Inertia, adjustments: &Adjustments) -> Inertia {
     let principal = inertia.tensor.symmetric_eigen();
     let least = adjustments.least_inertia;
@@ -108,7 +112,7 @@ fn bounded(inertia: Inertia, adjustments: &Adjustments) -> Inertia {
         moments = Vector3::repeat(moments.mean());
     }
     let axes = principal.eigenvectors;
-    // Moments that stay keep their digits.
+    // Unchanged moments keep their digits.
     let tensor = if moments == principal.eigenvalues {
         inertia.tensor
     } else {
@@ -121,18 +125,20 @@ fn bounded(inertia: Inertia, adjustments: &Adjustments) -> Inertia {
     }
 }
 
-/// A spring and a damper by their time constant and damping ratio.
+/// Spring and damper given by time constant and damping ratio.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SpringDamper {
     pub(super) joint: usize,
     pub(super) time_constant: f64,
     pub(super) damping_ratio: f64,
-    /// Where the spring rests.
+    /// Rest position of the spring.
     pub(super) rest: f64,
 }
 
-/// Sets stiffness and damping from the inertia M that each joint feels in the file's configuration while all others
-/// are free: k = M / (T² ζ²), d = 2 M / T. Dampers of actuators add to d.
+/// Sets stiffness and damping: k = M / (T² ζ²), d = 2 M / T.
+///
+/// M is the inertia at a joint in the file's configuration while all other joints are free. Damping
+/// of actuators adds to d.
 pub(super) fn springs(files: &Files, model: &mut Model, springs: &[SpringDamper]) {
     if springs.is_empty() {
         return;
@@ -156,8 +162,9 @@ pub(super) fn springs(files: &Files, model: &mut Model, springs: &[SpringDamper]
     }
 }
 
-/// The diagonal of the inverse mass matrix in the file's configuration, by joints of one coordinate, without couplings
-/// of joints; `None` if the matrix is singular.
+/// Diagonal of the inverse mass matrix in the file's configuration, for joints with one coordinate.
+///
+/// Couplings are ignored; `None` if the matrix is singular.
 fn inverse_masses(model: &Model) -> Option<BTreeMap<usize, f64>> {
     if model.bodies.iter().any(|body| body.has_unknown_inertia) {
         return None;
@@ -177,7 +184,7 @@ fn inverse_masses(model: &Model) -> Option<BTreeMap<usize, f64>> {
         };
         let placed = inertia.seen(&state.poses[at]);
         let angular = twists[at].rows(3, 3);
-        // The velocity of the centre c is v + ω × c.
+        // Velocity of the centre of mass c: v + ω × c.
         let centre = placed.centre.coords.cross_matrix();
         let linear = twists[at].rows(0, 3) - centre * angular;
         masses += linear.transpose() * &linear * placed.mass;

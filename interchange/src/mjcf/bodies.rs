@@ -9,7 +9,7 @@ use crate::{
 };
 use nalgebra::{Point3, Vector3};
 
-/// Reads all bodies; returns the springs that follow from inertias.
+/// Reads all bodies; returns the springs that depend on inertias.
 pub(super) fn read(
     reader: &Reader<'_>,
     root: &Element,
@@ -29,14 +29,14 @@ pub(super) fn read(
     springs
 }
 
-/// What is read of the bodies.
+/// Output of the body reader.
 struct Tree<'t> {
     model: &'t mut Model,
     sites: &'t mut Sites,
     springs: &'t mut Vec<SpringDamper>,
 }
 
-/// The bodies, sites and frames in a body; `offset` is that of frames around them.
+/// Reads the bodies, sites and frames in a body; `offset` is the pose of the enclosing frames.
 fn inside(
     reader: &Reader<'_>,
     element: &Element,
@@ -96,11 +96,11 @@ fn body(
         model.joints.push(joint);
         let at_joint = model.joints.len() - 1;
         if let Some(spring) = spring_damper(reader, own, model, at_joint) {
-            // It takes the place of the joint's own damping.
+            // The spring's damping replaces the joint's own.
             model.joints[at_joint].damping = 0.0;
             tree.springs.push(spring);
         }
-        // All joints but the last carry a massless body in the same place.
+        // All joints but the last carry a massless body at the same pose.
         let is_last = at + 1 == count;
         model.bodies.push(Body {
             name: if is_last {
@@ -136,7 +136,7 @@ fn body(
     inside(reader, element, own, &Pose::identity(), class, tree);
 }
 
-/// The joints of a body with the frames in the body that they stand in, in the order of the file.
+/// Joints of a body in file order, with their enclosing frames' pose in the body.
 fn gather_joints(
     reader: &Reader<'_>,
     element: &Element,
@@ -231,7 +231,7 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
     Some(joint)
 }
 
-/// The spring and damper that a joint gives by a time constant and a damping ratio.
+/// Spring and damper given by `springdamper`.
 fn spring_damper(
     reader: &Reader<'_>,
     element: &Element,
@@ -268,7 +268,7 @@ fn spring_damper(
     })
 }
 
-/// The limits of a joint where it has some.
+/// Limits of a joint, if it is limited.
 fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]> {
     let limits: [f64; 2] = element.numbers(reader.files, "range")?;
     let is_limited = match element.get("limited") {
@@ -284,7 +284,7 @@ fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]>
     (is_limited && limits[0] < limits[1]).then_some(limits)
 }
 
-/// The first number of an attribute: of polynomials the linear one.
+/// First number of an attribute: the linear coefficient of a polynomial.
 pub(super) fn first(files: &Files, element: &Element, key: &str) -> f64 {
     let all = element.list(files, key).unwrap_or_default();
     if let Some((_, place)) = element

@@ -1,4 +1,4 @@
-//! Default classes: attributes that elements have where they do not say otherwise.
+//! Default classes: attribute values for elements that do not set them.
 
 use crate::{
     files::{Files, Place},
@@ -6,38 +6,38 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// Attributes by tag and name.
+/// Attribute values by tag and name.
 type Class = BTreeMap<(String, String), (String, Place)>;
 
-/// All classes; those within another have its attributes, too.
+/// All classes; nested classes include the attributes of their parents.
 #[derive(Debug)]
 pub(super) struct Defaults {
     classes: BTreeMap<String, Class>,
 }
 
-/// Classes, at most.
+/// Largest number of classes.
 const MOST_CLASSES: usize = 1_000;
-/// Attributes of a class, at most: more than MJCF has.
+/// Largest number of attributes of a class, more than MJCF has.
 const MOST_ATTRIBUTES: usize = 1_000;
 
-/// The class of everything that names none.
+/// Default class of elements that name none.
 pub(super) const MAIN: &str = "main";
 
-/// The tag of defaults of actuators.
+/// Tag of actuator defaults.
 pub(super) const ACTUATOR: &str = "general";
 
-/// The tag of defaults of equality constraints.
+/// Tag of equality constraint defaults.
 pub(super) const EQUALITY: &str = "equality";
 
 impl Defaults {
-    /// The classes of a file; `None` after an error.
+    /// Reads the classes of a file; `None` after an error.
     pub(super) fn new(files: &Files, root: &Element) -> Option<Self> {
         let mut own = Self {
             classes: BTreeMap::new(),
         };
         own.classes.insert(MAIN.to_owned(), Class::new());
         for top in root.all("default") {
-            // Several sections at the top continue the same class.
+            // Several top-level sections extend the same class.
             let name = top.get("class").unwrap_or(MAIN).to_owned();
             let before = own.classes.get(&name).cloned().unwrap_or_default();
             own.add(files, top, &name, before);
@@ -76,12 +76,12 @@ impl Defaults {
         }
     }
 
-    /// An element with what its class gives it.
+    /// Element with the defaults of its class.
     pub(super) fn apply(&self, files: &Files, element: &Element, around: &str) -> Element {
         self.apply_as(&element.name, files, element, around)
     }
 
-    /// An element with what its class gives elements of a tag: `equality` or `general` of several kinds.
+    /// Element with the class defaults of another tag, such as `equality` or `general`.
     pub(super) fn apply_as(
         &self,
         tag: &str,
@@ -117,7 +117,7 @@ impl Defaults {
     }
 }
 
-/// The tag under which defaults are kept: those of all actuators are the same in MuJoCo.
+/// Tag under which defaults are stored; in MuJoCo all actuators share theirs.
 fn family(tag: &str) -> &str {
     match tag {
         "general" | "motor" | "position" | "velocity" | "intvelocity" | "orientation" | "pid"

@@ -1,4 +1,4 @@
-//! Equality constraints: points and frames that meet, and joints that follow others.
+//! Equality constraints: coincident points and frames, and joint couplings.
 
 use super::{
     Reader, Sites,
@@ -15,7 +15,7 @@ use crate::{
 use nalgebra::{Point3, Vector3};
 
 pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &mut Model) {
-    // Where one frame is given, the other is where it is in the file's own configuration.
+    // If one frame is given, the other follows from the file's own configuration.
     let poses = Motion::new(model).start().poses;
     let mut couplings = Couplings::default();
     for section in root.all("equality") {
@@ -51,7 +51,7 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
     couplings.resolve(reader.files, model);
 }
 
-/// What a constraint is called, by itself or by what it joins.
+/// Name of a constraint, or the names of the elements that it connects.
 fn named(element: &Element) -> String {
     let ends = [["site1", "site2"], ["body1", "body2"], ["joint1", "joint2"]];
     let joined = ends.iter().find_map(|[a, b]| {
@@ -144,7 +144,7 @@ fn frames(
     })
 }
 
-/// A joint that follows another by a straight line.
+/// Linear coupling of a joint to another.
 fn follow(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut Couplings) {
     let files = reader.files;
     let joint = |key: &str| {
@@ -179,10 +179,10 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut
         );
         return;
     }
-    // MuJoCo's own coefficients are 0 1 0 0 0, also behind those that are given.
+    // MuJoCo's default coefficients 0 1 0 0 0 complete a short list.
     let coefficient = |at: usize, default| coefficients.get(at).copied().unwrap_or(default);
     let (c0, factor) = (coefficient(0, 0.0), coefficient(1, 1.0));
-    // Both count from their references.
+    // Both positions count from their references.
     let offset = c0 + model.joints[own].reference - factor * model.joints[leader].reference;
     couplings.add(Coupling {
         follower: own,

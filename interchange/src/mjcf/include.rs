@@ -1,4 +1,4 @@
-//! A file with those that it includes in their places.
+//! Expands the includes of a file.
 
 use crate::{
     account::MJCF,
@@ -8,11 +8,11 @@ use crate::{
 };
 use std::path::PathBuf;
 
-/// Files within each other.
+/// Largest depth of nested includes.
 const DEPTH: usize = 30;
-/// Files altogether.
+/// Largest number of files.
 const FILES: usize = 500;
-/// The file as one element; `None` after an error.
+/// File with its includes, as one element; `None` after an error.
 pub(super) fn whole(files: &Files, file: usize) -> Option<Element> {
     let mut root = xml::parse(files, file)?;
     let folder = files.folder(file);
@@ -22,7 +22,7 @@ pub(super) fn whole(files: &Files, file: usize) -> Option<Element> {
     files.is_clean().then_some(root)
 }
 
-/// Puts the elements of included files in the places of the includes; `depth` is that of the element.
+/// Replaces includes by the elements of the included files; `depth` is the element's depth.
 fn expand(
     files: &Files,
     of: &mut Element,

@@ -1,4 +1,4 @@
-//! Inertias of bodies: of `<inertial>`, or of the shapes of their geoms as MuJoCo computes them.
+//! Inertias of bodies from `<inertial>` or from geoms, computed as in MuJoCo.
 
 use super::Reader;
 use crate::{
@@ -11,10 +11,10 @@ use crate::{
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use std::f64::consts::PI;
 
-/// MuJoCo's density of geoms, kg/m³.
+/// MuJoCo's default density of geoms, kg/m³.
 const DENSITY: f64 = 1000.0;
 
-/// The inertia of a body, and whether it has some that cannot be computed from the file.
+/// Inertia of a body, and whether it has inertia that the file does not determine.
 pub(super) fn read(reader: &Reader<'_>, body: &Element, class: &str) -> (Option<Inertia>, bool) {
     let is_from_geoms = reader.compiler.inertia_from_geometry;
     let inertial = inertial(reader, body, &Pose::identity());
@@ -24,7 +24,7 @@ pub(super) fn read(reader: &Reader<'_>, body: &Element, class: &str) -> (Option<
     }
 }
 
-/// `<inertial>` of a body, which may stand in a frame of the body.
+/// `<inertial>` of a body, possibly inside a frame of the body.
 fn inertial(reader: &Reader<'_>, element: &Element, offset: &Pose) -> Option<Inertia> {
     if let Some(own) = element.child("inertial") {
         return Some(of_inertial(reader, own).seen(offset));
@@ -41,7 +41,8 @@ fn of_inertial(reader: &Reader<'_>, inertial: &Element) -> Inertia {
     let frame = reader.compiler.frame(files, inertial);
     if let Some([xx, yy, zz, xy, xz, yz]) = inertial.numbers(files, "fullinertia") {
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        // MuJoCo turns its frame to the principal axes; the tensor is that of the body's.
+        // MuJoCo rotates the inertial frame to the principal axes; `fullinertia` is in the body's
+        // axes.
         let frame = Pose::from_parts(frame.translation, Rotation3::identity());
         return about_centre(mass, tensor).seen(&frame);
     }
@@ -61,7 +62,7 @@ fn about_centre(mass: f64, tensor: Matrix3<f64>) -> Inertia {
     }
 }
 
-/// The sum of the geoms of a body, also of those in frames.
+/// Total inertia of a body's geoms, including those in frames.
 fn of_geoms(
     reader: &Reader<'_>,
     element: &Element,
@@ -102,7 +103,7 @@ fn of_geoms(
     (sum.filter(|_| !is_unknown), is_unknown)
 }
 
-/// What a geom adds to its body.
+/// Contribution of a geom to its body.
 enum Shape {
     Body(Inertia),
     Empty,
@@ -138,7 +139,7 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
     Shape::Body(about_centre(mass, Matrix3::from_diagonal(&(unit * mass))).seen(&frame))
 }
 
-/// The volume of a primitive and its principal moments of inertia for a mass of 1; none of other shapes.
+/// Volume and principal moments for unit mass of a primitive; `None` for other shapes.
 fn solid(reader: &Reader<'_>, geom: &Element, kind: &str) -> Option<(f64, Vector3<f64>)> {
     let files: &Files = reader.files;
     let size = geom.list(files, "size").unwrap_or_default();
@@ -147,7 +148,7 @@ fn solid(reader: &Reader<'_>, geom: &Element, kind: &str) -> Option<(f64, Vector
         .map(|ends| between(ends).1);
     let at = |index: usize| size.get(index).copied();
     let radius = at(0)?;
-    // Between two points, x and y have the first size.
+    // With `fromto`, x and y use the first size.
     let half_length = |index: usize| length.map_or_else(|| at(index), |length| Some(0.5 * length));
     let second = if length.is_some() {
         Some(radius)
@@ -191,7 +192,7 @@ fn moments([x, y, z]: [f64; 3]) -> Vector3<f64> {
     Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y)
 }
 
-/// A cylinder of a height with half a sphere at each end.
+/// Volume and moments of a capsule: a cylinder with two half spheres.
 fn capsule(radius: f64, height: f64) -> (f64, Vector3<f64>) {
     let ball = 4.0 / 3.0 * PI * radius.powi(3);
     let cylinder = PI * radius * radius * height;
@@ -199,13 +200,13 @@ fn capsule(radius: f64, height: f64) -> (f64, Vector3<f64>) {
     let (ball, cylinder) = (ball / volume, cylinder / volume);
     let square = radius * radius;
     let along = cylinder * 0.5 * square + ball * 0.4 * square;
-    // The centre of each half ball is 3/8 of the radius behind the cylinder's end.
+    // The centre of each half sphere is 3/8 of the radius from the cylinder's end.
     let across = cylinder * (3.0 * square + height * height) / 12.0
         + ball * (0.4 * square + 0.25 * height * height + 0.375 * radius * height);
     (volume, Vector3::new(across, across, along))
 }
 
-/// The frame in the middle of two points whose z axis lies along them, and their distance.
+/// Frame at the midpoint of two points with z along them, and their distance.
 fn between([ax, ay, az, bx, by, bz]: [f64; 6]) -> (Pose, f64) {
     let (from, to) = (Vector3::new(ax, ay, az), Vector3::new(bx, by, bz));
     let along = to - from;

@@ -1,4 +1,4 @@
-//! MJCF: bodies within each other, defaults, equality constraints and actuators.
+//! Reader of MJCF: nested bodies, defaults, equality constraints and actuators.
 
 mod actuators;
 mod adjust;
@@ -23,7 +23,7 @@ use defaults::Defaults;
 use nalgebra::{Rotation3, Vector3};
 use std::collections::BTreeMap;
 
-/// Reads a robot; what is wrong is noted in the files.
+/// Reads a robot; errors are recorded in `files`.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let root = include::whole(files, file)?;
     bounds::check_elements(files, &root)?;
@@ -49,13 +49,13 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     }
     equality::read(&reader, &root, &sites, &mut model);
     actuators::read(&reader, &root, &mut model);
-    // Springs by time constants need the inertias and the rotors of all joints.
+    // Springs given by time constants need all inertias, including rotor inertias.
     adjust::inertias(files, &root, &reader.compiler, &mut model);
     adjust::springs(files, &mut model, &springs);
     files.is_clean().then_some(model)
 }
 
-/// What all parts of the file are read with.
+/// Context for reading elements.
 struct Reader<'r> {
     files: &'r Files,
     compiler: Compiler,
@@ -63,20 +63,20 @@ struct Reader<'r> {
     options: &'r Options,
 }
 
-/// Where a site is: its body and its frame there.
+/// Body of each site and its pose there.
 type Sites = BTreeMap<String, (usize, Pose)>;
 
-/// How angles and bodies are written.
+/// Settings of `<compiler>`.
 struct Compiler {
     is_degrees: bool,
-    /// Axes of Euler angles, and whether each turn is about the axes that the ones before have turned.
+    /// Euler axes, and whether each rotation is about the already rotated axes.
     sequence: [(usize, bool); 3],
-    /// Whether inertias are those of the geoms; where it is open, those of bodies without `<inertial>`.
+    /// Whether inertias come from geoms; `None`: only for bodies without `<inertial>`.
     inertia_from_geometry: Option<bool>,
-    /// The first and the last group of geoms that have inertia.
+    /// First and last geom group with inertia.
     inertia_groups: [f64; 2],
     adjustments: Adjustments,
-    /// Whether a joint with a range is limited to it unasked.
+    /// Whether a joint with a range is limited by default.
     limits_ranges: bool,
 }
 
@@ -143,7 +143,7 @@ impl Compiler {
         })
     }
 
-    /// The rotation that an element says by one of `quat`, `axisangle`, `xyaxes`, `zaxis` and `euler`.
+    /// Rotation given by `quat`, `axisangle`, `xyaxes`, `zaxis` or `euler`.
     fn rotation(&self, files: &Files, of: &Element) -> Rotation3<f64> {
         if let Some(quaternion) = of.numbers(files, "quat") {
             return exact::quaternion(quaternion).unwrap_or_else(|| {
@@ -187,14 +187,15 @@ impl Compiler {
         Rotation3::identity()
     }
 
-    /// The frame of an element's `pos` and rotation.
+    /// Pose given by `pos` and a rotation.
     fn frame(&self, files: &Files, of: &Element) -> Pose {
         let [x, y, z] = of.numbers(files, "pos").unwrap_or_default();
         Pose::from_parts(Vector3::new(x, y, z).into(), self.rotation(files, of))
     }
 }
 
-/// The rotation whose first axis is `x`, and whose second lies in the plane of both; `None` if they are parallel.
+/// Rotation with first axis along `x` and second axis in the plane of both; `None` if they are
+/// parallel.
 fn of_axes(x: &Vector3<f64>, y: &Vector3<f64>) -> Option<Rotation3<f64>> {
     let x = exact::unit(x, 0.0)?;
     let y = if y.amax() > 1e100 { y / y.amax() } else { *y };

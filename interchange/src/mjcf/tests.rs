@@ -1,4 +1,6 @@
-//! Inertias, springs and dampers against MuJoCo 4.0: `body_mass`, `body_ipos`, the inertia in the axes of the body,
+//! Inertias, springs and dampers compared with MuJoCo 4.0.
+//!
+//! The reference values are `body_mass`, `body_ipos`, the inertia in the body's axes,
 //! `jnt_stiffness` and `dof_damping` of the compiled model.
 
 use crate::{files::Files, model::Model, options::Options};
@@ -125,7 +127,7 @@ fn inertias_of_primitive_geoms_are_those_of_mujoco() {
             ],
         ),
         (
-            // Groups outside the range and geoms without mass do not count.
+            // Groups outside the range and massless geoms do not count.
             "<geom type='box' size='0.1 0.2 0.3'/><geom size='0.1' pos='0 0 0.5' group='4'/><geom size='1' mass='0'/>\
              <frame pos='0.1 0.2 0.3' euler='0.1 0 0'><geom type='capsule' size='0.05 0.1'/></frame>",
             [
@@ -160,7 +162,7 @@ fn bodies_of_meshes_have_inertias_without_values() {
     assert!(!model.bodies[2].has_unknown_inertia && model.bodies[2].inertia.is_some());
 }
 
-/// Two bodies in a row, the first on two hinges, the second on a spring, and one that stands still.
+/// Two bodies in a row, the first on two hinges, the second on a spring, and a static body.
 fn adjusted(compiler: &str) -> Model {
     read(&format!(
         "<mujoco><compiler angle='radian' {compiler}/><worldbody><body><joint axis='0 1 0'/><joint axis='1 0 0'/>\

@@ -1,20 +1,20 @@
-//! Expressions of a .par file: sums, products, powers and functions of numbers and symbols.
+//! Arithmetic expressions of .par files with symbols and functions.
 
 use std::collections::BTreeMap;
 
-/// Parentheses, functions and powers within each other, at most.
+/// Largest depth of nested parentheses, functions and powers.
 const DEPTH: usize = 50;
 
-/// Why an expression has no value.
+/// Reason why an expression has no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Fault {
     /// A symbol without a value.
     Unknown(String),
-    /// What is no expression.
+    /// Not an expression.
     Unreadable,
 }
 
-/// The value of an expression for values of its symbols.
+/// Evaluates an expression with values of its symbols.
 pub(super) fn value(text: &str, symbols: &BTreeMap<String, f64>) -> Result<f64, Fault> {
     let mut reader = Reader {
         rest: text,
@@ -28,7 +28,7 @@ pub(super) fn value(text: &str, symbols: &BTreeMap<String, f64>) -> Result<f64, 
     }
 }
 
-/// The symbols of an expression, each once.
+/// Distinct symbols of an expression.
 pub(super) fn symbols(text: &str) -> Vec<String> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     let words = text.split(|c: char| !is_part(c));
@@ -60,7 +60,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads one level deeper, unless that is too deep.
+    /// Reads one level deeper, within the depth limit.
     fn nested(&mut self, read: fn(&mut Self) -> Result<f64, Fault>) -> Result<f64, Fault> {
         if self.depth >= DEPTH {
             return Err(Fault::Unreadable);
@@ -87,7 +87,7 @@ impl Reader<'_> {
     fn product(&mut self) -> Result<f64, Fault> {
         let mut product = self.signed()?;
         loop {
-            // `**` is a power, which binds tighter and was read before.
+            // Powers (`**`) bind tighter and were already read.
             if self.next_is("*") {
                 product *= self.signed()?;
             } else if self.next_is("/") {

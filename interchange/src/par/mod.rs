@@ -1,5 +1,7 @@
-//! .par files of OpenSYMORO: a table of modified Denavit-Hartenberg frames with the parameters of their bodies, in
-//! numbers and symbols.
+//! Reader of OpenSYMORO's .par files.
+//!
+//! A .par file is a table of modified Denavit-Hartenberg constants and body parameters, as numbers
+//! or symbols.
 
 mod expression;
 mod text;
@@ -18,10 +20,10 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 use text::{Entries, entries, robot_name};
 
-/// Most frames of a robot.
+/// Largest number of frames.
 const FRAMES: usize = 1000;
 
-/// Reads a robot; what is wrong is noted in the files.
+/// Reads a robot; errors are recorded in `files`.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let text = files.text(file);
     let entries = entries(files, file, &text)?;
@@ -44,11 +46,11 @@ struct Reader<'f> {
     files: &'f Files,
     entries: Entries,
     file: usize,
-    /// Values of symbols that the user gives.
+    /// Symbol values given by the user.
     symbols: BTreeMap<String, f64>,
 }
 
-/// A frame of the table.
+/// A row of the frame table.
 struct Frame {
     antecedent: usize,
     /// 0 revolute, 1 prismatic, 2 fixed.
@@ -90,7 +92,7 @@ impl Reader<'_> {
         let mut variables = BTreeMap::new();
         model.says_motors = self.entries.contains_key("MU");
         for (at, frame) in table.iter().enumerate() {
-            // The second frame of a joint that closes a loop stands on the body that it ends on.
+            // The second frame of a loop-closing joint is fixed to the body where the loop ends.
             if at >= joints {
                 self.close(at, at - (joints - links), &table, model);
                 continue;
@@ -121,7 +123,7 @@ impl Reader<'_> {
         self.files.is_clean().then_some(())
     }
 
-    /// Antecedents and kinds of the frames.
+    /// Antecedents and types of the frames.
     fn table(&self, frames: usize) -> Option<Vec<Frame>> {
         let mut table = Vec::new();
         for at in 0..frames {
@@ -143,7 +145,7 @@ impl Reader<'_> {
         Some(table)
     }
 
-    /// A closure between the body that a cut joint carries and the one on which its second frame is fixed.
+    /// Adds a closure between the body of the cut joint and the body of its second frame.
     fn close(&self, at: usize, cut: usize, table: &[Frame], model: &mut Model) {
         let Some((body, placement)) = self.on_body(at, table, model.bodies.len()) else {
             return;
@@ -158,8 +160,9 @@ impl Reader<'_> {
         });
     }
 
-    /// The body that a second frame is fixed on, the last of `bodies` at most, and the frame in that body's; frames
-    /// between the two are fixed as well. `None` after an error.
+    /// Body that a second frame is fixed to (below `bodies`), and the frame's pose in it.
+    ///
+    /// Intermediate frames must be fixed too; `None` after an error.
     fn on_body(&self, at: usize, table: &[Frame], bodies: usize) -> Option<(usize, Pose)> {
         let mut placement = self.step(at, &BTreeMap::new())?.frame();
         let mut antecedent = table[at].antecedent;
@@ -171,7 +174,7 @@ impl Reader<'_> {
         Some((antecedent, placement))
     }
 
-    /// The frame where its joint stands at zero, and the joint; `None` after an error.
+    /// Pose at joint position zero, and the joint; `None` after an error.
     fn joint(
         &self,
         at: usize,
@@ -252,7 +255,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The inertia of a body, and whether it has one without values.
+    /// Inertia of a body, and whether it has inertia without values.
     fn inertia(&self, at: usize) -> Option<(Option<Inertia>, bool)> {
         let keys = ["XX", "XY", "XZ", "YY", "YZ", "ZZ", "MX", "MY", "MZ", "M"];
         let mut values = [0.0; 10];
@@ -266,7 +269,7 @@ impl Reader<'_> {
         let first = Vector3::new(mx, my, mz);
         let about = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         if mass == 0.0 {
-            // Base parameters are moments without a mass: no body that a prior could be about.
+            // Base parameters are moments without mass and cannot serve as a prior.
             let is_empty = first == Vector3::zeros() && about == Matrix3::zeros();
             return Some((None, !is_empty));
         }
@@ -285,7 +288,7 @@ impl Reader<'_> {
         ))
     }
 
-    /// Friction and rotor of a joint, as far as they are numbers.
+    /// Friction and rotor inertia of a joint, if they are numbers.
     fn torques(&self, at: usize, joint: &mut Joint) {
         let own = |key: &str| self.optional(key, at).flatten().unwrap_or(0.0);
         (joint.armature, joint.damping, joint.friction) = (own("IA"), own("FV"), own("FS"));
@@ -298,7 +301,7 @@ impl Reader<'_> {
             .is_some_and(|(text, _)| text == "1")
     }
 
-    /// Gravity; where it has a symbol, 9.81 m/s² against z.
+    /// Reads gravity; symbols mean 9.81 m/s² along −z.
     fn gravity(&self, model: &mut Model) {
         let Some((_, values)) = self.entries.get("G") else {
             return;
@@ -332,7 +335,7 @@ impl Reader<'_> {
             .map_or(start, |(place, _)| place.clone())
     }
 
-    /// A value of a list; an error where there is none.
+    /// Value of a list; reports an error if it is missing.
     fn entry(&self, key: &str, at: usize) -> Option<&(String, Place)> {
         let found = self.entries.get(key).and_then(|(_, values)| values.get(at));
         if found.is_none() {
@@ -343,7 +346,7 @@ impl Reader<'_> {
         found
     }
 
-    /// A whole number of its own.
+    /// Reads a single integer.
     fn count(&self, key: &str) -> Option<usize> {
         let (text, place) = self
             .entries
@@ -373,7 +376,7 @@ impl Reader<'_> {
         found
     }
 
-    /// A number; an error where it has symbols without a value.
+    /// Reads a number; reports an error if a symbol has no value.
     fn number(&self, key: &str, at: usize, symbols: &BTreeMap<String, f64>) -> Option<f64> {
         let (text, place) = self.entry(key, at)?;
         match value(text, symbols) {
@@ -393,7 +396,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A dynamic parameter: `Some(None)` of one whose symbol has no value, zero of one that is not there.
+    /// Reads a dynamic parameter: `Some(None)` if its symbol has no value, zero if it is absent.
     fn optional(&self, key: &str, at: usize) -> Option<Option<f64>> {
         let found = self.entries.get(key).and_then(|(_, values)| values.get(at));
         let Some((text, _)) = found else {

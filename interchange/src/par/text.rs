@@ -1,9 +1,9 @@
-//! The text of a .par file: keys with a value or a list of values in braces, and comments.
+//! Syntax of .par files: keys with a value or a list in braces, and comments.
 
 use crate::files::{Files, Place};
 use std::collections::BTreeMap;
 
-/// Values of a file by their keys in capitals, each value with its place.
+/// Values by key in capitals, each with its location.
 pub(super) type Entries = BTreeMap<String, (Place, Vec<(String, Place)>)>;
 
 /// Reads the entries; `None` after an error.
@@ -85,7 +85,7 @@ pub(super) fn robot_name(text: &str) -> Option<&str> {
     (!name.is_empty() && name.len() < 100 && !name.contains('\n')).then_some(name)
 }
 
-/// The text with blanks in the place of comments, so that places stay.
+/// Replaces comments by blanks, which preserves locations.
 fn without_comments(files: &Files, file: usize, text: &str) -> Option<String> {
     let mut bare = String::with_capacity(text.len());
     let mut rest = text;
@@ -112,7 +112,7 @@ fn without_comments(files: &Files, file: usize, text: &str) -> Option<String> {
     Some(bare)
 }
 
-/// The parts between commas that stand in no parentheses, without the blanks around them.
+/// Splits at commas outside parentheses and trims the parts.
 fn parts(text: &str) -> Vec<(usize, usize)> {
     let mut ends = vec![];
     let (mut depth, mut from) = (0_i32, 0);

@@ -1,4 +1,4 @@
-//! Joints of a leg in the making: axes at home, names, parameters and their values.
+//! Builds the joints of a leg: axes at home, names, parameters and their values.
 
 use super::{Joint, names::Names};
 use crate::{
@@ -15,15 +15,15 @@ use crate::{
 };
 use nalgebra::{Point3, Vector3};
 
-/// A leg in the making.
+/// A leg under construction.
 pub(super) struct Draft<'d, 'm> {
     files: &'d Files,
     network: &'d Network<'m>,
     pub(super) nodes: Vec<Node>,
-    /// The group that each node carries, none of massless bodies within a universal or ball joint.
+    /// Group that each node carries; `None` for massless bodies within a universal or ball joint.
     pub(super) groups: Vec<Option<usize>>,
     pub(super) names: Vec<String>,
-    /// The edge that each node is of, and which of its axes.
+    /// Edge of each node, and which of the edge's axes.
     origins: Vec<(usize, usize)>,
     pub(super) used: Names,
 }
@@ -41,7 +41,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         }
     }
 
-    /// Adds the axes of an edge that is gone along from one group to another.
+    /// Adds the axes of an edge that is traversed from one group to another.
     pub(super) fn push(&mut self, index: usize, from: usize, to: usize, may_shorten: bool) {
         let edge = &self.network.edges[index];
         let antecedent = self.groups.iter().position(|group| *group == Some(from));
@@ -49,7 +49,8 @@ impl<'d, 'm> Draft<'d, 'm> {
         let axis = self.network.axis(edge, home);
         let sign = if edge.groups[0] == from { 1.0 } else { -1.0 };
         let position = match edge.origin {
-            // The variable of a joint that follows has no constant: it stands in the joint's expression.
+            // The variable of a coupled joint excludes the constant, which is part of the joint's
+            // expression.
             Origin::Joint(joint) => home.positions[joint] - self.constant(joint),
             Origin::Closure(_) => 0.0,
         };
@@ -92,7 +93,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         }
     }
 
-    /// Whether an edge slides as another turns.
+    /// Whether an edge is the slide of a screw.
     fn is_screw(&self, edge: &Edge) -> bool {
         let Origin::Joint(joint) = edge.origin else {
             return false;
@@ -102,7 +103,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         edge.kind == Kind::Prismatic && leader == Some(Kind::Revolute)
     }
 
-    /// What the position of a joint that follows another has besides the other's.
+    /// Constant offset of a coupled joint's position.
     fn constant(&self, joint: usize) -> f64 {
         let follow = self.network.model.joints[joint].follow;
         follow.map_or(0.0, |follow| follow.offset)
@@ -115,15 +116,16 @@ impl<'d, 'm> Draft<'d, 'm> {
         self.names.push(name);
     }
 
-    /// The last joint carries a body that stands elsewhere in the description.
+    /// Marks that the body of the last joint is described elsewhere.
     pub(super) fn end_without_body(&mut self) {
         if let Some(last) = self.groups.last_mut() {
             *last = None;
         }
     }
 
-    /// The successive axes of a ball, two of them where a rod behind it may spin: the first parallel to the joint
-    /// before where it can be, none along the rod.
+    /// Successive axes of a ball joint; two if the rod after it may spin.
+    ///
+    /// The first axis is parallel to the preceding joint if possible; none is along the rod.
     fn ball_axes(
         &self,
         antecedent: Option<usize>,
@@ -149,7 +151,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         }
     }
 
-    /// The joints as the description has them.
+    /// Joints in the form of the description.
     pub(super) fn joints(&self, framed: &[Framed], has_loops: bool) -> Vec<Joint> {
         let mut all: Vec<Joint> = Vec::new();
         let mut taken = Names::default();
@@ -207,7 +209,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         joint
     }
 
-    /// Which edge of the file a joint is.
+    /// Comment that names the edge of the file.
     fn described(&self, edge: &Edge) -> String {
         let between = edge.groups.map(|group| self.network.group_name(group));
         let bodies = format!("from `{}` to `{}`", between[0], between[1]);
@@ -225,7 +227,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         format!("{kind}`{name}` of line {line}, {bodies}")
     }
 
-    /// Motor, friction, spring and what it follows.
+    /// Sets motor, friction, spring and coupling of a joint.
     fn torques(&self, edge: &Edge, joint: &mut Joint, has_loops: bool) {
         let Origin::Joint(at) = edge.origin else {
             return;
@@ -285,7 +287,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         joint.parameters = Some(symbols);
     }
 
-    /// Adds the parameters of the bodies that the joints carry.
+    /// Adds the parameters of the carried bodies.
     fn add_bodies(&self, framed: &[Framed], joints: &mut [Joint]) {
         for (at, group) in self.groups.iter().enumerate() {
             let Some(group) = *group else { continue };
@@ -325,7 +327,7 @@ impl<'d, 'm> Draft<'d, 'm> {
     }
 }
 
-/// A massless body that is turned by 90° about x.
+/// A massless body that is rotated by 90° about x.
 fn quarter(name: String, antecedent: Option<String>) -> Joint {
     let step = Step {
         alpha: std::f64::consts::FRAC_PI_2,
@@ -355,7 +357,7 @@ fn fixed(name: String, antecedent: Option<String>, step: Step, comment: Vec<Stri
     }
 }
 
-/// The point that meets another body, in the frame of the last joint.
+/// Closure point in the frame of the last joint.
 pub(super) fn tip(frame: &Pose, point: &Point3<f64>, used: &mut Names) -> Option<Joint> {
     let at = frame.inverse_transform_point(point);
     if at.coords.norm() < 1e-14 {
@@ -363,13 +365,13 @@ pub(super) fn tip(frame: &Pose, point: &Point3<f64>, used: &mut Names) -> Option
     }
     let to = Pose::from_parts(at.coords.into(), nalgebra::Rotation3::identity());
     let mut step = Step::between(&Pose::identity(), &to)?;
-    // Only the origin counts.
+    // Only the origin matters.
     step.theta = 0.0;
     (step.b, step.r) = (step.r, 0.0);
     Some(fixed(used.unique("tip"), None, step, Vec::new()))
 }
 
-/// What a chain is, for its reader.
+/// Comment on a chain.
 pub(super) fn chain_comment(network: &Network<'_>, ear: &Ear) -> Vec<String> {
     let names: Vec<String> = ear
         .groups
@@ -399,7 +401,7 @@ pub(super) fn chain_comment(network: &Network<'_>, ear: &Ear) -> Vec<String> {
     lines
 }
 
-/// Where a joint of the file stands at home that the description has no coordinate of.
+/// Comment on the home position of a joint that is not a coordinate of the description.
 pub(super) fn at_home(network: &Network<'_>, edge: &Edge) -> Option<String> {
     let Origin::Joint(joint) = edge.origin else {
         return None;

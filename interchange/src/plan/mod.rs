@@ -1,4 +1,4 @@
-//! The legs of a description: joints with their constants, parameters and values, from skeleton and chains.
+//! Legs of a description with constants, parameters and values, from skeleton and chains.
 
 mod joints;
 mod names;
@@ -24,9 +24,9 @@ pub(crate) use names::word;
 #[derive(Debug)]
 pub(crate) struct Leg {
     pub(crate) name: String,
-    /// What a reader shall know of it, lines.
+    /// Comment lines.
     pub(crate) comment: Vec<String>,
-    /// The body that it stands on and its base frame in that body's; nothing on the ground without any constants.
+    /// Body that carries it and its base frame there; `None` for the identity on the ground.
     pub(crate) base: Option<(Option<String>, Pose)>,
     pub(crate) joints: Vec<Joint>,
     pub(crate) end: Option<End>,
@@ -38,34 +38,34 @@ pub(crate) struct Joint {
     pub(crate) name: String,
     /// `revolute`, `prismatic`, `helical` or `fixed`.
     pub(crate) kind: &'static str,
-    /// Of a helical joint what it goes along for a turn.
+    /// Pitch of a helical joint, m for each turn.
     pub(crate) pitch: Option<f64>,
-    /// The joint that carries it, where it is not the one before; `base` for none.
+    /// Joint that carries it if not the previous one; `base` for none.
     pub(crate) antecedent: Option<String>,
     pub(crate) step: Step,
-    /// What it follows, as an expression; its own variable where there is none.
+    /// Expression of its coupling; its own variable if `None`.
     pub(crate) follows: Option<String>,
     pub(crate) actuated: bool,
-    /// Its parameters; all usual ones where there is none.
+    /// Its parameters; the default set if `None`.
     pub(crate) parameters: Option<Vec<&'static str>>,
-    /// Values of its parameters by symbol.
+    /// Parameter values by symbol.
     pub(crate) values: Vec<(&'static str, f64)>,
-    /// A spring: where it rests.
+    /// Rest position of its spring.
     pub(crate) spring: Option<f64>,
     pub(crate) home: f64,
-    /// The joint of the file that it is.
+    /// Joint of the file.
     pub(crate) of: Option<usize>,
-    /// The bodies of the file that it carries, as a group of the network, and its frame in the world at home.
+    /// Group of bodies that it carries, and the joint's frame in the world at home.
     pub(crate) carries: Option<(usize, Pose)>,
     pub(crate) comment: Vec<String>,
 }
 
-/// Where a chain ends.
+/// End of a chain.
 #[derive(Debug)]
 pub(crate) struct End {
     pub(crate) body: String,
     pub(crate) is_rigid: bool,
-    /// The point, or frame, in that of the body.
+    /// Closure point or frame in the body's frame.
     pub(crate) at: Pose,
 }
 
@@ -73,17 +73,17 @@ pub(crate) struct End {
 #[derive(Debug)]
 pub(crate) struct Plan {
     pub(crate) legs: Vec<Leg>,
-    /// The axes of the skeleton's joints in the world at home, also of those that follow others.
+    /// Axes of the skeleton's joints in the world at home, including coupled joints.
     pub(crate) axes: Vec<Vector3<f64>>,
     /// Comments for the head of the description.
     pub(crate) notes: Vec<String>,
 }
 
-/// A body in the description: its name there and its frame in the world at home.
+/// Name of each group in the description, and its frame in the world at home.
 type Bodies = Vec<Option<(String, Pose)>>;
 
 impl Plan {
-    /// The legs of a layout; `None` after an error.
+    /// Legs of a layout; `None` after an error.
     pub(crate) fn new(files: &Files, network: &Network<'_>, layout: &Layout) -> Option<Self> {
         let mut bodies: Bodies = vec![None; network.groups.len()];
         bodies[0] = Some(("ground".to_owned(), Pose::identity()));
@@ -137,7 +137,7 @@ fn skeleton(
     (leg, axes)
 }
 
-/// What the head of the skeleton says of the coordinates.
+/// Comment on the independent coordinates.
 fn independent(network: &Network<'_>, layout: &Layout) -> String {
     let has_branches = layout.coordinates().len() > layout.skeleton.len();
     let branches = if has_branches {
@@ -154,7 +154,7 @@ fn independent(network: &Network<'_>, layout: &Layout) -> String {
     )
 }
 
-/// The joints of a tree.
+/// Builds the joints of a tree.
 fn drafted<'d, 'm>(
     files: &'d Files,
     network: &'d Network<'m>,
@@ -170,7 +170,7 @@ fn drafted<'d, 'm>(
     draft
 }
 
-/// A tree on a body of a chain, and the axes of its joints.
+/// Builds a tree on a body of a chain, and the axes of its joints.
 fn branch(
     files: &Files,
     network: &Network<'_>,

@@ -1,15 +1,15 @@
-//! Names that a description may have, as near as can be to those of the file.
+//! Valid names for a description, close to those of the file.
 
 use std::collections::BTreeSet;
 
-/// Names that are taken.
+/// Names in use.
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     taken: BTreeSet<String>,
 }
 
 impl Names {
-    /// The name as a word that nobody else has.
+    /// Valid name that is not yet in use.
     pub(crate) fn unique(&mut self, name: &str) -> String {
         let word = word(name);
         let mut own = word.clone();
@@ -22,7 +22,8 @@ impl Names {
     }
 }
 
-/// A name as a word of letters, digits and underscores that begins with a letter and is no word of the language.
+/// Converts a name to letters, digits and underscores, beginning with a letter and not a reserved
+/// word.
 pub(crate) fn word(name: &str) -> String {
     let sound = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let text: String = name.chars().map(sound).collect();

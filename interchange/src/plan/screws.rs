@@ -1,4 +1,4 @@
-//! Screws: a slide without mass that follows the turn behind it, on one axis, is a helical joint.
+//! Merges a massless slide that is coupled to the next rotation on one axis into a helical joint.
 
 use super::Joint;
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
 };
 use std::f64::consts::TAU;
 
-/// Puts the slides of screws into their turns.
+/// Merges the slides of screws into their rotations.
 pub(super) fn join(model: &Model, joints: &mut Vec<Joint>) {
     let mut at = 0;
     while at + 1 < joints.len() {
@@ -19,7 +19,7 @@ pub(super) fn join(model: &Model, joints: &mut Vec<Joint>) {
             turn.kind = "helical";
             turn.pitch = Some(lead * TAU);
             turn.antecedent = slide.antecedent;
-            // All that is left of the turn's own step lies on the axis.
+            // The remaining constants of the rotation lie on the axis.
             turn.step = Step {
                 theta: slide.step.theta + turn.step.gamma + turn.step.theta,
                 r: slide.step.r + turn.step.b + turn.step.r,
@@ -30,7 +30,7 @@ pub(super) fn join(model: &Model, joints: &mut Vec<Joint>) {
     }
 }
 
-/// What a slide goes along for each radian of the joint behind it, if both are a screw.
+/// Lead in m/rad if a slide and the next joint form a screw.
 fn lead(model: &Model, slide: &Joint, turn: &Joint) -> Option<f64> {
     let (own, other) = (slide.of?, turn.of?);
     let follow = model.joints[own].follow?;

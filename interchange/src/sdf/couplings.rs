@@ -1,4 +1,5 @@
-//! Axes that follow others: `<mimic>`, and the joints of type gearbox, which join no bodies but two angles.
+//! Coupled joints of SDFormat: `<mimic>` of an axis, and joints of type `gearbox`, which couple two
+//! angles.
 
 use super::{
     frames::Name,
@@ -31,7 +32,7 @@ pub(super) fn read(gathered: &Gathered<'_>, edges: &[Edge], axes: &Axes, model: 
     couplings.resolve(gathered.files, model);
 }
 
-/// `<mimic>` of an axis: multiplier (leader - reference) + offset.
+/// Reads `<mimic>` of an axis: position = multiplier · (leader − reference) + offset.
 fn mimic(
     gathered: &Gathered<'_>,
     item: usize,
@@ -51,7 +52,7 @@ fn mimic(
     let is_meant = |other: &JointItem| {
         let frame = gathered.frames.find(own.scope, name);
         let is_frame = frame == Some(other.frame);
-        // Up to 1.6 a link of the same name may have the frame.
+        // Up to SDFormat 1.6, the frame may belong to a link with the joint's name.
         is_frame
             || prefix(other.scope) == prefix(own.scope) && other.element.get("name") == Some(name)
     };
@@ -76,8 +77,9 @@ fn mimic(
     })
 }
 
-/// The second angle of a gearbox is minus its ratio times the first: that of the child and of the parent against the
-/// reference body.
+/// Couples the two angles of a gearbox: θ_child = −ratio · θ_parent.
+///
+/// Both angles are measured from the reference body.
 fn gearbox(
     gathered: &Gathered<'_>,
     item: &JointItem,
@@ -114,8 +116,10 @@ fn gearbox(
     })
 }
 
-/// The revolute joint between two links along an axis of a gearbox, and whether it counts as the gearbox does, from
-/// the first to the second.
+/// Finds the revolute joint between two links along a gearbox axis.
+///
+/// The sign is positive if the joint and the gearbox count the angle in the same direction, from
+/// the first link to the second.
 fn turn(
     gathered: &Gathered<'_>,
     item: &JointItem,

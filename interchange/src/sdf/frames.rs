@@ -1,8 +1,9 @@
-//! Frames of SDFormat and what lies between them.
+//! Frame graph of SDFormat and the relative poses of its frames.
 //!
-//! Every link, joint, model and `<frame>` is a frame. Its pose is told in another one, which may be written anywhere
-//! in the file, so that all of them are gathered before the first is resolved. Two frames are seen from each other
-//! along the way that leads between them, not by way of the world: what is written as a right angle stays one.
+//! Every link, joint, model and `<frame>` is a frame. Its pose is relative to another frame, which
+//! may be defined anywhere in the file. All frames are therefore collected before the first one is
+//! resolved. Relative poses are composed along the path between two frames, not through the world
+//! frame. This keeps right angles of the file exact.
 
 use crate::{
     files::{Files, Place},
@@ -10,7 +11,7 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// A name as it stands in the file, and the scope that it stands in.
+/// Reference to a frame by name, with the scope in which the name is looked up.
 #[derive(Debug, Clone)]
 pub(super) struct Name {
     pub(super) scope: usize,
@@ -18,60 +19,60 @@ pub(super) struct Name {
     pub(super) place: Place,
 }
 
-/// Another frame, known or by its name.
+/// Reference to a frame, by index or by name.
 #[derive(Debug, Clone)]
 pub(super) enum To {
     Frame(usize),
     Named(Name),
 }
 
-/// What a frame moves with.
+/// Body that a frame is attached to.
 #[derive(Debug, Clone)]
 pub(super) enum Holder {
     World,
     Link(usize),
     Other(To),
-    /// A model without a link.
+    /// A model without links.
     Nothing,
 }
 
-/// A frame.
+/// One frame of the file.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
-    /// Its name for people.
+    /// Name in messages.
     pub(super) name: String,
     pub(super) place: Place,
-    /// What the file says of its pose, and the frame that it says it in.
+    /// Pose in the frame `to`, as written in the file.
     pub(super) pose: Pose,
     pub(super) to: To,
     pub(super) holder: Holder,
-    /// Of a model the frame in it that the pose is meant for, where it is not its own.
+    /// For a model with `placement_frame`: the inner frame that the pose applies to.
     pub(super) placed_by: Option<Name>,
 }
 
-/// A model, or the world: names are told from each other within it.
+/// Name scope: one model, or the world.
 #[derive(Debug, Clone)]
 pub(super) struct Scope {
-    /// What the names in it begin with, seen from the whole file.
+    /// Prefix of the scope's names in the whole file, as `outer::inner::`.
     pub(super) prefix: String,
-    /// The frame of the model.
+    /// Frame of the model.
     pub(super) model: usize,
-    /// The version of the file that it stands in.
+    /// SDFormat version of the file that contains the scope.
     pub(super) version: (u32, u32),
 }
 
-/// All frames; the first is the world.
+/// All frames of the file; the first is the world.
 #[derive(Debug)]
 pub(super) struct Frames {
     pub(super) all: Vec<Frame>,
     pub(super) scopes: Vec<Scope>,
     by_name: BTreeMap<String, usize>,
-    /// The frame that the pose of each is told in, once names are resolved.
+    /// Index of each frame's reference frame, known after `resolve`.
     to: Vec<usize>,
 }
 
 impl Frames {
-    /// The world alone.
+    /// Creates the graph with the world frame only.
     pub(super) fn new(place: Place, version: (u32, u32)) -> Self {
         let world = Frame {
             name: "world".to_owned(),
@@ -94,8 +95,9 @@ impl Frames {
         }
     }
 
-    /// Adds a frame under its whole name. Up to 1.6 a joint may be called like a link: the first of both keeps the
-    /// name.
+    /// Adds a frame under its full name.
+    ///
+    /// Up to SDFormat 1.6, a joint and a link may share a name; the first one keeps it.
     pub(super) fn add(&mut self, files: &Files, frame: Frame, whole: &str, version: (u32, u32)) {
         let at = self.all.len();
         if self.by_name.contains_key(whole) {
@@ -110,7 +112,7 @@ impl Frames {
         self.all.push(frame);
     }
 
-    /// The frame of a name.
+    /// Finds a frame by its name in a scope.
     pub(super) fn find(&self, scope: usize, name: &str) -> Option<usize> {
         let scope = self.scopes.get(scope)?;
         let whole = |name: &str| {
@@ -128,7 +130,7 @@ impl Frames {
         }
     }
 
-    /// The frame of a name; an error where there is none.
+    /// Finds a frame by its name; reports an error if it does not exist.
     pub(super) fn named(&self, files: &Files, name: &Name) -> Option<usize> {
         let found = self.find(name.scope, &name.text);
         if found.is_none() {
@@ -155,7 +157,7 @@ impl Frames {
         }
     }
 
-    /// Finds out what each pose is told in; `None` after an error.
+    /// Resolves the reference frame of each pose; `None` after an error.
     pub(super) fn resolve(&mut self, files: &Files) -> Option<()> {
         let to: Vec<Option<usize>> = self
             .all
@@ -167,7 +169,7 @@ impl Frames {
         self.place_models(files)
     }
 
-    /// Every way of frames has to lead to the world.
+    /// Checks that every chain of reference frames ends at the world.
     fn check_circles(&self, files: &Files) -> Option<()> {
         let mut leads = vec![false; self.all.len()];
         leads[0] = true;
@@ -178,7 +180,8 @@ impl Frames {
                 at = self.to[at];
             }
             if way.len() > self.all.len() {
-                // After as many steps as there are frames, this one stands on the circle: the first of it is told.
+                // The walk took as many steps as there are frames, so `at` lies on the cycle. The
+                // message names the cycle's first frame in the file.
                 let mut first = at;
                 let mut other = self.to[at];
                 while other != at {
@@ -199,8 +202,10 @@ impl Frames {
         Some(())
     }
 
-    /// Models that are placed by a frame in them get the pose of their own frame: inner ones first, which stand
-    /// behind the outer ones.
+    /// Computes the model pose of models that are placed by an inner frame (`placement_frame`).
+    ///
+    /// Inner models follow their outer models in the list, so the reverse order places inner models
+    /// first.
     fn place_models(&mut self, files: &Files) -> Option<()> {
         for model in (0..self.all.len()).rev() {
             let Some(name) = self.all[model].placed_by.clone() else {
@@ -224,7 +229,7 @@ impl Frames {
         Some(())
     }
 
-    /// A frame seen from another.
+    /// Pose of `frame` relative to the frame `from`.
     pub(super) fn seen(&self, frame: usize, from: usize) -> Pose {
         let way = |start: usize| {
             let (mut way, mut at) = (vec![start], start);
@@ -248,7 +253,7 @@ impl Frames {
         along(&to).inv_mul(&along(&of))
     }
 
-    /// The link that a frame moves with, `Some(None)` for the world; `None` after an error.
+    /// Link that a frame moves with; `Some(None)` for the world, `None` after an error.
     pub(super) fn link(&self, files: &Files, frame: usize, asked: &Name) -> Option<Option<usize>> {
         let mut at = frame;
         for _ in 0..=self.all.len() {

@@ -1,4 +1,4 @@
-//! Models within each other and files that they include, as lists of links, joints and frames.
+//! Collects links, joints and frames from nested models and included files.
 
 use super::{
     frames::{Frame, Frames, Holder, Name, Scope, To},
@@ -12,23 +12,23 @@ use crate::{
 };
 use std::{collections::BTreeSet, path::PathBuf};
 
-/// Models within each other, also those of included files.
+/// Largest depth of nested models, including those of included files.
 const DEPTH: usize = 60;
-/// Models altogether.
+/// Largest number of models and of scopes.
 const MODELS: usize = 20_000;
 
-/// Whose a link is.
+/// Model that a link or joint belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// The robot's.
+    /// The robot.
     Robot,
-    /// A static model's: it stands still in the world.
+    /// A static model, fixed to the world.
     Ground,
-    /// Another model's of the same world.
+    /// Another model of the same world.
     Stranger,
 }
 
-/// A link.
+/// A link with its XML element.
 #[derive(Debug)]
 pub(super) struct Link {
     pub(super) name: String,
@@ -37,7 +37,7 @@ pub(super) struct Link {
     pub(super) element: Element,
 }
 
-/// A joint.
+/// A joint with its XML element.
 #[derive(Debug)]
 pub(super) struct JointItem {
     pub(super) name: String,
@@ -49,7 +49,7 @@ pub(super) struct JointItem {
     pub(super) element: Element,
 }
 
-/// What a file says, gathered.
+/// Contents of an SDFormat file: its frames, links and joints.
 #[derive(Debug)]
 pub(super) struct Gathered<'f> {
     pub(super) files: &'f Files,
@@ -57,13 +57,13 @@ pub(super) struct Gathered<'f> {
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<JointItem>,
     models: usize,
-    /// Models that are open.
+    /// Depth of the current model.
     depth: usize,
-    /// Names of links and joints that are taken.
+    /// Full names of the links and joints read so far, by element.
     taken: BTreeSet<(&'static str, String)>,
-    /// Files within each other that are open.
+    /// Files that are being read, the innermost last.
     open: Vec<PathBuf>,
-    /// What names of the robot begin with in the whole file, which its description leaves out.
+    /// Prefix of the robot's names that the description omits.
     shown_without: String,
 }
 
@@ -88,13 +88,13 @@ impl<'f> Gathered<'f> {
         }
     }
 
-    /// A name for people: without the model where the whole robot is one model of a world.
+    /// Name in messages and descriptions, without the robot's own model prefix.
     fn shown(&self, whole: &str) -> String {
         let own = whole.strip_prefix(self.shown_without.as_str());
         own.unwrap_or(whole).to_owned()
     }
 
-    /// A model in a scope, with all that is in it.
+    /// Reads a model and its contents.
     pub(super) fn model(
         &mut self,
         element: &Element,
@@ -153,7 +153,9 @@ impl<'f> Gathered<'f> {
         gathered
     }
 
-    /// Everything in a model; its canonical link is the one that it names, or the first.
+    /// Reads the contents of a model and sets its canonical link.
+    ///
+    /// The canonical link is the one that `canonical_link` names, else the first.
     fn inside(
         &mut self,
         element: &Element,
@@ -177,7 +179,7 @@ impl<'f> Gathered<'f> {
         Some(())
     }
 
-    /// Links, joints, frames and models in a model or in the world.
+    /// Reads the links, joints, frames and models of a model or of the world.
     pub(super) fn parts(&mut self, element: &Element, scope: usize, owner: Owner) -> Option<()> {
         let version = self.frames.scopes[scope].version;
         for child in &element.children {
@@ -215,7 +217,7 @@ impl<'f> Gathered<'f> {
         Some(())
     }
 
-    /// Adds the frame of an element; the pose is told in the model where nothing else is said.
+    /// Adds the frame of an element; by default its pose is relative to the model.
     fn frame(
         &mut self,
         element: &Element,
@@ -242,7 +244,7 @@ impl<'f> Gathered<'f> {
         self.frames.all.len() - 1
     }
 
-    /// The name of an element and its whole name; `None` after an error.
+    /// Name and full name of an element; `None` after an error.
     fn names(&self, element: &Element, scope: usize) -> Option<(String, String)> {
         let name = element.required(self.files, "name")?;
         if name.trim().is_empty() || name == "world" || name.starts_with("__") {
@@ -323,7 +325,10 @@ impl<'f> Gathered<'f> {
         Some(())
     }
 
-    /// `<frame>`, which is attached to the model where it says nothing else, and told in what it is attached to.
+    /// Reads a `<frame>`.
+    ///
+    /// By default it is attached to the model, and its pose is relative to the frame that it is
+    /// attached to.
     fn named_frame(&mut self, element: &Element, scope: usize) -> Option<()> {
         let (name, whole) = self.names(element, scope)?;
         let attached = element.attribute("attached_to");

@@ -1,4 +1,4 @@
-//! `<include>`: the model of another file, which has to lie beside or beneath the one that includes it.
+//! `<include>`: reads the model of another file in the including file's folder or below.
 
 use super::{value::text, version};
 use crate::{
@@ -10,28 +10,28 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 
-/// Files altogether.
+/// Largest number of files.
 const FILES: usize = 500;
 
-/// Where a model comes from.
+/// Origin of a model.
 #[derive(Debug, Clone)]
 pub(super) struct Source {
     pub(super) version: (u32, u32),
-    /// The file that it was included from.
+    /// File that the model was included from.
     pub(super) from: Option<PathBuf>,
-    /// Whether its parts become those of the model around it.
+    /// Whether the model's contents are merged into the surrounding model.
     pub(super) is_merged: bool,
 }
 
-/// What an include leads to.
+/// Result of an `<include>`.
 pub(super) enum Included {
     Model(Box<Element>, Source),
-    /// A place that nobody looks at: its address, and where that stands.
+    /// URI that is not read, and its location in the file.
     Elsewhere(String, Place),
     Error,
 }
 
-/// Reads what an element includes; the last of the open files is the one that it stands in.
+/// Reads the model of an `<include>`; the last of the open files contains the element.
 pub(super) fn read(files: &Files, element: &Element, open: &[PathBuf]) -> Included {
     let Some((uri, place)) = text(element, "uri") else {
         let message = "<include> names no file";
@@ -47,14 +47,14 @@ pub(super) fn read(files: &Files, element: &Element, open: &[PathBuf]) -> Includ
     })
 }
 
-/// Refuses an address that nobody looks at.
+/// Reports an error for a URI that is not read.
 pub(super) fn refuse(files: &Files, uri: &str, place: &Place) {
     let message = format!("`{uri}` is not read: only files in the robot's own folder are");
     let help = "put the model beside this file and write its path from here, or write it out: `gz sdf -p FILE` does";
     files.report(place, message, help);
 }
 
-/// The path of an address that is relative and stays beneath the folder of the first file.
+/// Path of a relative URI that stays below the folder of the first file.
 fn beneath(uri: &str, open: &[PathBuf]) -> Option<PathBuf> {
     let plain = Path::new(uri);
     if uri.contains(':') || plain.is_absolute() || uri.contains('\\') {
@@ -74,7 +74,7 @@ fn beneath(uri: &str, open: &[PathBuf]) -> Option<PathBuf> {
     };
     match (real(first), real(&path)) {
         (Some(first), Some(path)) if !path.starts_with(&first) => None,
-        // What is not there is told as such, but for a path that leads out.
+        // A missing file is reported when it is opened, but a path with `..` is refused here.
         (_, None) if plain.components().any(|part| part.as_os_str() == "..") => None,
         _ => Some(path),
     }
@@ -118,7 +118,7 @@ fn included(
     Some((Box::new(changed(model.clone(), element)), source))
 }
 
-/// The model with the name, pose and other things that the include gives it.
+/// Applies the name, pose and other overrides of the `<include>` to the model.
 fn changed(mut model: Element, include: &Element) -> Element {
     if let Some((name, place)) = text(include, "name") {
         model.attributes.retain(|(key, ..)| key != "name");

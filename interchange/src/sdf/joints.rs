@@ -1,4 +1,4 @@
-//! Joints of SDFormat as axes of one motion each.
+//! Splits joints of SDFormat into axes with one degree of freedom each.
 
 use super::{
     frames::Name,
@@ -16,16 +16,17 @@ use std::f64::consts::TAU;
 /// One axis of a joint.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
-    /// The joint of the model, passive and without its place on the body.
+    /// Joint of the model, passive and without a placement on its body.
     pub(super) joint: Joint,
-    /// The element that it is told by: `axis` or `axis2`.
+    /// Element that describes it: `axis` or `axis2`.
     pub(super) element: &'static str,
-    /// Of the slide of a screw what it moves along for each radian of its turn.
+    /// For the slide of a screw joint: displacement for each radian of rotation, m.
     pub(super) lead: Option<f64>,
 }
 
-/// The axes of a joint from its parent to its child, with directions in the frame of the joint; none where it is
-/// fixed. `None` after an error.
+/// Axes of a joint from its parent to its child; empty for a fixed joint, `None` after an error.
+///
+/// Directions are in the frame of the joint.
 pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis>> {
     let one = |kind, tag, name: String| axis(gathered, item, kind, tag, name);
     let name = || item.name.clone();
@@ -67,7 +68,8 @@ pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis
                 axis: turn.joint.axis,
                 ..Joint::new(&format!("{}_slide", item.name), Kind::Prismatic, place)
             };
-            // Both along one axis, in either order; the last carries the body.
+            // Both motions have the same axis, so their order does not matter; the last one carries
+            // the body.
             vec![slide, turn]
         }
         other => {
@@ -120,7 +122,7 @@ fn axis(
     })
 }
 
-/// The direction of an axis in the frame of its joint.
+/// Direction of an axis in the frame of its joint.
 pub(super) fn direction(
     gathered: &Gathered<'_>,
     item: &JointItem,
@@ -140,7 +142,8 @@ pub(super) fn direction(
         return None;
     };
     let named = given.and_then(|xyz| xyz.attribute("expressed_in"));
-    // Up to 1.4 all axes are told in the model, in 1.5 and 1.6 those that say so.
+    // Up to 1.4 all axes are expressed in the model frame; in 1.5 and 1.6 only those with
+    // `use_parent_model_frame`.
     let in_model = scope.version <= (1, 4) || flag(files, element, "use_parent_model_frame");
     let frame = match named.filter(|(name, _)| !name.is_empty()) {
         Some((name, place)) => {
@@ -159,7 +162,7 @@ pub(super) fn direction(
     }))
 }
 
-/// What a screw moves along for each radian, m: positive of a thread with a right hand.
+/// Lead of a screw, m/rad; positive for a right-handed thread.
 fn lead(gathered: &Gathered<'_>, item: &JointItem) -> Option<f64> {
     let files = gathered.files;
     let read = |tag: &str| {
@@ -169,7 +172,7 @@ fn lead(gathered: &Gathered<'_>, item: &JointItem) -> Option<f64> {
     };
     let (value, element) = match (read("screw_thread_pitch"), read("thread_pitch")) {
         (Some((value, own)), _) => (value.map(|[pitch]| pitch / TAU), own),
-        // The older word counts radians for a metre, of a thread with a left hand.
+        // The deprecated `thread_pitch` is in rad/m and positive for a left-handed thread.
         (None, Some((value, own))) => (value.map(|[pitch]| -1.0 / pitch), own),
         (None, None) => {
             let message = format!("the screw `{}` has no pitch", item.name);
@@ -188,12 +191,12 @@ fn lead(gathered: &Gathered<'_>, item: &JointItem) -> Option<f64> {
     Some(lead)
 }
 
-/// Whether a joint is none of its own, but a coupling of two others.
+/// Whether a joint only couples two other joints.
 pub(super) fn is_coupling(item: &JointItem) -> bool {
     item.element.get("type") == Some("gearbox")
 }
 
-/// The reference body of a gearbox.
+/// Reference body of a gearbox.
 pub(super) fn reference_body(gathered: &Gathered<'_>, item: &JointItem) -> Option<Name> {
     let found = text(&item.element, "gearbox_reference_body");
     if found.is_none() {

@@ -7,7 +7,7 @@ use super::{
 use crate::model::{Inertia, Model};
 use nalgebra::{Matrix3, Point3};
 
-/// Mass and inertia of a link, and whether it has some of which the file does not say how much.
+/// Inertia of a link, and whether the link has inertia whose value the file does not give.
 pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>, bool) {
     let files = gathered.files;
     let Some(inertial) = link.element.child("inertial") else {
@@ -46,7 +46,7 @@ pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>,
     (Some(about_centre.seen(&frame)), false)
 }
 
-/// What SDFormat gives a link that says nothing.
+/// Default inertia of SDFormat.
 fn usual() -> Inertia {
     Inertia {
         mass: 1.0,
@@ -55,7 +55,7 @@ fn usual() -> Inertia {
     }
 }
 
-/// What a reader has to know of the links: where SDFormat's own values stand, and where mass is not told.
+/// Adds notes on links with SDFormat's default inertia and on links of unknown mass.
 pub(super) fn notes(gathered: &Gathered<'_>, links: &[usize], model: &mut Model) {
     let listed = |is: &dyn Fn(&Link) -> bool| {
         let own = links.iter().map(|&link| &gathered.links[link]);
@@ -72,7 +72,9 @@ pub(super) fn notes(gathered: &Gathered<'_>, links: &[usize], model: &mut Model)
     }
 }
 
-/// Gravity acts on all links or on none: an error names those on which it does not.
+/// Checks that gravity acts on all links or on none.
+///
+/// The error lists the links without gravity.
 pub(super) fn gravity(gathered: &Gathered<'_>, links: &[usize], model: &mut Model) {
     let files = gathered.files;
     let is_light = |link: &&usize| {

@@ -1,10 +1,18 @@
-//! SDFormat, the language of Gazebo, 1.4 to 1.12: links, joints between any two of them, and frames in which poses
-//! are told.
+//! Reader of SDFormat 1.4 to 1.12, the format of Gazebo.
 //!
-//! What a pose means follows "Pose frame semantics" and its proposal on sdformat.org, and the descriptions of the
-//! elements in gazebosim/sdformat: of a link it is told in its model, of a joint in its child, of a `<frame>` in what
-//! it is attached to, of a model in what is around it, wherever nothing else is said. Axes are told in the frame of
-//! their joint. All joints stand at zero in the poses of the file, so that its loops are closed there.
+//! Joints may connect any two links, so that a robot may have loops. Poses follow "Pose frame
+//! semantics" and its proposal on sdformat.org, and the element descriptions in gazebosim/sdformat.
+//! The default reference frame of a pose depends on the element:
+//!
+//! | element | default reference frame |
+//! |---|---|
+//! | link | model |
+//! | joint | child link |
+//! | `<frame>` | frame that it is attached to |
+//! | model | enclosing model or world |
+//!
+//! Axes are expressed in the frame of their joint. All joints are at zero in the file's poses, so
+//! its loops are closed there.
 
 mod couplings;
 mod frames;
@@ -28,10 +36,10 @@ use gather::{Gathered, Owner};
 use include::{Included, Source};
 use value::{flag, several};
 
-/// Acceleration of gravity of a world that says nothing.
+/// Default gravity of a world, m/s².
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 
-/// Reads a robot; what is wrong is noted in the files.
+/// Reads a robot; errors are recorded in `files`.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let mut root = xml::parse(files, file)?;
     keep_honoured(files, &SDF, &mut root);
@@ -91,7 +99,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     files.is_clean().then_some(model)
 }
 
-/// The version of a file; `None` after an error.
+/// SDFormat version of a file; `None` after an error.
 fn version(files: &Files, root: &Element) -> Option<(u32, u32)> {
     let Some((text, place)) = root.attribute("version") else {
         let help = "write for instance <sdf version=\"1.9\">";
@@ -114,15 +122,16 @@ fn version(files: &Files, root: &Element) -> Option<(u32, u32)> {
     known
 }
 
-/// A model of the world, or of the file.
+/// A model of the world or of the file.
 struct Found {
     element: Element,
     source: Source,
     is_static: bool,
 }
 
-/// The models of a world, or of the file. What a world includes from elsewhere is
-/// left out, and told.
+/// Models of a world or of a file.
+///
+/// An `<include>` of a world that cannot be read is omitted and reported.
 fn models(
     files: &Files,
     around: &Element,
@@ -170,7 +179,7 @@ fn models(
     Some(all)
 }
 
-/// The robot among the models: the one that is named, or the only one that moves.
+/// Chooses the robot: the model given in the options, else the only one that moves.
 fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) -> Option<usize> {
     let name = |at: usize| models[at].element.get("name").unwrap_or_default();
     if let Some(wanted) = &options.model {
@@ -188,7 +197,7 @@ fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) 
         .collect();
     match (&moving[..], models.len()) {
         ([only], _) => Some(*only),
-        // A robot that is static is told as such.
+        // `Gathered::model` reports the error for a static robot.
         ([], 1) => Some(0),
         ([], _) => {
             let message = "there is no <model> that moves";

@@ -1,7 +1,7 @@
-//! A tree of bodies out of joints between any two links: what is left over closes loops.
+//! Spanning tree of bodies from joints between any two links; the other joints close loops.
 //!
-//! A joint that closes a loop keeps its axes: they carry a massless body, which is one with the link that the joint
-//! leads to. Which joints these are changes nothing, as bodies that are one have no order.
+//! The axes of a loop-closing joint carry a massless body, which is welded to the joint's child
+//! link. The choice of these joints does not change the model.
 
 use super::{
     frames::Name,
@@ -16,17 +16,17 @@ use crate::{
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 
-/// The joint of the model that an axis of the file is: by the number of the file's joint, and its element.
+/// Joint of the model for each axis of the file, by joint number and element.
 pub(super) type Axes = BTreeMap<(usize, &'static str), usize>;
 
-/// A joint between two links; the ground is none.
+/// A joint between two links; `None` is the ground.
 pub(super) struct Edge {
     pub(super) item: usize,
     pub(super) ends: [Option<usize>; 2],
     pub(super) axes: Vec<Axis>,
 }
 
-/// The bodies of the model, and where its joints come from; `None` after an error.
+/// Builds the bodies and joints of the model; `None` after an error.
 pub(super) fn build(
     gathered: &Gathered<'_>,
     options: &Options,
@@ -69,7 +69,7 @@ pub(super) fn build(
     gathered.files.is_clean().then_some((edges, axes))
 }
 
-/// The number of a link among all and the ground.
+/// Node number of a link; the ground is 0.
 fn node(link: Option<usize>) -> usize {
     link.map_or(0, |link| link + 1)
 }
@@ -105,7 +105,7 @@ fn edges(gathered: &Gathered<'_>) -> Option<Vec<Edge>> {
     gathered.files.is_clean().then_some(edges)
 }
 
-/// The link of a joint's end, `Some(None)` for the ground.
+/// Link at a joint's end; `Some(None)` for the ground.
 pub(super) fn end(gathered: &Gathered<'_>, name: &Name) -> Option<Option<usize>> {
     let frame = gathered.frames.named(gathered.files, name)?;
     let link = gathered.frames.link(gathered.files, frame, name)?;
@@ -121,12 +121,12 @@ pub(super) fn end(gathered: &Gathered<'_>, name: &Name) -> Option<Option<usize>>
 struct Tree<'t, 'f> {
     gathered: &'t Gathered<'f>,
     edges: &'t [Edge],
-    /// The edges of the ground and of each link.
+    /// Edges of the ground and of each link.
     at: Vec<Vec<usize>>,
-    /// The body of each link.
+    /// Body of each link.
     bodies: Vec<Option<usize>>,
     used: Vec<bool>,
-    /// Edges between bodies that are there.
+    /// Edges that close loops.
     cuts: Vec<usize>,
     axes: Axes,
 }
@@ -144,7 +144,7 @@ impl Tree<'_, '_> {
         link.map_or(0, |link| self.link(link).frame)
     }
 
-    /// All bodies that joints lead to, depth first, in the order of the file.
+    /// Adds all bodies that joints reach from a link, depth first, in file order.
     fn grow(&mut self, from: Option<usize>, model: &mut Model) {
         let mut open = vec![from];
         while let Some(at) = open.pop() {
@@ -169,8 +169,10 @@ impl Tree<'_, '_> {
         }
     }
 
-    /// The bodies that the axes of an edge carry, all of them in the place of the last; gone along from its child to
-    /// its parent all motions are those of the other way in the opposite order.
+    /// Adds the bodies that the axes of an edge carry, all at the pose of the last one.
+    ///
+    /// If the edge is traversed from child to parent, the motions are inverted and in reverse
+    /// order.
     fn hang(&mut self, edge: usize, is_against: bool, model: &mut Model) -> usize {
         let Edge { item, ends, axes } = &self.edges[edge];
         let [carrier, carried] = match is_against {
@@ -212,7 +214,7 @@ impl Tree<'_, '_> {
         parent
     }
 
-    /// The slide of a screw follows its turn, which was added behind it.
+    /// Couples the slide of a screw to its rotation.
     fn follow(&self, item: usize, axes: &[Axis], model: &mut Model) {
         let Some(lead) = axes.iter().find_map(|axis| axis.lead) else {
             return;
@@ -227,7 +229,7 @@ impl Tree<'_, '_> {
         });
     }
 
-    /// Gives a body what its link has.
+    /// Copies the inertia and location of a link to its body.
     fn fill(&mut self, body: usize, link: usize, model: &mut Model) {
         let (inertia, is_unknown) = links::inertia(self.gathered, self.link(link));
         let own = &mut model.bodies[body];
@@ -236,7 +238,7 @@ impl Tree<'_, '_> {
         self.bodies[link] = Some(body);
     }
 
-    /// The first link of those that hang together with one that no joint carries, or the link itself.
+    /// Base link of a floating group of links: one that no joint carries, else the given link.
     fn base_of(&self, link: usize) -> usize {
         let (mut seen, mut open) = (vec![false; self.bodies.len()], vec![link]);
         seen[link] = true;
@@ -257,7 +259,7 @@ impl Tree<'_, '_> {
         all.next().unwrap_or(link)
     }
 
-    /// Links that nothing holds: they float, or are fixed where the user wants it.
+    /// Adds links without a connection to the world: they float, or are fixed with `fix_base`.
     fn float(&mut self, base: usize, options: &Options, model: &mut Model) -> Option<()> {
         let link = self.link(base);
         if !options.fix_base {
@@ -281,7 +283,7 @@ impl Tree<'_, '_> {
         Some(())
     }
 
-    /// A joint between two bodies that are there.
+    /// Adds a loop-closing joint between two existing bodies.
     fn close(&mut self, edge: usize, model: &mut Model) {
         let [parent, child] = self.edges[edge].ends;
         let item: &JointItem = &self.gathered.joints[self.edges[edge].item];
@@ -313,7 +315,7 @@ impl Tree<'_, '_> {
     }
 }
 
-/// Adds a body without mass.
+/// Adds a massless body.
 fn push(
     model: &mut Model,
     name: String,

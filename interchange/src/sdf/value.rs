@@ -1,4 +1,4 @@
-//! Values of SDFormat, which stand in the texts of elements.
+//! Values of SDFormat, read from the text of elements.
 
 use crate::{
     files::{Files, Place},
@@ -8,19 +8,19 @@ use crate::{
 };
 use nalgebra::{Rotation3, Translation3};
 
-/// Limits that are as large are none: SDFormat up to 1.8 writes ±1e16 where it means no limit.
+/// Limits from this value on mean "no limit": SDFormat up to 1.8 writes ±1e16.
 const NO_LIMIT: f64 = 1e15;
 
-/// Numbers that are as large are slips, and their squares would soon be none.
+/// Numbers from this value on are rejected, because their squares could soon overflow.
 const LARGEST: f64 = 1e15;
 
-/// The text of an element in another, and its place; none where it is absent or empty.
+/// Text of a child element and its location; `None` if absent or empty.
 pub(super) fn text<'e>(of: &'e Element, tag: &str) -> Option<(&'e str, &'e Place)> {
     let (text, place) = &of.child(tag)?.text;
     (!text.is_empty()).then_some((text.as_str(), place))
 }
 
-/// So many numbers in an element; `None` after an error.
+/// Reads `N` numbers from an element; `None` after an error.
 pub(super) fn several<const N: usize>(files: &Files, element: &Element) -> Option<[f64; N]> {
     let (text, place) = &element.text;
     match numbers(text).map(<[f64; N]>::try_from) {
@@ -38,13 +38,13 @@ pub(super) fn several<const N: usize>(files: &Files, element: &Element) -> Optio
     }
 }
 
-/// The number of an element in another; the default where it is absent or, after an error, no number.
+/// Number in a child element; the default if it is absent or invalid.
 pub(super) fn number(files: &Files, of: &Element, tag: &str, default: f64) -> f64 {
     let found = of.child(tag).map(|element| several(files, element));
     found.map_or(default, |values| values.map_or(default, |[value]| value))
 }
 
-/// A limit; none where there is none, or one that nothing reaches.
+/// Limit in a child element; `None` if absent or infinite in practice.
 pub(super) fn limit(files: &Files, of: &Element, tag: &str) -> Option<f64> {
     let (text, place) = text(of, tag)?;
     match text.parse::<f64>() {
@@ -57,7 +57,7 @@ pub(super) fn limit(files: &Files, of: &Element, tag: &str) -> Option<f64> {
     }
 }
 
-/// Whether an element in another says yes; no where it is absent or, after an error, something else.
+/// Whether a child element is true; false if absent or invalid.
 pub(super) fn flag(files: &Files, of: &Element, tag: &str) -> bool {
     match text(of, tag) {
         None | Some(("false" | "0" | "False", _)) => false,
@@ -70,7 +70,7 @@ pub(super) fn flag(files: &Files, of: &Element, tag: &str) -> bool {
     }
 }
 
-/// The pose of `<pose>`, without the frame that it is told in.
+/// Reads `<pose>`, without its reference frame.
 pub(super) fn pose(files: &Files, element: Option<&Element>) -> Pose {
     let Some(element) = element.filter(|element| !element.text.0.is_empty()) else {
         return Pose::identity();
@@ -100,7 +100,7 @@ pub(super) fn pose(files: &Files, element: Option<&Element>) -> Pose {
     Pose::from_parts(Translation3::from(at), rotation)
 }
 
-/// The frame that an element's pose is told in, where it names one: `relative_to`, or `frame` before 1.7.
+/// Reference frame that a pose names: `relative_to`, or `frame` before SDFormat 1.7.
 pub(super) fn told_in(element: Option<&Element>) -> Option<(&str, &Place)> {
     let pose = element?;
     let named = pose

@@ -1,5 +1,7 @@
-//! The YAML file beside a URDF in which users of Pinocchio name closures and motors: pairs of frames that meet,
-//! `closed_loop`, each `3d` (a point) or `6d` (a frame), and the driven joints, `name_mot`.
+//! Reads the YAML file that accompanies a URDF for Pinocchio users.
+//!
+//! It lists pairs of coincident frames (`closed_loop`), each `3d` (a point) or `6d` (a frame), and
+//! the actuated joints (`name_mot`).
 
 use super::Tree;
 use crate::{
@@ -11,7 +13,7 @@ use crate::{
 use nalgebra::Point3;
 use std::{collections::BTreeMap, path::Path};
 
-/// Reads the file beside, if there is one.
+/// Reads the YAML file, if there is one.
 pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
     let name = files.name(file);
     let urdf = Path::new(&name);
@@ -43,7 +45,7 @@ pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
     }
 }
 
-/// A value of the file: a word, or a list of values.
+/// A YAML value: a word or a list of values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
     Word(String),
@@ -61,8 +63,9 @@ impl Value {
     }
 }
 
-/// The keys at the left margin with their lists, in brackets or one item a line behind hyphens. Of YAML no more is
-/// used by these files, and what is not of this form is an error.
+/// Reads top-level keys with lists, in brackets or as hyphenated items.
+///
+/// Other YAML syntax is not used by these files and is an error.
 fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
     let mut entries = Entries::new();
     let mut at = 0;
@@ -107,10 +110,10 @@ fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
     files.is_clean().then_some(entries)
 }
 
-/// Lists within each other, at most.
+/// Largest depth of nested lists.
 const DEPTH: usize = 8;
 
-/// The value of a text: a list in brackets, items behind hyphens, or a word; `depth` lists are around it.
+/// Parses a bracketed list, hyphenated items or a word; `depth` counts the enclosing lists.
 fn value(text: &str, depth: usize) -> Option<Value> {
     let text = text.trim();
     if text.starts_with('-') {
@@ -230,7 +233,7 @@ fn closures(
     }
 }
 
-/// Joints whose kind the file changes into a spherical one.
+/// Applies `joint_type`, which changes joints to spherical ones.
 fn kinds(files: &Files, place: &Place, value: &Value, entries: &Entries, model: &mut Model) {
     let kinds = entries
         .get("joint_type")

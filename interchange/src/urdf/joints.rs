@@ -1,4 +1,4 @@
-//! Joints of URDF: the tree, joints that follow others, and which are driven.
+//! Joints of URDF: the tree, couplings and actuated joints.
 
 use super::{Links, Tree, body, origin};
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Joints that stand before a link.
+/// A joint element with its links.
 struct Edge<'e> {
     element: &'e Element,
     name: &'e str,
@@ -21,7 +21,7 @@ struct Edge<'e> {
     child: &'e str,
 }
 
-/// The tree of bodies; `None` where links and joints are none.
+/// Builds the tree of bodies; `None` if links and joints form none.
 pub(super) fn tree<'e>(
     files: &Files,
     root: &'e Element,
@@ -116,7 +116,7 @@ fn edges<'e>(files: &Files, root: &'e Element, links: &Links<'e>) -> Vec<Edge<'e
     edges
 }
 
-/// The link that no joint carries.
+/// Link that no joint carries.
 fn base<'e>(
     files: &Files,
     root: &Element,
@@ -139,7 +139,7 @@ fn base<'e>(
     None
 }
 
-/// The joint before a link; `None` where the two are fixed together, and after an error.
+/// Reads the joint before a link; `None` for a fixed joint and after an error.
 fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -> Option<usize> {
     let element = edge.element;
     let kind = match element.get("type") {
@@ -189,7 +189,7 @@ fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -
     Some(model.joints.len() - 1)
 }
 
-/// The axis of length 1, without what rounding left in it.
+/// Unit axis with rounding errors removed.
 pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
     let Some(element) = of.child("axis") else {
         return Some(Vector3::x());
@@ -206,7 +206,7 @@ pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
     found
 }
 
-/// The relations of `<mimic>`.
+/// Reads the couplings of `<mimic>`.
 pub(super) fn mimics(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
     for element in root.all("joint") {
         let Some(mimic) = element.child("mimic") else {

@@ -1,5 +1,7 @@
-//! Loops that stand in the URDF itself: `<loop>` of URDF+ (Chignoli, Slotine, Wensing, Kim 2024), `<constraint>`
-//! as proposed for urdfdom, and `<loop_joint>` of Isaac Sim.
+//! Loops in the URDF file itself, in three notations.
+//!
+//! `<loop>` of URDF+ (Chignoli, Slotine, Wensing, Kim 2024), `<constraint>` as proposed for
+//! urdfdom, and `<loop_joint>` of Isaac Sim.
 
 use super::{Tree, joints, origin};
 use crate::{
@@ -46,7 +48,7 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
     }
 }
 
-/// `<drake:ball_constraint>`: a point of one body that coincides with a point of another.
+/// `<drake:ball_constraint>`: coincident points of two bodies.
 fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
     for element in root.all("ball_constraint") {
         let end = |body: &str, point: &str| {
@@ -75,7 +77,8 @@ fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Mode
     }
 }
 
-/// Elements of closures, those of their two ends, and those of the frames on them (in the end itself where empty).
+/// Closure elements, elements of their two ends, and of the frames there (in the end itself if
+/// empty).
 const NOTATIONS: [(&str, [&str; 2], [&str; 2]); 3] = [
     ("loop", ["predecessor", "successor"], ["", ""]),
     (
@@ -120,7 +123,7 @@ fn kind(
     }
 }
 
-/// The axis in an element of a name; where `axis` itself is absent, that of URDF.
+/// Axis in a child element; URDF's default if `axis` is absent.
 fn axis_of(files: &Files, element: &Element, tag: &str) -> Option<Vector3<f64>> {
     if tag == "axis" {
         return joints::axis(files, element);
@@ -129,7 +132,7 @@ fn axis_of(files: &Files, element: &Element, tag: &str) -> Option<Vector3<f64>> 
     exact::unit(&Vector3::new(x, y, z), exact::SHORTEST)
 }
 
-/// A frame whose z axis is the given one.
+/// Frame with a given z axis.
 fn upright(axis: &Vector3<f64>) -> Pose {
     let turned = Rotation3::rotation_between(&Vector3::z(), axis);
     let turned = turned
@@ -137,7 +140,7 @@ fn upright(axis: &Vector3<f64>) -> Pose {
     Pose::from_parts(Vector3::zeros().into(), turned)
 }
 
-/// `<coupling>` of URDF+: the motion between two links follows that between others, by a ratio.
+/// `<coupling>` of URDF+: motion between two links proportional to that between two others.
 pub(super) fn couplings(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
     for element in root.all("coupling") {
         let end = |tag: &str| element.child(tag).and_then(|end| end.get("link"));

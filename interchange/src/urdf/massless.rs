@@ -1,4 +1,4 @@
-//! Links that have a shape but no mass.
+//! Reports links that have a shape but no mass.
 
 use super::Tree;
 use crate::{
@@ -9,10 +9,10 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// Links that have a shape and no `<inertial>`, with their places.
+/// Links with a shape and without `<inertial>`, with their locations.
 pub(super) type Shaped = BTreeMap<String, Place>;
 
-/// The links of a file that have a shape and no `<inertial>`; shapes are no longer there once the table was applied.
+/// Finds such links; must run before the table removes the shapes.
 pub(super) fn shaped_links(root: &Element) -> Shaped {
     let has = |link: &Element, tags: &[&str]| {
         let mut parts = link.children.iter();
@@ -25,7 +25,7 @@ pub(super) fn shaped_links(root: &Element) -> Shaped {
     named.collect()
 }
 
-/// Reports those of the links that joints move.
+/// Reports such links if joints move them.
 pub(super) fn report(files: &Files, shaped: &Shaped, tree: &Tree, model: &Model) {
     for (name, place) in shaped {
         let Some(&body) = tree.bodies.get(name) else {

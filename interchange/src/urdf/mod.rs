@@ -1,4 +1,4 @@
-//! URDF: a tree of links and joints, and the loops that several notations add to it.
+//! Reader of URDF: a tree of links and joints, and loops in several notations.
 
 mod beside;
 mod joints;
@@ -21,7 +21,7 @@ use crate::{
 use nalgebra::{Matrix3, Point3, Translation3};
 use std::collections::BTreeMap;
 
-/// Reads a robot; what is wrong is noted in the files.
+/// Reads a robot; errors are recorded in `files`.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let mut root = xml::parse(files, file)?;
     if root.name != "robot" {
@@ -40,7 +40,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     beside::read(files, file, &tree, &mut model);
     others::report(files, file, &tree);
     massless::report(files, &shaped, &tree, &model);
-    // After the file beside, which may turn joints into balls.
+    // After the YAML file, which may change joints to ball joints.
     let mut couplings = Couplings::default();
     joints::mimics(files, &root, &model, &mut couplings);
     loops::couplings(files, &root, &model, &mut couplings);
@@ -48,7 +48,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     files.is_clean().then_some(model)
 }
 
-/// The links by name.
+/// Links by name.
 type Links<'e> = BTreeMap<&'e str, &'e Element>;
 
 fn links<'e>(files: &Files, root: &'e Element) -> Links<'e> {
@@ -65,7 +65,7 @@ fn links<'e>(files: &Files, root: &'e Element) -> Links<'e> {
     links
 }
 
-/// The frame of an element's `<origin>`, or of the element itself where it has `xyz` and `rpy`.
+/// Pose of `<origin>`, or of an element with `xyz` and `rpy`.
 pub(crate) fn origin(files: &Files, of: Option<&Element>) -> Pose {
     let Some(element) = of else {
         return Pose::identity();
@@ -80,7 +80,7 @@ pub(crate) fn origin(files: &Files, of: Option<&Element>) -> Pose {
     Pose::from_parts(Translation3::new(x, y, z), rotation.unwrap_or_default())
 }
 
-/// A link's body without its joint.
+/// Body of a link, without its joint.
 fn body(files: &Files, link: &Element, parent: usize, placement: Pose) -> Body {
     Body {
         name: link.get("name").unwrap_or_default().to_owned(),
@@ -126,14 +126,14 @@ fn inertia(files: &Files, inertial: &Element) -> Inertia {
     .seen(&frame)
 }
 
-/// The bodies of a robot by the names of their links, and frames that joints name.
+/// Bodies by link name, and frames that joints name.
 #[derive(Debug)]
 struct Tree {
     bodies: BTreeMap<String, usize>,
 }
 
 impl Tree {
-    /// The body of a link, or that which a joint carries; an error where neither is called so.
+    /// Body of a link or of a joint's name; reports an error if there is neither.
     fn find(&self, files: &Files, model: &Model, name: &str, place: &Place) -> Option<usize> {
         let carried = || model.joint_named(name).map(|joint| model.carried_by(joint));
         let found = self.bodies.get(name).copied().or_else(carried);

@@ -1,4 +1,4 @@
-//! YAML files beside a URDF that are not read because of their names.
+//! Finds YAML files near a URDF that are ignored because of their names.
 
 use super::Tree;
 use crate::{
@@ -7,10 +7,10 @@ use crate::{
 };
 use std::path::Path;
 
-/// Largest file that is searched for loops, bytes.
+/// Size limit of the files that are searched, bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// Reports other YAML files in the folder that close loops of this robot, which only one of the URDF's name does.
+/// Reports YAML files of other names in the folder that close loops of this robot.
 pub(super) fn report(files: &Files, file: usize, tree: &Tree) {
     let path = files.path(file);
     let folder = path.parent().unwrap_or(Path::new(""));

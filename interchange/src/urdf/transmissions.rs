@@ -1,8 +1,8 @@
-//! Transmissions: which joints motors drive.
+//! Transmissions: the joints that motors drive.
 
 use crate::{files::Files, model::Model, xml::Element};
 
-/// Types of transmissions that drive one joint each, without the name of their package.
+/// Types of transmissions that drive one joint each, without the package name.
 const SINGLE: [&str; 3] = [
     "SimpleTransmission",
     "SimpleGazeboTransmission",

@@ -1,16 +1,17 @@
-//! What a file says of a body may be what no body has: it is then nothing to believe before data speak.
+//! Decides whether the file's inertial parameters are physically consistent and usable as a prior.
 
 use crate::plan::Joint;
 use nalgebra::{Matrix3, Vector3};
 
-/// Below this part of the whole a moment is what rounding left of zero.
+/// Relative size below which a moment counts as zero.
 const ROUNDING: f64 = 1e-12;
 
-/// The moments of second order.
+/// Second moments.
 const SECOND: [&str; 6] = ["xx", "xy", "xz", "yy", "yz", "zz"];
 
-/// Whether a value may be believed before data speak: masses and moments of bodies that can be. What is left out
-/// follows from the mass.
+/// Whether a parameter value can be part of the prior.
+///
+/// Omitted values follow from the mass.
 pub(super) fn is_believable(joint: &Joint, symbol: &str) -> bool {
     match symbol {
         "mx" | "my" | "mz" | "m" => value(joint, "m") > 0.0,
@@ -19,8 +20,10 @@ pub(super) fn is_believable(joint: &Joint, symbol: &str) -> bool {
     }
 }
 
-/// Whether moments are given that no body has. Of a body in a plane a file may tell the moment about its normal
-/// alone, which has to be enough for where its centre is.
+/// Whether moments are given that no body can have.
+///
+/// For a planar body, a file may give only the moment about the normal, which must be large enough
+/// for its centre of mass.
 pub(super) fn is_impossible(joint: &Joint) -> bool {
     let moments = ["xx", "yy", "zz"].map(|symbol| value(joint, symbol));
     let first = ["mx", "my", "mz"].map(|symbol| value(joint, symbol));
@@ -39,14 +42,14 @@ pub(super) fn is_impossible(joint: &Joint) -> bool {
     }
 }
 
-/// Whether there is a body of this mass and these moments: its pseudo-inertia is positive definite.
+/// Whether the pseudo-inertia of a body is positive definite.
 fn is_body(joint: &Joint) -> bool {
     let [xx, xy, xz, yy, yz, zz] = SECOND.map(|symbol| value(joint, symbol));
     let [x, y, z, mass] = ["mx", "my", "mz", "m"].map(|symbol| value(joint, symbol));
     let about = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     let second = Matrix3::identity() * (0.5 * about.trace()) - about;
     let first = Vector3::new(x, y, z);
-    // Without a mass there are infinities here, and no eigenvalue is above them.
+    // A zero mass gives infinities here, which must not reach the eigenvalues.
     let central = second - first * first.transpose() / mass;
     let is_finite = central.iter().all(|one| one.is_finite());
     mass > 0.0 && is_finite && central.symmetric_eigenvalues().min() > ROUNDING * second.trace()

@@ -1,4 +1,4 @@
-//! The virtual experiment as TOML.
+//! Writes the virtual experiment as TOML.
 
 use super::comment;
 use crate::{
@@ -7,10 +7,10 @@ use crate::{
 };
 use std::fmt::Write as _;
 
-/// Harmonics of a run.
+/// Number of harmonics of a run.
 const HARMONICS: f64 = 5.0;
 
-/// Settings of the experiment and of the identification, and the runs.
+/// Writes the settings of experiment and identification, and the runs.
 pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
     let experiment = match designed {
         Ok(experiment) => experiment,
@@ -74,7 +74,7 @@ fn term(text: &mut String, term: &Term) {
     );
 }
 
-/// Values of all actuators, one where they are the same.
+/// Values of all actuators, or one value if they are equal.
 fn list(values: &[f64]) -> String {
     let shown: Vec<String> = values.iter().map(|value| decimal(*value)).collect();
     match shown.first() {

@@ -1,7 +1,8 @@
-//! Puts the page together. `overact-page-assembly bind MODULE.wasm FOLDER` writes the script through which the page
-//! calls its WebAssembly, as `wasm-bindgen` of the command line does; `overact-page-assembly page STATIC ROBOTS
-//! FOLDER` adds the files of the folder STATIC, the descriptions of the folder ROBOTS, and `overact.html`, which has
-//! all of it in one file and can be opened without a host.
+//! Assembles the page.
+//!
+//! `overact-page-assembly bind MODULE.wasm FOLDER` writes the script that calls the WebAssembly, as
+//! the `wasm-bindgen` command does. `overact-page-assembly page STATIC ROBOTS FOLDER` adds the
+//! static files, the descriptions, and `overact.html`, a single file that needs no server.
 
 mod one_file;
 
@@ -39,14 +40,14 @@ fn bind(module: &str, folder: &str) -> Result<(), Box<dyn Error>> {
         .input_path(module)
         .out_name("overact")
         .typescript(false);
-    // A plain script: a worker that is made of a text takes it, and so does Node.
+    // A plain script, which works in Node and in a worker made from text.
     let written = binding
         .no_modules(true)
         .and_then(|binding| binding.generate(folder));
     written.map_err(|error| format!("{error:?}").into())
 }
 
-/// Writes all else.
+/// Writes all other files.
 fn page(files: &Path, robots: &Path, folder: &Path) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(files)? {
         let entry = entry?;
@@ -56,7 +57,7 @@ fn page(files: &Path, robots: &Path, folder: &Path) -> Result<(), Box<dyn Error>
     one_file::write(folder)
 }
 
-/// The script with all descriptions by their names, sorted.
+/// Script with all descriptions, sorted by name.
 fn robots_script(robots: &Path) -> Result<String, Box<dyn Error>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(robots)? {

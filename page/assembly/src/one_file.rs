@@ -1,14 +1,14 @@
-//! The page as one file: styles and scripts within it, the WebAssembly compressed and as text.
+//! The page as one file with embedded styles, scripts and compressed WebAssembly.
 //!
-//! A file that is opened from a disk may neither load a module nor start a worker from another file, so the worker
-//! is made of a text, and the module is unpacked by the browser.
+//! A file opened from disk may neither load a module nor start a worker from another file. The
+//! worker is therefore made from text, and the browser unpacks the module.
 
 use std::{error::Error, fs, path::Path};
 
-/// Names of the scripts that the worker is made of.
+/// Scripts of the worker.
 const WORKER: [&str; 2] = ["overact.js", "worker.js"];
 
-/// Writes `overact.html`; `overact_bg.wasm.gz` is the module, compressed by gzip.
+/// Writes `overact.html`; `overact_bg.wasm.gz` is the gzip-compressed module.
 pub(crate) fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     let read = |name: &str| fs::read_to_string(folder.join(name));
     let mut html = read("index.html")?;
@@ -58,7 +58,7 @@ pub(crate) fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(fs::write(folder.join("overact.html"), html)?)
 }
 
-/// The text with the one place where `from` stands replaced.
+/// Replaces the only occurrence of `from`.
 fn replaced(text: &str, from: &str, to: &str) -> Result<String, Box<dyn Error>> {
     match text.split_once(from) {
         Some((before, after)) => Ok(format!("{before}{to}{after}")),
@@ -66,12 +66,12 @@ fn replaced(text: &str, from: &str, to: &str) -> Result<String, Box<dyn Error>> 
     }
 }
 
-/// A script that ends no element: in a text of a script, `<\/` is `</`.
+/// Escapes a script so that it does not end its element; in a script's string, `<\/` is `</`.
 fn within_script(script: &str) -> String {
     script.replace("</", "<\\/").replace("<!--", "<\\!--")
 }
 
-/// Bytes as text, six bits a letter.
+/// Base64 encoding.
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

@@ -1,5 +1,4 @@
-//! Encoder offsets and lengths that were estimated from the closure of the loops, before the dynamic
-//! parameters were.
+//! Section on calibrated encoder offsets and lengths.
 
 use super::{
     Contents,
@@ -10,7 +9,7 @@ use overact_identification::{
     CalibratedParameter, Calibration, CalibrationScope, HeldParameter, ParameterKind, significant,
 };
 
-/// The section; empty where nothing was calibrated.
+/// Section; empty without calibration.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let calibration = contents.identification.calibration.as_ref();
     Section {
@@ -39,7 +38,7 @@ fn body(calibration: &Calibration) -> String {
     html
 }
 
-/// What was done, in words.
+/// Introduction.
 fn introduction(calibration: &Calibration) -> String {
     let (n, r) = (calibration.sensors, calibration.coordinates);
     if n <= r {
@@ -63,7 +62,7 @@ fn introduction(calibration: &Calibration) -> String {
     )
 }
 
-/// What the loops leave unexplained before and after.
+/// Closure residuals before and after calibration.
 fn residual(calibration: &Calibration) -> String {
     let row = |what: &str, misfit: f64| vec![Cell::text(what), Cell::digits(Some(misfit), 3)];
     let table = Table {
@@ -80,7 +79,7 @@ fn residual(calibration: &Calibration) -> String {
     table.html() + &note("Noise alone leaves 1.")
 }
 
-/// What a parameter is, in words.
+/// Description of a parameter type.
 const fn kind(kind: ParameterKind) -> &'static str {
     match kind {
         ParameterKind::EncoderOffset => "what the encoder shows too much",
@@ -91,7 +90,7 @@ const fn kind(kind: ParameterKind) -> &'static str {
     }
 }
 
-/// The table of what is changed.
+/// Table of the changes.
 fn changes(estimated: &[CalibratedParameter]) -> String {
     let rows = estimated.iter().map(|one| {
         let (change, interval) = with_interval(one.change, one.interval_95);
@@ -137,7 +136,7 @@ fn changes(estimated: &[CalibratedParameter]) -> String {
     table.html() + &several.collect::<String>()
 }
 
-/// What stays as described, on demand: parameters together of which the same is to be said.
+/// Collapsed list of unchanged parameters, grouped by reason.
 fn held(held: &[HeldParameter]) -> String {
     if held.is_empty() {
         return String::new();

@@ -1,5 +1,7 @@
-//! The evidence behind the verdict: every check with what was measured, what it was held against, where
-//! that comes from, and the plot that shows it. Checks that found nothing are folded away.
+//! Section on the checks behind the verdict.
+//!
+//! Each check has its statistic, threshold, source of the threshold, and plot. Passed checks are
+//! collapsed.
 
 use std::fmt::Write;
 
@@ -16,7 +18,7 @@ use crate::{
 };
 use overact_identification::{Axis as EvidenceAxis, Check, Curve, Evidence, Grade, Identification};
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let body = if identification.checks.is_empty() {
@@ -31,12 +33,12 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The place of a check on the page, by its number among all.
+/// Anchor of a check by its index.
 pub(super) fn id(number: usize) -> String {
     format!("check-{}", number + 1)
 }
 
-/// All checks of one outcome with their numbers.
+/// All checks of one outcome with their indices.
 fn numbered(
     identification: &Identification,
     passed: bool,
@@ -45,7 +47,7 @@ fn numbered(
     checks.filter(move |(_, check)| check.passed == passed)
 }
 
-/// What was found, most serious first, each with its plot.
+/// Failed checks, the most serious first, each with its plot.
 fn failed(identification: &Identification) -> String {
     let mut all: Vec<(usize, &Check)> = numbered(identification, false).collect();
     all.sort_by_key(|(_, check)| std::cmp::Reverse(check.grade));
@@ -73,7 +75,7 @@ fn failed(identification: &Identification) -> String {
     html
 }
 
-/// What was checked, and of what.
+/// Title and scope of a check.
 fn heading(check: &Check) -> String {
     let place = place(check);
     let title = capital(title(check.kind));
@@ -84,7 +86,7 @@ fn heading(check: &Check) -> String {
     }
 }
 
-/// What was measured, and what it was held against.
+/// Statistic and threshold.
 fn measured(check: &Check) -> String {
     let mut parts = Vec::new();
     if let Some(statistic) = statistic(check) {
@@ -103,7 +105,7 @@ fn measured(check: &Check) -> String {
     format!("<p class=\"note\">{}</p>\n", prose(&parts.join(" ")))
 }
 
-/// The parameters that are not to be used.
+/// Parameters that must not be used.
 fn spoiled(check: &Check) -> String {
     if check.spoiled.is_empty() {
         return String::new();
@@ -116,14 +118,15 @@ fn spoiled(check: &Check) -> String {
     paragraph(&format!("Not to be used: {}.", names.join(", ")))
 }
 
-/// What was checked and found in order, on demand: a table, and below it what has a plot. Paper has a line
-/// or two for each and no plots, which would fill ten pages.
+/// Collapsed table of passed checks, followed by their plots.
+///
+/// In print, each has a line or two and no plot; the plots would take ten pages.
 fn passed(identification: &Identification) -> String {
     let all: Vec<(usize, &Check)> = numbered(identification, true).collect();
     if all.is_empty() {
         return String::new();
     }
-    // Their units are words, which may be broken.
+    // Units here are words, which may be broken.
     let or_nothing = |text: Option<String>| {
         text.map_or_else(Cell::nothing, |text| Cell::prose(&text.replace('-', "−")))
     };
@@ -171,7 +174,7 @@ fn passed(identification: &Identification) -> String {
     details(&summary, &(table + elsewhere + &plots))
 }
 
-/// The plot that shows the result of a check.
+/// Plot of a check.
 fn shown(number: usize, check: &Check) -> String {
     let Some(evidence) = &check.evidence else {
         return String::new();
@@ -206,8 +209,10 @@ fn shown(number: usize, check: &Check) -> String {
     )
 }
 
-/// The curves of an evidence: lines, then points. Where there are more points than looks, the largest keep theirs, and
-/// all others share one.
+/// Curves of a plot: lines, then points.
+///
+/// If there are more point series than looks, the largest keep their own look and the others share
+/// one.
 fn curves(evidence: &Evidence) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for curve in &evidence.lines {
@@ -233,7 +238,7 @@ fn curves(evidence: &Evidence) -> Vec<Line> {
     lines
 }
 
-/// The label of an axis.
+/// Axis label.
 fn axis(axis: &EvidenceAxis) -> String {
     with_unit(&axis.label, &axis.unit)
 }

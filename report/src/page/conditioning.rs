@@ -1,4 +1,4 @@
-//! The conditioning: of the systems of equations, and of the actuators along the way of each run.
+//! Section on the conditioning of the equations, and of the actuators along each run.
 
 use super::{
     Contents,
@@ -12,7 +12,7 @@ use crate::{
 };
 use overact_identification::{ConditionSeries, Identification, ModelKind, RunFigures};
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = String::new();
@@ -56,14 +56,14 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// Whether actuators were kept in a model of their own.
+/// Whether a model with kept actuators exists.
 fn has_kept(identification: &Identification) -> bool {
     let series = identification.figures.runs.iter();
     let mut series = series.flat_map(|run| &run.conditions);
     series.any(|one| !is_platform(one))
 }
 
-/// Condition numbers of the systems, and the worst of the kept actuators.
+/// Condition numbers of the systems, and the largest one of the kept actuators.
 fn table(identification: &Identification) -> String {
     let rows = identification.by_least_squares().map(|one| {
         let partition = one
@@ -108,12 +108,12 @@ fn table(identification: &Identification) -> String {
     .html()
 }
 
-/// Whether a series is that of all actuators.
+/// Whether a series belongs to all actuators.
 fn is_platform(series: &ConditionSeries) -> bool {
     series.determinant.is_empty()
 }
 
-/// The conditioning along one run.
+/// Condition numbers along one run.
 fn chart(run: &RunFigures, threshold: f64) -> String {
     let lines = run.conditions.iter().map(|series| {
         let (look, label) = if is_platform(series) {
@@ -137,7 +137,7 @@ fn chart(run: &RunFigures, threshold: f64) -> String {
     .svg()
 }
 
-/// Where the determinant of the kept actuators changes its sign: a singularity was crossed there.
+/// Singularities: sign changes of the kept actuators' determinant.
 fn crossings(identification: &Identification) -> String {
     let mut places = Vec::new();
     for run in &identification.figures.runs {

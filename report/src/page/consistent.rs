@@ -1,4 +1,4 @@
-//! Standard parameters that a robot can have: what controllers and simulators take.
+//! Section on physically consistent standard parameters, for controllers and simulators.
 
 use super::{
     Contents,
@@ -8,7 +8,7 @@ use super::{
 use crate::choice::case_heading;
 use overact_identification::{Consistent, ConsistentBody, ConsistentParameter, significant};
 
-/// The section; empty where there is no consistent estimate.
+/// Section; empty without a consistent estimate.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let all = &contents.identification.consistent;
     let mut body = String::new();

@@ -1,4 +1,4 @@
-//! The runs, the settings, and the files to be had from the page.
+//! Sections on runs and settings, and on the attached files.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use super::{
 use crate::text::escape;
 use overact_identification::{Identification, Normalisation, significant};
 
-/// The runs and the settings.
+/// Runs and settings.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     Section {
@@ -22,7 +22,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The files.
+/// Attached files.
 pub(super) fn files(contents: &Contents<'_>) -> Section {
     let mut body = String::new();
     for file in contents.attachments {
@@ -47,7 +47,7 @@ pub(super) fn files(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The runs identified from.
+/// Training runs.
 fn runs(identification: &Identification) -> String {
     let rows = identification.runs.iter().map(|run| {
         vec![
@@ -80,7 +80,7 @@ fn runs(identification: &Identification) -> String {
     .html()
 }
 
-/// The settings in words.
+/// Settings in words.
 fn settings(identification: &Identification) -> String {
     let settings = &identification.settings;
     let yes = |flag: bool| String::from(if flag { "yes" } else { "no" });
@@ -138,7 +138,7 @@ fn settings(identification: &Identification) -> String {
     .html()
 }
 
-/// At which velocities equations are left out, and how many.
+/// Velocity limits below which equations are omitted, and their number.
 fn standstill(identification: &Identification) -> String {
     let limits = &identification.settings.standstill_velocity;
     let runs = identification.runs.iter();

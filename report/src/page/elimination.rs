@@ -1,5 +1,6 @@
-//! The way from the base parameters to smaller models: where the recommended one stops, and where the
-//! rule of r_σ does.
+//! Section on the elimination from base parameters to smaller models.
+//!
+//! It shows where the recommended model and the r_σ rule stop.
 
 use std::fmt::Write;
 
@@ -15,7 +16,7 @@ use crate::{
 };
 use overact_identification::{Estimate, Identification, Removal, Stage, significant};
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = String::new();
@@ -45,7 +46,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The way in words.
+/// Elimination in words.
 fn told(estimate: &Estimate, recommended: Option<&Estimate>) -> String {
     let mut text = String::new();
     if let Some(one) = recommended {
@@ -66,7 +67,7 @@ fn told(estimate: &Estimate, recommended: Option<&Estimate>) -> String {
     text
 }
 
-/// Why no more was cancelled, as a clause.
+/// Clause on why the elimination stopped.
 fn because(estimate: &Estimate) -> String {
     let stop = estimate.stop.as_deref().unwrap_or_default();
     match stop.trim_end_matches('.') {
@@ -75,7 +76,7 @@ fn because(estimate: &Estimate) -> String {
     }
 }
 
-/// The plots of the way: errors, and the rule of the stop.
+/// Plots of the elimination: errors, and the ratio of the stopping rule.
 fn path(
     identification: &Identification,
     estimate: &Estimate,
@@ -100,19 +101,19 @@ fn path(
     )
 }
 
-/// Where the recommended model stands on the way.
+/// Mark of the recommended model.
 fn mark(end: Option<usize>) -> Vec<Rule> {
     let mark = end.map(|end| Rule::vertical(end as f64, "recommended"));
     mark.into_iter().collect()
 }
 
-/// The axis of both plots.
+/// Horizontal axis of both plots.
 fn cancelled() -> Axis {
     Axis::linear("parameters cancelled").including(&[0.0])
 }
 
-/// The relative errors along the way, on the runs identified from and, where there are any, on
-/// held-out parts.
+/// Relative errors along the elimination, for training runs and for validation parts if there are
+/// any.
 fn errors(estimate: &Estimate, end: Option<usize>) -> Chart {
     let own = "on the runs identified from";
     let own = errors_line(&estimate.removals, own, Look::First, |one| {
@@ -138,7 +139,7 @@ fn errors(estimate: &Estimate, end: Option<usize>) -> Chart {
     }
 }
 
-/// The ratio of the largest to the smallest relative deviation along the way, with the rule of the stop.
+/// Ratio of the largest to the smallest relative standard deviation, with the stopping rule.
 fn ratio(estimate: &Estimate, r_sigma: f64, end: Option<usize>) -> Chart {
     let removals = &estimate.removals;
     let steps: Vec<f64> = (0..removals.len()).map(|step| step as f64).collect();
@@ -171,7 +172,7 @@ fn ratio(estimate: &Estimate, r_sigma: f64, end: Option<usize>) -> Chart {
     }
 }
 
-/// An error before the first and after each step.
+/// Error before the first and after each step.
 fn errors_line(
     removals: &[Removal],
     label: &str,
@@ -189,7 +190,7 @@ fn errors_line(
     line
 }
 
-/// The ratio of relative deviations of what is left.
+/// Ratio of relative standard deviations of the remaining parameters.
 fn last_ratio(estimate: &Estimate) -> f64 {
     let deviations = estimate
         .parameters
@@ -200,7 +201,7 @@ fn last_ratio(estimate: &Estimate) -> f64 {
     largest / smallest
 }
 
-/// Every step with its judgement.
+/// Table of all steps with their assessment.
 fn steps(estimate: &Estimate) -> String {
     let rows = estimate.removals.iter().map(|one| {
         vec![
@@ -242,7 +243,7 @@ fn steps(estimate: &Estimate) -> String {
     .html()
 }
 
-/// The parameter that a step moves most.
+/// Parameter that a step changes most.
 fn drift(removal: &Removal) -> Cell {
     removal.drift.as_ref().map_or_else(Cell::nothing, |drift| {
         Cell::text(&format!(

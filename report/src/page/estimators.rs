@@ -1,5 +1,6 @@
-//! Least squares, instruments and total least squares side by side: whether noise of the measured
-//! positions biases the estimates.
+//! Section that compares least squares, instrumental variables and total least squares.
+//!
+//! It shows whether noise of the measured positions biases the estimates.
 
 use super::{
     Contents,
@@ -11,7 +12,7 @@ use overact_identification::{
     Agreement, ErrorsInRegressor, Instruments, RegressorError, significant,
 };
 
-/// The section; empty where nothing was tested.
+/// Section; empty if nothing was tested.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let all = &contents.identification.errors_in_regressor;
     let tested = all.iter().any(|told| told.agreement.is_some());
@@ -29,7 +30,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// What is known of one model.
+/// Results for one model.
 fn of_model(told: &ErrorsInRegressor) -> String {
     let heading = format!("<h3>{}</h3>\n", escape(case_heading(told.model)));
     let outcome = match (&told.agreement, &told.missing) {
@@ -62,7 +63,7 @@ fn of_model(told: &ErrorsInRegressor) -> String {
     html
 }
 
-/// Whether least squares and instruments agree, in words.
+/// Whether least squares and instrumental variables agree, in words.
 fn verdict(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
     let source = match told.instruments {
         Instruments::Periods => "the other periods of the same motion",

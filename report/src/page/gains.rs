@@ -1,4 +1,4 @@
-//! Gains of the drives that were identified from known parameters, before the dynamic parameters were.
+//! Section on identified drive gains.
 
 use super::{
     Contents,
@@ -7,7 +7,7 @@ use super::{
 };
 use overact_identification::{DriveGain, JointParameter, Settings};
 
-/// The section; empty where no gains were identified.
+/// Section; empty if no gains were identified.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let body = match identification.gains.is_empty() {
@@ -25,7 +25,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// What was done, in words.
+/// Introduction.
 fn introduction(settings: &Settings) -> String {
     let known: Vec<String> = settings
         .known
@@ -38,7 +38,7 @@ fn introduction(settings: &Settings) -> String {
     ))
 }
 
-/// The table of the gains.
+/// Table of the gains.
 fn drives(gains: &[DriveGain]) -> String {
     let rows = gains.iter().map(|one| {
         vec![
@@ -71,7 +71,7 @@ fn drives(gains: &[DriveGain]) -> String {
         )
 }
 
-/// The table of what was estimated with the gains.
+/// Table of the parameters estimated with the gains.
 fn parameters(parameters: &[JointParameter]) -> String {
     let rows = parameters.iter().map(|one| {
         vec![

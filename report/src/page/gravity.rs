@@ -1,4 +1,4 @@
-//! The direction of gravity that was identified together with the parameters.
+//! Section on the identified gravity direction.
 
 use super::{
     Contents,
@@ -7,7 +7,7 @@ use super::{
 };
 use crate::terminal::gravity::{angle, described};
 
-/// The section; empty where the direction was not identified.
+/// Section; empty if the direction was not identified.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let direction = contents.identification.gravity.as_ref();
     let body = direction.map_or_else(String::new, |own| {

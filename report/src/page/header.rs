@@ -1,4 +1,4 @@
-//! The head of the page: the robot, its drawing, and the result in a few numbers.
+//! Head of the page: robot, drawing and main results.
 
 use std::fmt::Write;
 
@@ -9,14 +9,14 @@ use crate::{
 };
 use overact_identification::{Stage, significant};
 
-/// The head of the page.
+/// Head of the page.
 pub(super) fn header(contents: &Contents<'_>) -> String {
     let identification = contents.identification;
     let mut html = format!(
         "<header>\n<div class=\"intro\"><h1>Identification of {}</h1>\n",
         escape(&identification.robot)
     );
-    // Narrow screens and paper have the drawing and the contents before the verdict's own section.
+    // Narrow screens and print show the drawing and the contents before the verdict section.
     let _ = writeln!(
         html,
         "<p><strong>{}</strong></p>",
@@ -47,7 +47,7 @@ pub(super) fn header(contents: &Contents<'_>) -> String {
     html
 }
 
-/// The result in a few numbers, which keep their units beside them.
+/// Main results with their units.
 fn facts(contents: &Contents<'_>) -> String {
     let identification = contents.identification;
     let base = identification.base_parameters.len();
@@ -86,7 +86,7 @@ fn facts(contents: &Contents<'_>) -> String {
     html
 }
 
-/// Bytes as base64, as a page's own files need it.
+/// Base64 encoding for data URLs.
 pub(super) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

@@ -1,5 +1,6 @@
-//! Measured and predicted Γ over time, Figs. 5 and 6 of the paper, and the plots of measured and
-//! predicted torques that Figs. 8 and 9 share with them.
+//! Section with measured and predicted Γ over time (Figs. 5 and 6 of the paper).
+//!
+//! The plots of measured and predicted torques (Figs. 8 and 9) share its functions.
 
 use super::{
     Contents,
@@ -15,7 +16,7 @@ use crate::{
 };
 use overact_identification::{ModelKind, PredictionFigures, Series, significant};
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = String::new();
@@ -27,7 +28,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
             .filter(|one| one.model == estimate.model && one.stage == estimate.stage)
             .filter(|one| one.identified && !one.lines.is_empty())
             .collect();
-        // Fig. 5 shows a run with the payload, where there is one.
+        // Fig. 5 shows a run with payload, if there is one.
         let loaded = |one: &&PredictionFigures| {
             let mut runs = identification.figures.runs.iter();
             runs.any(|run| run.run == one.run && run.payload)
@@ -59,7 +60,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// Plots of the torques of one run, the held-out ones first.
+/// Torque plots of one run, validation runs first.
 pub(super) fn torques(contents: &Contents<'_>) -> String {
     let identification = contents.identification;
     let all = || {
@@ -83,7 +84,7 @@ pub(super) fn torques(contents: &Contents<'_>) -> String {
             stage_name(one.stage),
             one.model.case()
         );
-        // The first model's runs are shown, all others on demand.
+        // Runs of the first model are shown, all others are collapsed.
         if ordered
             .first()
             .is_some_and(|first| first.model == one.model)
@@ -97,7 +98,7 @@ pub(super) fn torques(contents: &Contents<'_>) -> String {
     body
 }
 
-/// A figure of several measured and predicted series.
+/// Figure of several measured and predicted series.
 fn compared(
     id: &str,
     prediction: &PredictionFigures,

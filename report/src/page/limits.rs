@@ -1,4 +1,4 @@
-//! What was not identified, and why.
+//! Section on what was not identified, with reasons.
 
 use super::{
     Contents,
@@ -11,10 +11,10 @@ use crate::{
 };
 use overact_identification::{Estimate, Identification, Stage, significant};
 
-/// Why, and which parameters.
+/// Reason and parameters.
 type Row = (String, String);
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut rows = structural(identification);
@@ -42,7 +42,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// What no data can tell.
+/// Parameters that no data can determine.
 fn structural(identification: &Identification) -> Vec<Row> {
     let mut rows = Vec::new();
     if !identification.without_effect.is_empty() {
@@ -67,7 +67,7 @@ fn structural(identification: &Identification) -> Vec<Row> {
     rows
 }
 
-/// Base parameters that these data do not tell apart: they are missing in the base estimate.
+/// Base parameters that these data do not determine; they are missing from the base estimate.
 fn on_the_data(identification: &Identification) -> Vec<Row> {
     let missing = |estimate: &Estimate| {
         let base = identification.base_parameters.iter();
@@ -79,7 +79,7 @@ fn on_the_data(identification: &Identification) -> Vec<Row> {
     for_each(&base, why, missing)
 }
 
-/// What the data do not need: base parameters that are not recommended.
+/// Base parameters that are not recommended.
 fn not_needed(identification: &Identification) -> Vec<Row> {
     let cancelled = |estimate: &Estimate| {
         of(identification, estimate.model, Stage::Base).map_or_else(String::new, |base| {
@@ -95,7 +95,7 @@ fn not_needed(identification: &Identification) -> Vec<Row> {
     )
 }
 
-/// What the rule of r_σ cancels although the data determine it.
+/// Parameters that the r_σ rule removes although the data determine them.
 fn cancelled_by_rule(identification: &Identification) -> Vec<Row> {
     let cancelled = |essential: &Estimate| {
         let answers = answers(identification);
@@ -115,7 +115,7 @@ fn cancelled_by_rule(identification: &Identification) -> Vec<Row> {
     for_each(&of_stage(identification, Stage::Essential), why, cancelled)
 }
 
-/// One row for each model of which there is something to tell.
+/// One row for each model with such parameters.
 fn for_each(estimates: &[&Estimate], why: &str, which: impl Fn(&Estimate) -> String) -> Vec<Row> {
     let rows = estimates
         .iter()
@@ -123,7 +123,7 @@ fn for_each(estimates: &[&Estimate], why: &str, which: impl Fn(&Estimate) -> Str
     rows.filter(|(_, which)| !which.is_empty()).collect()
 }
 
-/// The names that are not among an estimate's parameters.
+/// Names that are not among an estimate's parameters.
 fn names_without<'a>(names: impl Iterator<Item = &'a str>, estimate: &Estimate) -> Vec<&'a str> {
     let is_there = |name: &&str| estimate.parameters.iter().any(|one| one.name == *name);
     names.filter(|name| !is_there(name)).collect()

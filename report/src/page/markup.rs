@@ -1,11 +1,11 @@
-//! Pieces of the page: escaped text, figures, sections, numbers with their intervals. All of it is XML,
-//! too, so that a test can parse it.
+//! Markup helpers: escaped text, figures, sections, numbers with intervals.
+//!
+//! All markup is well-formed XML, so that tests can parse it.
 
 use crate::{plot::power_of_ten, text::escape};
 use overact_identification::significant;
 
-/// Plots side by side with one caption; `key` explains the lines and is empty where they explain
-/// themselves.
+/// Plots with one caption; `key` explains the lines and may be empty.
 pub(super) fn figure(id: &str, plots: &[String], key: &str, caption: &str) -> String {
     let columns = match plots.len() {
         0 | 1 => "one",
@@ -18,7 +18,7 @@ pub(super) fn figure(id: &str, plots: &[String], key: &str, caption: &str) -> St
     )
 }
 
-/// The key of a figure: classes of lines and their names.
+/// Key of a figure: line classes and names.
 pub(super) fn key<Name: AsRef<str>>(entries: &[(&str, Name)]) -> String {
     let entry = |(class, name): &(&str, Name)| {
         format!(
@@ -32,19 +32,19 @@ pub(super) fn key<Name: AsRef<str>>(entries: &[(&str, Name)]) -> String {
     )
 }
 
-/// A section of the page with its heading.
+/// Section of the page with a heading.
 #[derive(Debug, Clone)]
 pub(super) struct Section {
-    /// Its place in links.
+    /// Anchor.
     pub(super) id: &'static str,
-    /// Its heading.
+    /// Heading.
     pub(super) title: &'static str,
-    /// What is in it; a section without anything is left out.
+    /// Contents; sections without contents are omitted.
     pub(super) body: String,
 }
 
 impl Section {
-    /// The element.
+    /// HTML element.
     pub(super) fn html(&self) -> String {
         format!(
             "<section id=\"{}\" aria-labelledby=\"{}-title\"><h2 id=\"{}-title\">{}</h2>\n{}</section>\n",
@@ -57,8 +57,7 @@ impl Section {
     }
 }
 
-/// A text as markup, in which what stands between backticks is code, and a number keeps its percent
-/// sign beside it.
+/// Text as markup; backticks mark code, and numbers keep their percent sign.
 pub(super) fn prose(text: &str) -> String {
     let text = text.replace(" %", "\u{a0}%");
     let mut html = String::with_capacity(text.len());
@@ -81,12 +80,12 @@ pub(super) fn paragraph(text: &str) -> String {
     format!("<p>{}</p>\n", prose(text))
 }
 
-/// A note below a table or a figure.
+/// Note below a table or a figure.
 pub(super) fn note(text: &str) -> String {
     format!("<p class=\"note\">{}</p>\n", prose(text))
 }
 
-/// What opens on demand.
+/// Collapsed contents.
 pub(super) fn details(summary: &str, body: &str) -> String {
     format!(
         "<details><summary>{}</summary>\n{body}</details>\n",
@@ -94,7 +93,7 @@ pub(super) fn details(summary: &str, body: &str) -> String {
     )
 }
 
-/// The first letter large.
+/// Capitalises the first letter.
 pub(super) fn capital(text: &str) -> String {
     let mut characters = text.chars();
     characters.next().map_or_else(String::new, |first| {
@@ -102,11 +101,12 @@ pub(super) fn capital(text: &str) -> String {
     })
 }
 
-/// Decimals that a value has at most beyond those of its interval.
+/// Largest number of decimals of a value beyond those of its interval.
 const MOST_MORE: usize = 3;
 
-/// A value and the interval of the truth, both rounded where the width of the interval says:
-/// `0.044641` and `0.044570 … 0.044712`. The interval is none where it is not known.
+/// Value and interval, rounded by the interval's width: `0.044641` and `0.044570 … 0.044712`.
+///
+/// The interval is `None` if unknown.
 pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Option<String>) {
     let half = 0.5 * (high - low);
     let known = value.is_finite() && half.is_finite() && half > 0.0;
@@ -115,7 +115,7 @@ pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Optio
     }
     let size = value.abs().max(low.abs()).max(high.abs());
     let exponent = size.log10().floor() as i32;
-    // Two digits of half the width, no more than eight of the value.
+    // Two digits of the half width, at most eight digits of the value.
     let last = (half.log10().floor() as i32 - 1).max(exponent - 7);
     let fixed = (-4..6).contains(&exponent) && last <= 0;
     let (scale, decimals) = if fixed {
@@ -128,7 +128,7 @@ pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Optio
         |value: f64, decimals: usize| format!("{:.decimals$}", value / scale).replace('-', "−");
     let digits = |value: f64| rounded(value, decimals);
     let interval = format!("{} … {}", digits(low), digits(high));
-    // A value far below the width of its interval keeps two digits all the same.
+    // A value far below the width of its interval keeps two digits.
     let first = (value / scale).abs().log10().floor();
     let own = match first.is_finite() {
         true => usize::try_from(1 - first as i32).unwrap_or(0),

@@ -1,10 +1,9 @@
-//! The page: one self-contained HTML file that tells an engineer what was identified, how well, and
-//! what the data could not tell.
+//! HTML page of an identification: one self-contained file for engineers.
 //!
-//! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: `verdict`, `checks`, `calibration`, `gravity`, `gains`, `parameters`, `motors`, `estimators`, `limits`,
-//! `validation`, `inputs`, `residuals`, `elimination`, `conditioning`, `trajectories`, `tracking`, `data`.
-//! Sections that have nothing to show are left out.
+//! The verdict comes first, then the parameters. Each plot has a caption on how to read it. Each
+//! section is a file: `verdict`, `checks`, `calibration`, `gravity`, `gains`, `parameters`,
+//! `motors`, `estimators`, `limits`, `validation`, `inputs`, `residuals`, `elimination`,
+//! `conditioning`, `trajectories`, `tracking`, `data`. Empty sections are omitted.
 
 mod calibration;
 mod checks;
@@ -37,44 +36,42 @@ use crate::text::escape;
 use crate::{published::Published, units::Units};
 use overact_identification::Identification;
 
-/// The style: colours for light and dark, a width that suits reading, plots side by side where there
-/// is room.
+/// Style sheet with light and dark colours and a responsive layout.
 const STYLE: &str = include_str!("style.css");
 
-/// What the page shows.
+/// Contents of the page.
 #[derive(Debug, Clone, Copy)]
 pub struct Contents<'a> {
-    /// The result.
+    /// Result of the identification.
     pub identification: &'a Identification,
-    /// Units of its coordinates and actuators.
+    /// Units of coordinates and actuators.
     pub units: &'a Units,
-    /// What the robot is, in a sentence.
+    /// Summary of the robot, one sentence.
     pub summary: Option<&'a str>,
-    /// Where its description comes from.
+    /// Source of its description.
     pub source: Option<&'a str>,
-    /// A drawing of the robot, an SVG document. It is shown as an image, so that its style and its
-    /// names stay its own.
+    /// Drawing of the robot, an SVG document; embedded as an image so that styles do not interfere.
     pub drawing: Option<&'a str>,
-    /// Published results to show beside the own ones.
+    /// Published results for comparison.
     pub published: Option<&'a Published>,
-    /// Files to be had from the page.
+    /// Files attached to the page.
     pub attachments: &'a [Attachment<'a>],
 }
 
-/// A file within the page.
+/// A file attached to the page.
 #[derive(Debug, Clone, Copy)]
 pub struct Attachment<'a> {
-    /// The name that it is saved with.
+    /// File name for downloads.
     pub name: &'a str,
     /// Its media type, `text/csv` for instance.
     pub media_type: &'a str,
-    /// What it is, in a few words.
+    /// Short description.
     pub what: &'a str,
-    /// Its text.
+    /// Contents.
     pub text: &'a str,
 }
 
-/// The page of an identification: HTML that is XML, too.
+/// Page of an identification; the HTML is well-formed XML.
 #[must_use]
 pub fn page(contents: &Contents<'_>) -> String {
     let sections: Vec<Section> = [

@@ -1,4 +1,4 @@
-//! Parameters of the drives in front of their gears, where motors are described.
+//! Section on drive parameters on the motor side.
 
 use super::{
     Contents,
@@ -6,7 +6,7 @@ use super::{
     table::{Cell, Table},
 };
 
-/// The section; empty where no motors are described.
+/// Section; empty if no motors are described.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let motors = &contents.identification.motors;
     let rows = motors.iter().map(|one| {

@@ -1,4 +1,4 @@
-//! The residuals: over time, their autocorrelation and their spectrum.
+//! Section on the residuals: over time, autocorrelation and spectrum.
 
 use super::{
     Contents,
@@ -13,11 +13,10 @@ use crate::{
 };
 use overact_identification::{LineResidual, ResidualFigures, ResidualSeries, significant};
 
-/// A white residual has this part of its autocorrelations within the bound; chance leaves it a little
-/// less.
+/// Fraction of autocorrelations within the 95 % bound from which a residual counts as white.
 const WHITE: f64 = 0.9;
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = String::new();
@@ -43,7 +42,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The figure of one estimate.
+/// Figure of one estimate.
 fn residuals(one: &ResidualFigures, units: &Units) -> String {
     let plots: Vec<String> = one
         .lines
@@ -86,7 +85,7 @@ fn residuals(one: &ResidualFigures, units: &Units) -> String {
     )
 }
 
-/// The residual of the run in which it is largest.
+/// Residual of the run with the largest one.
 fn over_time(one: &ResidualFigures, line: &LineResidual, units: &Units) -> Option<String> {
     let size = |run: &ResidualSeries| {
         let squares: f64 = run.residual.iter().map(|value| value * value).sum();
@@ -118,7 +117,7 @@ fn over_time(one: &ResidualFigures, line: &LineResidual, units: &Units) -> Optio
     )
 }
 
-/// ` (N)`, or nothing for a unit that is not known.
+/// ` (N)`, or nothing if the unit is unknown.
 fn bracketed(unit: &str) -> String {
     if unit.is_empty() {
         String::new()

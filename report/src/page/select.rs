@@ -1,14 +1,14 @@
-//! What several sections choose alike: the look of a model, parts of series.
+//! Choices shared by several sections: looks of models, ranges of series.
 
 use std::ops::Range;
 
 use crate::plot::Look;
 use overact_identification::{ModelKind, Series};
 
-/// Points of a series that a plot can show without becoming a blot.
+/// Largest readable number of points in a plot.
 const READABLE: usize = 300;
 
-/// The look of a model's lines.
+/// Look of a model's lines.
 pub(super) const fn look(model: ModelKind) -> Look {
     match model {
         ModelKind::Actuators => Look::Second,
@@ -16,8 +16,9 @@ pub(super) const fn look(model: ModelKind) -> Look {
     }
 }
 
-/// The part of several series that a plot shows: all, where that is readable, else the part around the
-/// largest residual, in units of each series' own size.
+/// Range of several series to plot: all if readable, else around the largest residual.
+///
+/// Residuals are scaled by each series' own size.
 pub(super) fn worst_part(series: &[Series]) -> Range<usize> {
     let length = series.iter().map(|one| one.time.len()).min().unwrap_or(0);
     if length <= READABLE {
@@ -41,7 +42,7 @@ pub(super) fn worst_part(series: &[Series]) -> Range<usize> {
     first..first + READABLE
 }
 
-/// Duration of a part of a series and of the whole, s.
+/// Duration of a range and of the whole series, s.
 pub(super) fn durations(series: &Series, part: &Range<usize>) -> (f64, f64) {
     let time = &series.time;
     let at = |index: usize| time.get(index).copied().unwrap_or(0.0);
@@ -52,7 +53,7 @@ pub(super) fn durations(series: &Series, part: &Range<usize>) -> (f64, f64) {
     )
 }
 
-/// 100 ||measured - predicted||/||measured||; none where nothing was measured.
+/// 100 ||measured - predicted||/||measured||; `None` if nothing was measured.
 pub(super) fn relative_error(series: &Series) -> Option<f64> {
     let pairs = series.measured.iter().zip(&series.predicted);
     let residual: Vec<f64> = pairs.map(|(m, p)| m - p).collect();

@@ -1,8 +1,8 @@
 //! Tables of the page.
 //!
-//! On a screen that is narrow, the style sheet makes each row a card, in which every cell stands below
-//! the heading of its column. So each cell carries that heading, and every element its role, which some
-//! browsers forget when a table is laid out in another way.
+//! On narrow screens, the style sheet turns each row into a card, with the column's heading in each
+//! cell. Each cell therefore carries that heading. Each element has an explicit role, because some
+//! browsers drop roles with such a layout.
 
 use std::fmt::Write;
 
@@ -10,10 +10,10 @@ use super::markup::prose;
 use crate::text::escape;
 use overact_identification::significant;
 
-/// From so many columns on, a table is set narrower where paper or screen is small.
+/// Number of columns from which a table is set narrower on small screens and in print.
 const MANY_COLUMNS: usize = 8;
 
-/// Characters of a name that may not be broken.
+/// Largest number of characters of a name that is not broken.
 const SHORT_NAME: usize = 24;
 
 /// A cell of a table.
@@ -30,12 +30,12 @@ impl Cell {
         Self::markup(escape(text))
     }
 
-    /// A sentence, in which what stands between backticks is code.
+    /// A sentence; backticks mark code.
     pub(super) fn prose(text: &str) -> Self {
         Self::markup(prose(text)).class("prose")
     }
 
-    /// A piece of markup.
+    /// Markup.
     pub(super) const fn markup(html: String) -> Self {
         Self {
             html,
@@ -49,7 +49,7 @@ impl Cell {
         Self::text(&text.as_ref().replace('-', "−")).class("n")
     }
 
-    /// A number with so many digits; a dash where there is none.
+    /// A number with `digits` digits; a dash if there is none.
     pub(super) fn digits(value: Option<f64>, digits: usize) -> Self {
         match value {
             Some(value) => Self::number(significant(value, digits)),
@@ -57,24 +57,24 @@ impl Cell {
         }
     }
 
-    /// Where there is no value.
+    /// A missing value.
     pub(super) fn nothing() -> Self {
         Self::text("–").class("n none")
     }
 
-    /// The same cell with another class.
+    /// Sets the class.
     pub(super) const fn class(mut self, class: &'static str) -> Self {
         self.class = class;
         self
     }
 
-    /// The same cell over several columns.
+    /// Spans several columns.
     pub(super) const fn over(mut self, columns: usize) -> Self {
         self.span = columns;
         self
     }
 
-    /// A cell of the head.
+    /// Header cell.
     fn head(&self) -> String {
         if self.html.is_empty() {
             return self.element("td", "role=\"cell\"");
@@ -83,7 +83,7 @@ impl Cell {
         self.element("th", &format!("scope=\"{scope}\" role=\"columnheader\""))
     }
 
-    /// A cell that heads its row. A short name stays in one line.
+    /// Header cell of a row; short names are not broken.
     fn row_head(&self) -> String {
         let attributes = "scope=\"row\" role=\"rowheader\"";
         if self.class.is_empty() && self.html.chars().count() <= SHORT_NAME {
@@ -107,16 +107,16 @@ impl Cell {
 /// A table with headers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Table {
-    /// What it shows; the name by which assistive technology finds it.
+    /// Caption; also the name for assistive technology.
     pub(super) caption: String,
-    /// Header rows; cells over several columns head a group.
+    /// Header rows; cells that span columns head a group.
     pub(super) header: Vec<Vec<Cell>>,
     /// Rows; the first cell of each is its header.
     pub(super) rows: Vec<Vec<Cell>>,
 }
 
 impl Table {
-    /// The table in a region that scrolls by itself, should it not fit all the same.
+    /// Table in a region that scrolls if it does not fit.
     pub(super) fn html(&self) -> String {
         let caption = escape(&self.caption);
         let (labels, starts) = (self.labels(), self.starts());
@@ -156,7 +156,7 @@ impl Table {
         html
     }
 
-    /// The columns with which groups begin.
+    /// First column of each group.
     fn starts(&self) -> Vec<usize> {
         let groups = self.header.first().filter(|_| self.header.len() > 1);
         let mut column = 0;
@@ -167,7 +167,7 @@ impl Table {
         starts.collect()
     }
 
-    /// The heading of each column, with that of its group.
+    /// Heading of each column, with that of its group.
     fn labels(&self) -> Vec<String> {
         let mut labels: Vec<String> = Vec::new();
         for row in &self.header {

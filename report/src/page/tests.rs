@@ -1,4 +1,4 @@
-//! The page of a made-up identification whose names are as hostile as names can be.
+//! Tests of the page with an artificial identification that has hostile names.
 
 mod example;
 
@@ -13,7 +13,7 @@ use overact_identification::{
 };
 use roxmltree::{Document, ParsingOptions};
 
-/// The page of an identification; everything that can be shown is.
+/// Page with everything that can be shown.
 fn full(identification: &Identification) -> String {
     page(&Contents {
         identification,
@@ -41,7 +41,7 @@ fn parsed(html: &str) -> Document<'_> {
     Document::parse_with_options(html, options).expect("a page that is XML")
 }
 
-/// The text of an element and all below it.
+/// Text of an element and its descendants.
 fn text(node: roxmltree::Node<'_, '_>) -> String {
     let texts = node.descendants().filter(roxmltree::Node::is_text);
     texts.filter_map(|node| node.text()).collect()
@@ -154,7 +154,7 @@ fn a_short_summary_has_fifty_lines_and_what_may_be_used() {
     let mut identification = identification();
     identification.warnings.clear();
     identification.calibration = None;
-    // The worst known one is the only one that may be used; all others can't be.
+    // Only the least known parameter may be used.
     let verdict = &mut identification.verdicts[0];
     verdict.listed = vec![String::from("p_0")];
     let (model, stage) = (verdict.model, verdict.stage);
@@ -286,7 +286,7 @@ fn every_check_stands_with_what_shows_it() {
     ] {
         assert!(biased.contains(words), "{words} in {biased}");
     }
-    // What found nothing is folded away, with its plot.
+    // Passed checks are collapsed, with their plots.
     let folded = element(&document, "figure-check-1");
     assert!(folded.ancestors().any(|node| is(&node, "details")));
     let shown = element(&document, "figure-check-3");
@@ -295,7 +295,7 @@ fn every_check_stands_with_what_shows_it() {
         .descendants()
         .filter(|node| node.attribute("class") == Some("rule"));
     assert_eq!(dashed.count(), 2, "both limits");
-    // Every link of the verdict leads somewhere.
+    // Every link of the verdict has a target.
     for link in document
         .descendants()
         .filter_map(|node| node.attribute("href"))
@@ -393,7 +393,7 @@ fn what_was_calibrated_is_told_with_its_intervals() {
     ] {
         assert!(calibration.contains(words), "{words} in {calibration}");
     }
-    // Without a calibration nothing is said of it.
+    // Without calibration there is no section on it.
     assert!(!full(&identification()).contains("id=\"calibration\""));
 }
 

@@ -1,4 +1,4 @@
-//! Tracking errors of several controllers on the same runs: Table 4.
+//! Section on tracking errors of several controllers on the same runs (Table 4).
 
 use super::{
     Contents,
@@ -14,7 +14,7 @@ struct Entry<'a> {
     published: bool,
 }
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let tracking = &contents.identification.tracking;
     let mut body = String::new();
@@ -51,7 +51,7 @@ fn table(contents: &Contents<'_>, actuators: &[String]) -> String {
     let mut rows = Vec::new();
     for entry in &entries {
         rows.push(row(entry));
-        // The first controller of a run is the one that the others are compared with.
+        // The others are compared with the first controller of a run.
         let first = entries
             .iter()
             .find(|one| one.run == entry.run && one.published == entry.published);
@@ -67,7 +67,7 @@ fn table(contents: &Contents<'_>, actuators: &[String]) -> String {
         } else {
             format!("m{unit}")
         };
-        // A thousandth of a metre is a millimetre.
+        // Tracking errors in thousandths: millimetres.
         Cell::text(&format!("{name} ({unit})")).class("n")
     }));
     let mut html = Table {
@@ -97,7 +97,7 @@ fn row(entry: &Entry<'_>) -> Vec<Cell> {
     cells
 }
 
-/// How much less error than the first controller leaves.
+/// Reduction of the error relative to the first controller.
 fn reduction(entry: &Entry<'_>, first: &Entry<'_>) -> Vec<Cell> {
     let mut cells = vec![
         Cell::text(""),

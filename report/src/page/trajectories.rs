@@ -1,4 +1,4 @@
-//! The motion of every run: Fig. 7 of the paper.
+//! Section on the motion of every run (Fig. 7 of the paper).
 
 use super::{
     Contents,
@@ -12,7 +12,7 @@ use crate::{
 };
 use overact_identification::RunFigures;
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let runs = &contents.identification.figures.runs;
     let mut body = String::new();
@@ -55,7 +55,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The key: which coordinates have which look.
+/// Key: coordinates of each look.
 fn keys(runs: &[RunFigures], units: &Units) -> String {
     let Some(run) = runs.first() else {
         return String::new();
@@ -83,7 +83,7 @@ struct Group {
     members: Vec<usize>,
 }
 
-/// The coordinates of a run in groups of one unit, none larger than there are looks.
+/// Groups of coordinates with equal units, at most as many as looks.
 fn groups(run: &RunFigures, units: &Units) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (index, name) in run.coordinates.iter().enumerate() {
@@ -109,7 +109,7 @@ fn groups(run: &RunFigures, units: &Units) -> Vec<Group> {
     parts.collect()
 }
 
-/// The plots of one run: coordinates of the same unit together.
+/// Plots of one run, one for each group.
 fn charts(run: &RunFigures, units: &Units) -> Vec<String> {
     let payload = if run.payload { ", with payload" } else { "" };
     let charts = groups(run, units).into_iter().map(|group| {

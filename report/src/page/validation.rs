@@ -1,4 +1,4 @@
-//! Prediction of runs that were held out: Table 3, and the torques over time of Figs. 8 and 9.
+//! Section on validation runs: Table 3, and torques over time (Figs. 8 and 9).
 
 use super::{
     Contents, inputs,
@@ -8,7 +8,7 @@ use super::{
 use crate::choice::{answers, case_heading, of_stage, stage_name};
 use overact_identification::{CrossValidation, Estimate, Identification, Stage};
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = String::new();
@@ -38,7 +38,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The rows of one run and model: name of the prediction and its error for each actuator.
+/// Rows of one run and model: name of the prediction, and its error for each actuator.
 fn predictions(one: &CrossValidation) -> Vec<(&'static str, Vec<Option<f64>>)> {
     let mut rows = Vec::new();
     if one.table.is_empty() {
@@ -73,8 +73,7 @@ fn actuators(identification: &Identification) -> Vec<&str> {
         })
 }
 
-/// Table 3: the errors of some estimates on every held-out run, beside published ones if those are
-/// comparable.
+/// Table 3: errors of estimates on every validation run, with published ones if comparable.
 fn table(contents: &Contents<'_>, estimates: &[&Estimate], comparable: bool) -> String {
     let identification = contents.identification;
     let actuators = actuators(identification);

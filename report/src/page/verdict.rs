@@ -1,5 +1,6 @@
-//! The verdict in plain words: what may be done with the parameters of each model, and why. What it
-//! rests on stands in the section after it, `checks`.
+//! Section on the verdict: the permitted use of each model's parameters, with reasons.
+//!
+//! The section `checks` contains the evidence.
 
 use std::fmt::Write;
 
@@ -14,7 +15,7 @@ use crate::{
 };
 use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict, objections};
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let mut body = paragraph(&summary(identification));
@@ -28,7 +29,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// The verdict in a sentence for each model.
+/// Verdict of each model in one sentence.
 pub(super) fn summary(identification: &Identification) -> String {
     let verdicts = &identification.verdicts;
     if verdicts.is_empty() {
@@ -46,7 +47,7 @@ pub(super) fn summary(identification: &Identification) -> String {
     sentences.join(" ")
 }
 
-/// One card for each verdict.
+/// One card per verdict.
 fn cards(identification: &Identification) -> String {
     if identification.verdicts.is_empty() {
         return String::new();
@@ -73,7 +74,7 @@ fn cards(identification: &Identification) -> String {
     html
 }
 
-/// The parameters that may be used, where not all may.
+/// Parameters that may be used, if not all may.
 fn listed(names: &[String]) -> String {
     if names.is_empty() {
         return String::new();
@@ -85,13 +86,13 @@ fn listed(names: &[String]) -> String {
     )
 }
 
-/// What a result that may be used takes for right.
+/// Assumptions of a usable result.
 fn rests_on(verdict: &Verdict) -> String {
     let words = verdict.rests_on.as_deref().map(prose);
     words.map_or_else(String::new, |words| paragraph(&words))
 }
 
-/// What speaks against a model, each with a link to what shows it; else that nothing does.
+/// Objections to a model with links to the evidence, or that there are none.
 fn reasons(identification: &Identification, verdict: &Verdict) -> String {
     let found = objections(&identification.checks, verdict.model, verdict.stage);
     if found.told.is_empty() {
@@ -120,7 +121,7 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
     format!("<ul>{reasons}</ul>")
 }
 
-/// Words as a sentence.
+/// Formats words as a sentence.
 fn sentence(words: &str) -> String {
     let words = capital(words);
     match words.ends_with(['.', '?', '!']) {
@@ -129,7 +130,7 @@ fn sentence(words: &str) -> String {
     }
 }
 
-/// The other stages, where something else is to be said of them.
+/// Verdicts of other stages, if they differ.
 fn others(verdict: &Verdict) -> String {
     let differs = |one: &&StageVerdict| one.stage != verdict.stage && one.grade != verdict.grade;
     let told = |one: &StageVerdict| {
@@ -148,7 +149,7 @@ fn others(verdict: &Verdict) -> String {
     verdict.stages.iter().filter(differs).map(told).collect()
 }
 
-/// Every warning that is not that of a check.
+/// Warnings that do not belong to a check.
 fn warnings(identification: &Identification) -> String {
     let failed = identification.checks.iter().filter(|check| !check.passed);
     let told: Vec<&str> = failed.map(|check| check.words.as_str()).collect();
@@ -167,7 +168,7 @@ fn warnings(identification: &Identification) -> String {
     format!("<h3 id=\"warnings\">Warnings</h3>\n<ul class=\"warnings\">\n{items}</ul>\n")
 }
 
-/// What every result rests on.
+/// Assumptions of every result.
 fn assumptions(identification: &Identification) -> String {
     let list = |id: &str, title: &str, words: &str, all: &[String]| {
         if all.is_empty() {

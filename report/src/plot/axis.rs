@@ -1,31 +1,31 @@
-//! Axes: the range of the data, round ticks in it, and their labels.
+//! Axes: range, round ticks and labels.
 
-/// A range may not be narrower than this part of its own size: rounding would be all that shows.
+/// Smallest relative range; below it, only rounding would be visible.
 const NARROWEST: f64 = 1e-9;
 
-/// Larger values would overflow on the way to the paper: they count as not finite.
+/// Values from this magnitude on count as not finite, because they would overflow in the layout.
 const LARGEST: f64 = 1e150;
 
-/// Decades that a logarithmic axis shows at most: what lies below is as good as nothing.
+/// Largest number of decades of a logarithmic axis.
 const MOST_DECADES: f64 = 9.0;
 
-/// How values are laid out along an axis.
+/// Type of scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// In proportion.
+    /// Linear.
     Linear,
-    /// By their logarithm; values that are not positive are left out.
+    /// Logarithmic; values that are not positive are omitted.
     Logarithmic,
 }
 
 /// An axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Axis {
-    /// What it shows, with its unit.
+    /// Label with unit.
     pub(crate) label: String,
-    /// How.
+    /// Type of scale.
     pub(crate) kind: Kind,
-    /// Values that are inside in any case.
+    /// Values that the range must include.
     pub(crate) includes: Vec<f64>,
 }
 
@@ -47,14 +47,15 @@ impl Axis {
         }
     }
 
-    /// This axis, wide enough for these values.
+    /// Extends the range to include values.
     pub(crate) fn including(mut self, values: &[f64]) -> Self {
         self.includes.extend_from_slice(values);
         self
     }
 
-    /// The scale on which all `values` lie, drawn from `from` to `to` in SVG units, with about `count`
-    /// ticks. `tight` ends with the data, otherwise the scale ends on ticks.
+    /// Scale for all `values`, drawn from `from` to `to` in SVG units, with about `count` ticks.
+    ///
+    /// A `tight` scale ends at the data, others at ticks.
     pub(super) fn scale(
         &self,
         values: impl Iterator<Item = f64>,
@@ -68,7 +69,7 @@ impl Axis {
             let fits = value.abs() < LARGEST && (self.kind == Kind::Linear || value > 0.0);
             if fits {
                 (low, high) = (low.min(value), high.max(value));
-                // Whole numbers have no ticks between them.
+                // Integer data have no ticks between integers.
                 if value.fract() != 0.0 {
                     least_step = 0.0;
                 }
@@ -89,7 +90,7 @@ impl Axis {
     }
 }
 
-/// An axis with its range and its ticks.
+/// Scale of an axis with range and ticks.
 #[derive(Debug, Clone)]
 pub(super) struct Scale {
     kind: Kind,
@@ -97,12 +98,12 @@ pub(super) struct Scale {
     high: f64,
     from: f64,
     to: f64,
-    /// Values of the ticks and their labels.
+    /// Values and labels of the ticks.
     pub(super) ticks: Vec<(f64, String)>,
 }
 
 impl Scale {
-    /// Where a value lies; none for one that the scale does not have.
+    /// Position of a value; `None` if the scale cannot show it.
     pub(super) fn at(&self, value: f64) -> Option<f64> {
         let part = match self.kind {
             _ if value.abs() >= LARGEST => return None,
@@ -117,7 +118,7 @@ impl Scale {
     }
 }
 
-/// Range and ticks of a linear scale, which have at least a step between them; no data at all give the range from 0 to 1.
+/// Range and ticks of a linear scale with a smallest tick step; from 0 to 1 without data.
 fn linear(
     low: f64,
     high: f64,
@@ -146,7 +147,7 @@ fn linear(
     (low, high, ticks)
 }
 
-/// The nearest step of 1, 2 or 5 times a power of ten that is not smaller.
+/// Smallest step of 1, 2 or 5 times a power of ten that is not below `rough`.
 fn round_step(rough: f64) -> f64 {
     let power = 10_f64.powf(rough.log10().floor());
     let mantissa = rough / power;
@@ -154,14 +155,14 @@ fn round_step(rough: f64) -> f64 {
     round.unwrap_or(10.0) * power
 }
 
-/// A tick's label: as many decimals as its step has; powers of ten where that would be long.
+/// Label of a tick with the decimals of its step; scientific if that would be long.
 fn label(value: f64, step: f64, size: f64) -> String {
     let exponent = step.log10().floor() as i32;
     if size >= 1e5 || exponent < -4 {
         return scientific(value);
     }
     let decimals = usize::try_from(-exponent).unwrap_or(0);
-    // A negative number has a minus sign, which a hyphen is not.
+    // Typographic minus sign.
     format!("{value:.decimals$}").replace('-', "−")
 }
 

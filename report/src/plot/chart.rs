@@ -1,4 +1,4 @@
-//! A chart: lines over a horizontal axis.
+//! Chart: lines over a horizontal axis.
 
 use std::fmt::Write;
 
@@ -9,30 +9,30 @@ use super::{
 };
 use crate::text::{escape, fitted};
 
-/// Characters that stand side by side above a chart, in one line.
+/// Number of characters that fit in one line above a chart.
 const TITLE_CHARACTERS: usize = 46;
 
-/// Height of a line for the title alone, where the unit needs the one below.
+/// Height of a separate title line, used if the unit needs the line below.
 const TITLE_LINE: f64 = 15.0;
 
 /// Height of a chart in SVG units.
 const HEIGHT: f64 = 230.0;
 
-/// Where the axes begin and end: left, right, top, bottom.
+/// Position of the axes: left, right, top, bottom.
 const FRAME: [f64; 4] = [50.0, WIDTH - 10.0, 26.0, HEIGHT - 40.0];
 
-/// Height of a threshold's name, and the highest place for one, below the title.
+/// Height of a threshold's name, and its highest position, below the title.
 const NAME: f64 = 12.0;
 const HIGHEST_NAME: f64 = 28.0;
 
-/// How a line looks; the page's style sheet has a class for each.
+/// Look of a line; each has a class in the page's style sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
-    /// What was measured: broad, to be covered by what is predicted.
+    /// Measured series: broad, so that predicted ones can cover it.
     Measured,
-    /// What the model says: thin.
+    /// Predicted series: thin.
     Predicted,
-    /// Their difference.
+    /// Residual.
     Residual,
     /// Case 1, or the only case.
     First,
@@ -53,13 +53,13 @@ pub(crate) enum Look {
 }
 
 impl Look {
-    /// How many looks differ from each other.
+    /// Number of distinct looks.
     pub(crate) const DISTINCT: usize = 7;
 
-    /// How many lines of equal standing a chart of the page has at most.
+    /// Largest number of equivalent lines in a chart of the page.
     pub(crate) const EQUALS: usize = 4;
 
-    /// The looks of lines of equal standing, in order.
+    /// Look of the n-th of several equivalent lines.
     pub(crate) const fn nth(index: usize) -> Self {
         match index {
             0 => Self::First,
@@ -73,7 +73,7 @@ impl Look {
         }
     }
 
-    /// Its class.
+    /// CSS class.
     pub(crate) const fn class(self) -> &'static str {
         match self {
             Self::Measured => "measured",
@@ -94,11 +94,11 @@ impl Look {
 /// A line of a chart.
 #[derive(Debug, Clone)]
 pub(crate) struct Line {
-    /// How it looks.
+    /// Look.
     pub(crate) look: Look,
-    /// What it is, for those who can't see it.
+    /// Label for assistive technology.
     pub(crate) label: String,
-    /// Its points; one that is not finite interrupts the line.
+    /// Points; one that is not finite interrupts the line.
     pub(crate) points: Vec<(f64, f64)>,
     /// Whether each point has a dot.
     pub(crate) dots: bool,
@@ -118,7 +118,7 @@ impl Line {
         }
     }
 
-    /// The same points as dots alone.
+    /// The same points as dots only.
     pub(crate) const fn dots_alone(mut self) -> Self {
         (self.dots, self.joined) = (true, false);
         self
@@ -134,16 +134,16 @@ impl Line {
 /// A dashed straight line across a chart.
 #[derive(Debug, Clone)]
 pub(crate) struct Rule {
-    /// Its place on its axis.
+    /// Position on its axis.
     pub(crate) value: f64,
-    /// Its name, written beside it.
+    /// Name, written next to it.
     pub(crate) label: String,
-    /// Whether it stands on the horizontal axis; else on the vertical one.
+    /// Whether it is vertical, at a position of the horizontal axis.
     pub(crate) is_vertical: bool,
 }
 
 impl Rule {
-    /// A line at a height.
+    /// Horizontal line at a value.
     pub(crate) fn horizontal(value: f64, label: impl Into<String>) -> Self {
         Self {
             value,
@@ -152,7 +152,7 @@ impl Rule {
         }
     }
 
-    /// A line at a place of the horizontal axis.
+    /// Vertical line at a position of the horizontal axis.
     pub(crate) fn vertical(value: f64, label: impl Into<String>) -> Self {
         Self {
             is_vertical: true,
@@ -164,15 +164,15 @@ impl Rule {
 /// A chart.
 #[derive(Debug, Clone)]
 pub(crate) struct Chart {
-    /// Written above it.
+    /// Title.
     pub(crate) title: String,
-    /// What it shows, for those who can't see it.
+    /// Description for assistive technology.
     pub(crate) description: String,
     /// The horizontal axis.
     pub(crate) x: Axis,
     /// The vertical axis.
     pub(crate) y: Axis,
-    /// The lines, the last one on top.
+    /// Lines, the last one on top.
     pub(crate) lines: Vec<Line>,
     /// Thresholds.
     pub(crate) rules: Vec<Rule>,
@@ -212,7 +212,7 @@ impl Chart {
         svg
     }
 
-    /// Height of what stands above the chart's own place: a line where title and unit do not fit in one.
+    /// Extra height above the chart if title and unit do not fit in one line.
     fn above(&self) -> f64 {
         let length = |text: &str| text.chars().count();
         let beside = length(&self.title) + length(&self.y.label);
@@ -268,7 +268,7 @@ impl Chart {
     }
 }
 
-/// The opening tag of a plot, which reaches so far `above` its own place, with its names for those who can't see it.
+/// Opening tag of a plot with extra height `above`, and names for assistive technology.
 pub(super) fn opening(
     (width, height, above): (f64, f64, f64),
     title: &str,
@@ -295,8 +295,9 @@ fn drawn_rule(rule: &Rule, y: &Scale) -> String {
     y.at(rule.value).map_or_else(String::new, drawn)
 }
 
-/// The names of thresholds, each at the end of its line where the others are farther from it, above it or below;
-/// where another name or the title stands there already, at the next free place.
+/// Names of thresholds, each at the end of its line with more space, above or below it.
+///
+/// If another name or the title is already there, the next free position is taken.
 fn rule_names(rules: &[&Rule], lines: &[Line], y: &Scale) -> String {
     let [left, right, _, bottom] = FRAME;
     let mut taken: Vec<(bool, f64)> = Vec::new();
@@ -328,7 +329,7 @@ fn rule_names(rules: &[&Rule], lines: &[Line], y: &Scale) -> String {
     svg
 }
 
-/// Whether lines are farther from a threshold on the left than on the right.
+/// Whether lines are farther from a threshold at the left end than at the right end.
 fn stands_left(at: f64, lines: &[Line], y: &Scale) -> bool {
     let nearest = |end: fn(&Line) -> Option<&(f64, f64)>| {
         let heights = lines.iter().filter_map(|line| y.at(end(line)?.1));
@@ -339,7 +340,7 @@ fn stands_left(at: f64, lines: &[Line], y: &Scale) -> bool {
     nearest(|line| line.points.first()) > nearest(|line| line.points.last())
 }
 
-/// A mark on the horizontal axis, its name on the side where there is more room.
+/// Vertical mark with its name on the side with more space.
 fn drawn_vertical(rule: &Rule, x: &Scale) -> String {
     let [left, right, top, bottom] = FRAME;
     let Some(at) = x.at(rule.value) else {
@@ -360,7 +361,7 @@ fn drawn_vertical(rule: &Rule, x: &Scale) -> String {
     )
 }
 
-/// A line; where it has no value it is interrupted.
+/// Draws a line with gaps at missing values.
 fn drawn_line(line: &Line, x: &Scale, y: &Scale) -> String {
     let place = |point: &(f64, f64)| Some((x.at(point.0)?, y.at(point.1)?));
     let mut path = String::new();

@@ -1,4 +1,4 @@
-//! A forest plot: one row per quantity, its estimates with their uncertainty.
+//! Forest plot: one row per quantity, its estimates with their intervals.
 
 use std::fmt::Write;
 
@@ -10,14 +10,14 @@ use super::{
 };
 use crate::text::{escape, fitted};
 
-/// Where the rows begin at the left, and where they end.
+/// Left and right end of the rows.
 const LEFT: f64 = 112.0;
 const RIGHT: f64 = WIDTH - 10.0;
 
-/// Characters that stand at the left of a row.
+/// Largest number of characters of a row's name.
 const NAME_CHARACTERS: usize = 16;
 
-/// Heights of the title, of one estimate, of the space between two quantities, and of the axis.
+/// Heights of the title, of one estimate, of the gap between quantities, and of the axis.
 const HEAD: f64 = 26.0;
 const BAR: f64 = 13.0;
 const GAP: f64 = 7.0;
@@ -26,15 +26,15 @@ const FOOT: f64 = 40.0;
 /// One estimate of a quantity.
 #[derive(Debug, Clone)]
 pub(crate) struct Bar {
-    /// Whose it is.
+    /// Look.
     pub(crate) look: Look,
-    /// Its value.
+    /// Value.
     pub(crate) value: f64,
-    /// The ends of its interval.
+    /// Ends of the interval.
     pub(crate) interval: [f64; 2],
     /// Another estimate of the same quantity, drawn as a cross.
     pub(crate) other: Option<f64>,
-    /// What it says, for those who can't see it or point at it.
+    /// Description for assistive technology and as a tooltip.
     pub(crate) label: String,
 }
 
@@ -45,7 +45,7 @@ impl Bar {
         [self.value, low, high].into_iter().chain(self.other)
     }
 
-    /// How far it reaches from zero; infinite where a value is not finite.
+    /// Largest magnitude of its values; infinite if one is not finite.
     pub(crate) fn reach(&self) -> f64 {
         self.values().fold(0.0, |reach, value| {
             if value.is_finite() {
@@ -60,9 +60,9 @@ impl Bar {
 /// A forest plot.
 #[derive(Debug, Clone)]
 pub(crate) struct Forest {
-    /// Written above it.
+    /// Title.
     pub(crate) title: String,
-    /// What it shows, for those who can't see it.
+    /// Description for assistive technology.
     pub(crate) description: String,
     /// The horizontal axis.
     pub(crate) x: Axis,
@@ -133,7 +133,7 @@ fn row_height(bars: &[Bar]) -> f64 {
     GAP + BAR * bars.len().max(1) as f64
 }
 
-/// One estimate; nothing where it has no value.
+/// Draws one estimate; empty if it has no value.
 fn drawn(bar: &Bar, x: &Scale, y: f64) -> String {
     let [low, high] = bar.interval;
     let (Some(at), Some(low), Some(high)) = (x.at(bar.value), x.at(low), x.at(high)) else {

@@ -1,8 +1,8 @@
-//! Plots as SVG text: axes with round ticks, lines, bars of uncertainty.
+//! Plots as SVG text: axes with round ticks, lines, intervals.
 //!
-//! A plot has no colours and no fonts of its own: its classes take them from the page's style sheet,
-//! which knows light and dark. Its width is [`WIDTH`] units, close to that of a telephone, so that its
-//! text keeps its size there; wider screens set plots side by side.
+//! Plots have no colours and fonts of their own but classes of the page's style sheet, which
+//! supports light and dark mode. Their width is [`WIDTH`] units, close to that of a telephone, so
+//! that text keeps its size there. Wider screens show plots in several columns.
 
 mod axis;
 mod chart;
@@ -15,7 +15,7 @@ pub(super) use forest::{Bar, Forest};
 /// Width of every plot in SVG units.
 const WIDTH: f64 = 400.0;
 
-/// A coordinate with one decimal, which is a tenth of a unit and finer than a screen.
+/// Coordinate with one decimal, finer than a screen.
 fn short(value: f64) -> String {
     let text = format!("{value:.1}");
     let text = text.strip_suffix(".0").unwrap_or(&text);

@@ -1,4 +1,4 @@
-//! The parameters of all answers side by side.
+//! Table of the parameters of all results.
 
 use crate::{
     choice::{answers, stage_name},
@@ -9,16 +9,16 @@ use overact_identification::{
     Estimate, Grade, Identification, ParameterEstimate, Verdict, significant,
 };
 
-/// The answers and the names of their parameters.
+/// Results and the names of their parameters.
 pub(super) struct Rows<'a> {
     answers: Vec<&'a Estimate>,
-    /// In the order of the base parameters.
+    /// Names in the order of the base parameters.
     names: Vec<&'a str>,
-    /// Places among the names, the first ones to be shown before others.
+    /// Indices of the names in order of priority.
     ranked: Vec<usize>,
 }
 
-/// The parameters that there are to show.
+/// Parameters of the results.
 pub(super) fn rows(identification: &Identification) -> Rows<'_> {
     let answers = answers(identification);
     let mut names: Vec<&str> = Vec::new();
@@ -51,25 +51,25 @@ pub(super) fn rows(identification: &Identification) -> Rows<'_> {
     }
 }
 
-/// Half of the narrowest interval of a parameter in percent of its value; infinite where there is none.
+/// Half width of the narrowest interval in percent of the value; infinite if there is none.
 fn best_known(answers: &[&Estimate], name: &str) -> f64 {
     let all = answers.iter().filter_map(|answer| own(answer, name));
     all.filter_map(half_width_percent)
         .fold(f64::INFINITY, f64::min)
 }
 
-/// A parameter of an estimate.
+/// Parameter of an estimate.
 fn own<'a>(estimate: &'a Estimate, name: &str) -> Option<&'a ParameterEstimate> {
     estimate.parameters.iter().find(|one| one.name == name)
 }
 
 impl Rows<'_> {
-    /// How many parameters there are.
+    /// Number of parameters.
     pub(super) fn count(&self) -> usize {
         self.names.len()
     }
 
-    /// The table of so many of them at most, below its title, with what is to be known of it; empty without answers.
+    /// Titled table of at most `most` parameters with notes; empty without results.
     pub(super) fn table(&self, most: usize) -> String {
         let Some(first) = self.answers.first() else {
             return String::new();
@@ -91,7 +91,7 @@ impl Rows<'_> {
         let has_truth = owns().any(|one| one.true_value.is_some());
         let with_truth = self.side_by_side(&names, has_truth);
         let fits = |text: &str| text.lines().all(|line| line.chars().count() <= WIDTH);
-        // A table that is too wide has come in parts.
+        // A table that is too wide was split into parts.
         let is_whole = fits(&with_truth) && with_truth.lines().count() == names.len() + 2;
         match has_truth && !is_whole {
             true => {
@@ -123,7 +123,7 @@ impl Rows<'_> {
     }
 
     fn side_by_side(&self, names: &[&str], with_truth: bool) -> String {
-        // Two answers side by side have to fit into a line.
+        // Two results must fit in a line.
         let most = if self.answers.len() > 1 { 5 } else { 6 };
         let mut header = vec!["parameter"];
         if with_truth {
@@ -155,7 +155,7 @@ impl Rows<'_> {
     }
 }
 
-/// The ends of an interval, marked where the estimate lies outside.
+/// Ends of an interval; an asterisk marks estimates outside.
 fn interval(one: &ParameterEstimate) -> String {
     let [low, high] = one.interval_95;
     let digits = interval_digits(one).unwrap_or(2);
@@ -167,7 +167,7 @@ fn interval(one: &ParameterEstimate) -> String {
     )
 }
 
-/// Digits at which the ends of an interval differ; none where they do not.
+/// Number of digits at which the interval's ends differ; `None` if they do not.
 fn interval_digits(one: &ParameterEstimate) -> Option<usize> {
     let [low, high] = one.interval_95;
     let ratio = low.abs().max(high.abs()) / (high - low).abs();
@@ -175,7 +175,7 @@ fn interval_digits(one: &ParameterEstimate) -> Option<usize> {
     ratio.is_finite().then_some((digits as usize).min(7))
 }
 
-/// Digits of a value: one more than its interval has, and no more than `most`.
+/// Digits of a value: one more than those of its interval, at most `most`.
 fn value_digits(one: &ParameterEstimate, most: usize) -> usize {
     interval_digits(one).map_or(most, |digits| (digits + 1).min(most))
 }

@@ -6,10 +6,10 @@ use overact_identification::{Calibration, HeldParameter, significant};
 
 use crate::layout::{WIDTH, paragraph, table};
 
-/// Digits of a deviation.
+/// Digits of a standard deviation.
 const DIGITS: usize = 2;
 
-/// What is changed, what stays as described, and what the data can't tell.
+/// Changes, unchanged parameters, and those that the data do not determine.
 pub(crate) fn calibration(calibration: &Calibration) -> String {
     let mut text = format!(
         "\nCalibration from the closure of the loops ({} sensors, {} of the platform's coordinates)\n",
@@ -32,7 +32,7 @@ pub(crate) fn calibration(calibration: &Calibration) -> String {
     text
 }
 
-/// The table of what is changed.
+/// Table of the changes.
 fn changes(calibration: &Calibration) -> String {
     if calibration.estimated.is_empty() {
         return String::from("nothing is changed\n");
@@ -59,7 +59,7 @@ fn changes(calibration: &Calibration) -> String {
     table(&header, rows.collect())
 }
 
-/// What stays as described: what would be seen of a change, and what the data can't tell.
+/// Unchanged parameters: their detection limits, and those that the data do not determine.
 fn held(held: &[HeldParameter]) -> String {
     let mut text = String::new();
     let known = held.iter().filter_map(|one| {
@@ -89,7 +89,7 @@ fn held(held: &[HeldParameter]) -> String {
     text
 }
 
-/// Words with commas between them, in indented lines.
+/// Comma-separated words in indented lines.
 fn wrapped(words: &[impl AsRef<str>]) -> String {
     let mut text = String::new();
     let mut width = WIDTH;

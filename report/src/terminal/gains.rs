@@ -1,10 +1,10 @@
-//! Gains of the drives as text.
+//! Drive gains as text.
 
 use overact_identification::{DriveGain, significant};
 
 use crate::layout::table;
 
-/// The table of the gains; empty where none were identified.
+/// Table of the gains; empty if none were identified.
 pub(crate) fn gains(gains: &[DriveGain]) -> String {
     if gains.is_empty() {
         return String::new();

@@ -1,19 +1,19 @@
-//! The direction of gravity as text.
+//! Gravity direction as text.
 
 use overact_identification::{GravityDirection, significant};
 
 use crate::layout::table;
 
-/// Decimals of a component, m/s²; digits of deviations.
+/// Decimals of a component, m/s²; digits of standard deviations.
 const DECIMALS: usize = 6;
 
-/// The line that belongs into a description.
+/// Line for the description.
 pub(crate) fn described(direction: &GravityDirection) -> String {
     let [x, y, z] = direction.estimated.map(|one| format!("{one:.DECIMALS$}"));
     format!("gravity = [{x}, {y}, {z}]")
 }
 
-/// What is said of the angle between the described and the identified direction.
+/// Angle between the described and the identified direction.
 pub(crate) fn angle(direction: &GravityDirection) -> String {
     let [tilt, deviation] =
         [direction.tilt, direction.tilt_deviation].map(|one| significant(one.to_degrees(), 3));
@@ -24,7 +24,7 @@ pub(crate) fn angle(direction: &GravityDirection) -> String {
     }
 }
 
-/// The table of the components; empty where the direction was not identified.
+/// Table of the components; empty if the direction was not identified.
 pub(crate) fn gravity(direction: Option<&GravityDirection>) -> String {
     let Some(own) = direction else {
         return String::new();

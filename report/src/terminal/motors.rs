@@ -1,10 +1,10 @@
-//! Parameters at the side of the motors as text.
+//! Motor-side parameters as text.
 
 use overact_identification::{MotorParameter, significant};
 
 use crate::layout::table;
 
-/// The table of the parameters; empty where no motors are described.
+/// Table of the parameters; empty if no motors are described.
 pub(crate) fn motors(motors: &[MotorParameter]) -> String {
     if motors.is_empty() {
         return String::new();

@@ -1,9 +1,8 @@
-//! A mechanism with changed lengths, evaluated leg by leg: Newton's method on the closure of a leg, and
-//! the derivatives of its joints along the pose and by its lengths.
+//! Leg closures of a mechanism with changed lengths: Newton's method and derivatives.
 //!
-//! In the components that count, the end of a leg with joints q misses its place on the platform by
-//! f(x, q, p) = 0. With J_k = -∂f/∂q and J_tk = ∂f/∂v, eq. (9), dq = J_k^-1 (J_tk v + ∂f/∂p dp). The end
-//! moves with a length along the axis on which the length lies, whatever its value is.
+//! Let f(x, q, p) = 0 be the constrained components of the displacement from the leg's end to its
+//! place on the platform. With J_k = −∂f/∂q and J_tk = ∂f/∂v, eq. (9), dq = J_k^-1 (J_tk v + ∂f/∂p
+//! dp). A length moves the end along the length's axis, independently of its value.
 
 use super::length::{LegLength, Length, lengths};
 use crate::interpreted::InterpretedRobot;
@@ -16,33 +15,33 @@ use overact_codegen::mechanism::{
 };
 use overact_identification::{ChangedGeometry, Geometry, GeometryParameter, Reached};
 
-/// Newton steps of a leg, at most; from the sample's last joints it takes two or three.
+/// Largest number of Newton steps of a leg; started from the previous sample, two or three suffice.
 const STEPS: usize = 30;
 
-/// The end has met the platform when it misses it by less (m, rad).
+/// Residual below which a leg counts as closed (m, rad).
 const CLOSED: f64 = 1e-13;
 
-/// Steps that no longer make the miss smaller end the iteration when it is below this: rounding.
+/// Residual below which an iteration without progress is accepted as rounding (m, rad).
 const ROUNDING: f64 = 1e-10;
 
-/// A joint that would step farther (rad, m) may jump to another working mode.
+/// Longest step of a joint (rad, m); longer ones may jump to another working mode.
 const LONGEST_STEP: f64 = 0.5;
 
-/// The geometry of an interpreted robot.
+/// Geometry of an interpreted robot.
 #[derive(Debug)]
 pub(crate) struct MechanismGeometry<'a> {
     model: &'a InterpretedRobot,
     mechanism: &'a Mechanism,
-    /// How the platform moves.
+    /// Motion type of the platform.
     motion: Motion,
     lengths: Vec<LegLength>,
     parameters: Vec<GeometryParameter>,
-    /// For each leg the components of its end's motion that count.
+    /// For each leg, the constrained components of its end.
     rows: Vec<Vec<usize>>,
 }
 
 impl<'a> MechanismGeometry<'a> {
-    /// The geometry of a described robot; `None` without a platform, on which legs end.
+    /// Geometry of a robot; `None` if it has no platform.
     pub(crate) fn new(model: &'a InterpretedRobot) -> Option<Self> {
         let mechanism = &model.model().mechanism;
         let motion = mechanism.platform.as_ref()?.motion;
@@ -58,7 +57,7 @@ impl<'a> MechanismGeometry<'a> {
         })
     }
 
-    /// A leg with changed lengths.
+    /// Leg with changed lengths.
     fn changed_leg(&self, leg: usize, changes: &[f64]) -> Leg {
         let mut own = self.mechanism.legs[leg].clone();
         for (length, change) in self.lengths.iter().zip(changes) {
@@ -77,7 +76,7 @@ struct ChangedMechanism<'a> {
 }
 
 impl ChangedMechanism<'_> {
-    /// Closes a leg from the joints that it had last.
+    /// Closes a leg, starting from its previous joint positions.
     fn close(&self, index: usize, target: &Isometry3<f64>, q: &mut [f64]) -> Result<(), Error> {
         let (leg, rows) = (&self.legs[index], &self.described.rows[index]);
         let mut least = f64::INFINITY;
@@ -102,7 +101,7 @@ impl ChangedMechanism<'_> {
         Err(Error::OutOfReach { leg })
     }
 
-    /// The derivatives of a leg's joints: along the twist, and by each parameter.
+    /// Derivatives of a leg's joints with respect to the twist and to each parameter.
     fn derivatives(
         &self,
         index: usize,
@@ -136,21 +135,21 @@ impl ChangedMechanism<'_> {
     }
 }
 
-/// The components of a motion (velocity, angular velocity) that count.
+/// Constrained components of a motion (velocity, angular velocity).
 fn counted((linear, angular): (Vector3<f64>, Vector3<f64>), rows: &[usize]) -> DVector<f64> {
     let parts = [linear, angular];
     let values = rows.iter().map(|row| parts[row / 3][row % 3]);
     DVector::from_iterator(rows.len(), values)
 }
 
-/// By how much a leg's last frame misses its place, in the components that count.
+/// Closure residual of a leg, in the constrained components.
 fn miss(rows: &[usize], last: &Isometry3<f64>, target: &Isometry3<f64>) -> DVector<f64> {
     let linear = target.translation.vector - last.translation.vector;
     let angular = (target.rotation * last.rotation.inverse()).scaled_axis();
     counted((linear, angular), rows)
 }
 
-/// The motion that a platform point at `arm` from the origin has per unit of a twist coordinate.
+/// Motion of a platform point at `arm` from the origin for a unit twist coordinate.
 fn end_velocity(coordinate: TwistCoordinate, arm: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
     match coordinate {
@@ -159,7 +158,7 @@ fn end_velocity(coordinate: TwistCoordinate, arm: Vector3<f64>) -> (Vector3<f64>
     }
 }
 
-/// ∂f/∂p: by how much more the end misses its place per unit of a length.
+/// ∂f/∂p: derivative of the closure residual with respect to a length.
 fn end_miss(
     leg: &Leg,
     length: Length,
@@ -190,7 +189,7 @@ fn end_miss(
     }
 }
 
-/// Whether a joint is on the way from the leg's base to its end.
+/// Whether a joint is on the path from the leg's base to its end.
 fn is_on_way(leg: &Leg, joint: usize) -> bool {
     let mut at = leg.joints.len().checked_sub(1);
     while let Some(index) = at {

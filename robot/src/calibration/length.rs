@@ -1,4 +1,4 @@
-//! The lengths of a mechanism that calibration may change.
+//! Lengths of a mechanism that calibration may change.
 
 use overact_codegen::mechanism::{End, JointKind, Leg, Mechanism, Number};
 use overact_identification::{GeometryParameter, ParameterKind};
@@ -14,9 +14,9 @@ pub(crate) enum Length {
     D(usize),
     /// MDH r of a joint's step.
     R(usize),
-    /// A coordinate of the point where the leg stands.
+    /// A coordinate of the leg's base point.
     Base(usize),
-    /// A coordinate of the point where the leg ends on the platform.
+    /// A coordinate of the leg's attachment point on the platform.
     End(usize),
 }
 
@@ -25,12 +25,12 @@ pub(crate) enum Length {
 pub(crate) struct LegLength {
     /// Index of the leg.
     pub(crate) leg: usize,
-    /// Which of its lengths.
+    /// Kind of length.
     pub(crate) length: Length,
 }
 
 impl Length {
-    /// The value in a leg, m.
+    /// Value in a leg, m.
     fn value(self, leg: &Leg) -> f64 {
         let coordinate = |at: [Number; 3], axis: usize| at[axis].value();
         match self {
@@ -45,7 +45,7 @@ impl Length {
         }
     }
 
-    /// Adds to the value in a leg, m.
+    /// Adds a change to the value in a leg, m.
     pub(crate) fn add(self, leg: &mut Leg, change: f64) {
         let number = match self {
             Self::B(joint) => &mut leg.joints[joint].b,
@@ -58,7 +58,7 @@ impl Length {
                 None => return,
             },
         };
-        // An unchanged length keeps the exact number that the description gives.
+        // Keep the exact number of the description if nothing changes.
         if change != 0.0 {
             *number = Number::float(number.value() + change);
         }
@@ -86,8 +86,10 @@ impl Length {
         }
     }
 
-    /// All lengths of a leg. Those of its chain that are zero are so by design; the points where it stands
-    /// and ends may be off in any direction. The constant of a sliding joint is the offset of its position.
+    /// All lengths of a leg that may be calibrated.
+    ///
+    /// Zero lengths of its chain are zero by design, but base and attachment points may be off in
+    /// any direction. The constant of a prismatic joint is its position offset.
     fn all(leg: &Leg) -> Vec<Self> {
         let mut all = Self::steps(leg);
         all.extend((0..AXES.len()).map(Self::Base));
@@ -110,7 +112,7 @@ impl Length {
     }
 }
 
-/// The lengths of a robot without loops, with their names and values (m).
+/// Lengths of a serial robot, with their names and values (m).
 pub(crate) fn of_tree(mechanism: &Mechanism) -> Vec<(LegLength, String, f64)> {
     let legs = mechanism.legs.iter().enumerate();
     let each = legs.flat_map(|(leg, own)| {
@@ -129,8 +131,9 @@ pub(crate) fn of_tree(mechanism: &Mechanism) -> Vec<(LegLength, String, f64)> {
     }
 }
 
-/// All lengths of a robot with a platform, and what the calibration knows of them. Legs of a robot without
-/// one close no loop.
+/// Lengths of a robot with a platform, and the parameters for calibration.
+///
+/// Empty for robots without a platform, whose legs close no loops.
 pub(crate) fn lengths(mechanism: &Mechanism) -> (Vec<LegLength>, Vec<GeometryParameter>) {
     if mechanism.platform.is_none() {
         return (Vec::new(), Vec::new());

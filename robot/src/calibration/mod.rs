@@ -1,9 +1,10 @@
-//! Calibration of a described robot: lengths of its legs and offsets of its encoders, estimated from runs
-//! and written back into the description.
+//! Calibration of a robot: leg lengths and encoder offsets, estimated from runs.
 //!
-//! - `length`: which lengths a mechanism has;
-//! - `closure`: a mechanism with changed lengths, evaluated;
-//! - `text`: the calibrated description.
+//! The result can be written back into the description.
+//!
+//! - `length`: lengths of a mechanism;
+//! - `closure`: evaluation of a mechanism with changed lengths;
+//! - `text`: calibrated description.
 
 mod closure;
 mod length;
@@ -15,16 +16,17 @@ use crate::{error::Error, robot::Robot};
 use closure::MechanismGeometry;
 use overact_identification::{Calibration, CalibrationScope, DescribedGeometry, Log, calibrate};
 
-/// Remark on robots whose lengths cannot be calibrated.
+/// Remark for robots whose lengths cannot be calibrated.
 const OFFSETS_ONLY: &str = "lengths are calibrated for robots with a platform only: here only encoder offsets are estimated";
 
 impl Robot {
-    /// Estimates encoder offsets and lengths from the closure of the loops in runs. Where the loops tell
-    /// nothing, nothing is estimated, and the remarks say why. Of a robot without a platform only the
-    /// encoder offsets are estimated.
+    /// Estimates encoder offsets and lengths from the loop closures in runs.
+    ///
+    /// If the loops determine nothing, nothing is estimated, and the remarks give the reason. For a
+    /// robot without a platform, only encoder offsets are estimated.
     ///
     /// # Errors
-    /// No run, or runs that do not fit the robot, that can't be read or that leave its workspace.
+    /// No run, or runs that do not fit the robot, cannot be read or leave its workspace.
     pub fn calibrate(&self, runs: &[Log], scope: CalibrationScope) -> Result<Calibration, Error> {
         let model = self.model();
         if let Some(geometry) = MechanismGeometry::new(model) {
@@ -38,11 +40,12 @@ impl Robot {
         Ok(calibration)
     }
 
-    /// The text of the description with the changes of a calibration that was made with this robot; as it is
-    /// where there is none.
+    /// Text of the description with the changes of a calibration of this robot.
+    ///
+    /// Without changes, the text is returned as it is.
     ///
     /// # Errors
-    /// Never for descriptions that a robot was made from.
+    /// Never for descriptions that a robot was created from.
     pub fn calibrated_text(&self, calibration: &Calibration) -> Result<String, Error> {
         if !calibration.is_change() {
             return Ok(self.source().text.clone());
@@ -51,10 +54,10 @@ impl Robot {
         text::calibrated(self, calibration, &|parameter| lengths[parameter])
     }
 
-    /// The robot with the changes of a calibration that was made with this one.
+    /// Robot with the changes of a calibration of this robot.
     ///
     /// # Errors
-    /// Lengths with which the robot does not close any more.
+    /// Lengths with which the robot's loops no longer close.
     pub fn calibrated(&self, calibration: &Calibration) -> Result<Self, Error> {
         Self::from_text(self.file(), &self.calibrated_text(calibration)?)
     }

@@ -1,9 +1,9 @@
-//! The text of a calibrated description: the author's own, comments and order kept, with the changes as
-//! values of the placements.
+//! Text of a calibrated description, with the author's comments and order.
 //!
-//! A leg is written once and placed several times, but no two legs are alike once they are calibrated. So a
-//! changed length becomes a sum of what stands there and a variable of the leg, `d = "l_ab + d_2_change"`, to
-//! which each placement gives its value. Offsets of encoders are `position_offset` of the table `[data]`.
+//! A shape of legs is described once and placed several times, but calibrated legs differ. A
+//! changed length therefore becomes a sum of its expression and a variable of the leg, `d = "l_ab +
+//! d_2_change"`. Each placement sets the variable. Encoder offsets are `position_offset` of the
+//! table `[data]`.
 
 use super::length::{LegLength, Length};
 use crate::{
@@ -16,16 +16,18 @@ use overact_identification::{CalibratedParameter, Calibration, Time};
 use std::collections::BTreeMap;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, Item, Table, TableLike, Value, value};
 
-/// Digits that are written below the first one of a deviation.
+/// Digits after the first significant digit of the standard deviation.
 const DIGITS_BELOW: i32 = 1;
 
-/// Decimals of a number, at most.
+/// Largest number of decimals.
 const DECIMALS: i32 = 15;
 
-/// Writes the changes of a calibration into a robot's description. `length` tells what a parameter is.
+/// Writes the changes of a calibration into a robot's description.
+///
+/// `length` maps a parameter index to its length.
 ///
 /// # Errors
-/// A description that is not written as this function reads it, which does not happen.
+/// A description of another form than this function reads, which does not happen.
 pub(super) fn calibrated(
     robot: &Robot,
     calibration: &Calibration,
@@ -40,7 +42,7 @@ pub(super) fn calibrated(
     };
     let parsed = source.text.parse::<DocumentMut>();
     let mut document = parsed.map_err(|error| problem(error.message()))?;
-    // Every length of a shape that changes in any of its legs, with the change in each.
+    // For each length of a shape that changes in any leg, the change in each leg.
     let mut changed: BTreeMap<(String, String), Change> = BTreeMap::new();
     for one in calibration.lengths() {
         let own = length(one.index);
@@ -66,7 +68,7 @@ pub(super) fn calibrated(
     Ok(heading(calibration) + &document.to_string())
 }
 
-/// What was changed, as comments.
+/// Comment that lists the changes.
 fn heading(calibration: &Calibration) -> String {
     let line = |one: &CalibratedParameter| {
         format!(
@@ -92,7 +94,7 @@ fn signed(one: &CalibratedParameter) -> String {
     }
 }
 
-/// A number with the digits that its deviation leaves a meaning.
+/// Number with the digits that its standard deviation justifies.
 fn rounded(value: f64, deviation: f64) -> String {
     let first = -deviation.log10().floor();
     let decimals = if first.is_finite() { first as i32 } else { 0 };
@@ -100,7 +102,7 @@ fn rounded(value: f64, deviation: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
-/// `d_2`, `base_x`: what is told of the variable's name.
+/// Prefix of the variable's name, as `d_2` or `base_x`.
 fn symbol(length: Length, leg: &overact_codegen::description::Leg) -> String {
     const AXES: [&str; 3] = ["x", "y", "z"];
     let joint = |joint: usize| leg.joints[joint].name.value.as_str();
@@ -113,15 +115,16 @@ fn symbol(length: Length, leg: &overact_codegen::description::Leg) -> String {
     }
 }
 
-/// The change of a length in the legs of a shape, as expressions.
+/// Change of a length in the legs of a shape, as expressions.
 struct Change {
     length: Length,
     of_legs: BTreeMap<String, String>,
 }
 
 impl Change {
-    /// Writes it: the sum in the shape, the values in its placements. None where the shape is not what was
-    /// read.
+    /// Writes the sum into the shape and the values into its placements.
+    ///
+    /// `None` if the shape is not the one that was read.
     fn write(&self, document: &mut DocumentMut, shape: &str, symbol: &str) -> Option<()> {
         let taken = names(document, shape);
         let plain = format!("{symbol}_change");
@@ -160,7 +163,7 @@ impl Change {
     }
 }
 
-/// Names that a variable of a shape can't have.
+/// Names that are not available for a variable of a shape.
 fn names(document: &DocumentMut, shape: &str) -> Vec<String> {
     let constants = document.get("constants").and_then(Item::as_table_like);
     let constants = constants.into_iter().flat_map(TableLike::iter);
@@ -172,7 +175,7 @@ fn names(document: &DocumentMut, shape: &str) -> Vec<String> {
     names
 }
 
-/// A value plus a variable, as an expression.
+/// Expression of a value plus a variable.
 fn plus(old: &Value, variable: &str) -> Value {
     let written = match old {
         Value::String(text) => text.value().trim().to_owned(),
@@ -182,13 +185,13 @@ fn plus(old: &Value, variable: &str) -> Value {
         Ok(0.0) => variable.to_owned(),
         _ => format!("{written} + {variable}"),
     };
-    // What stands around it, a comment for instance, stays.
+    // Keep the surrounding text, such as a comment.
     let mut new = Value::from(sum);
     *new.decor_mut() = old.decor().clone();
     new
 }
 
-/// Adds to a coordinate of the point `at` of a leg's table, which may be left out.
+/// Adds to a coordinate of the point `at` of a leg's table; a missing point is created.
 fn component(
     leg: &mut dyn TableLike,
     table: &str,
@@ -205,7 +208,7 @@ fn component(
     Some(())
 }
 
-/// The tables of a list, which may be written in one line or as tables.
+/// Number of tables in a list, written inline or as an array of tables.
 fn count(item: &Item) -> usize {
     let tables = item.as_array_of_tables().map(ArrayOfTables::len);
     tables
@@ -224,7 +227,7 @@ fn nth(item: &mut Item, at: usize) -> Option<&mut dyn TableLike> {
     }
 }
 
-/// Writes `position_offset`, with the columns that a log has without a table `[data]` where there is none.
+/// Writes `position_offset`; without a `[data]` table, also the default columns.
 fn offsets(document: &mut DocumentMut, robot: &Robot, calibration: &Calibration) -> Option<()> {
     let info = robot.model().info();
     let mapping = robot.mapping();

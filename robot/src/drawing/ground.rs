@@ -1,4 +1,4 @@
-//! What does not move: plates, pivots and feet below the legs.
+//! Draws the fixed parts: plates, pivots and feet.
 
 use super::scene::{Part, Point, Scene};
 use super::sheet::{Sheet, flat, hull, n, polygon};
@@ -6,10 +6,9 @@ use super::view::View;
 use overact_codegen::mechanism::Mechanism;
 use std::fmt::Write;
 
-/// A plate through the legs' bases in space, a hatched pivot below each in a
-/// plane, a foot below a serial robot.
+/// Draws a plate (spatial), a hatched pivot below each base (planar), or a foot (serial).
 pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
-    // Chains of a skeleton that start from a moving body do not stand on the ground.
+    // Chains that start on a moving body have no ground.
     let legs = scene.bases.iter().zip(&mechanism.legs).enumerate();
     let standing = legs.filter(|(_, (_, leg))| leg.base_body.is_none());
     let places: Vec<(usize, [f64; 2])> = standing

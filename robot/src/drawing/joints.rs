@@ -4,7 +4,7 @@ use super::scene::{Part, Point};
 use super::sheet::{Sheet, flat, n};
 use super::view::View;
 
-/// The symbol of a joint; `carries` tells of a slider whether another joint sits on its middle.
+/// Symbol of a joint; `carries`: whether another joint is at the middle of a slider.
 pub(super) fn symbol(
     part: &Part,
     carries: bool,
@@ -34,7 +34,7 @@ pub(super) fn symbol(
     }
 }
 
-/// The letter on a motor.
+/// Letter on a motor.
 fn motor([x, y]: [f64; 2]) -> String {
     format!(
         "<text class=\"ov-motor\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">M</text>",
@@ -43,7 +43,7 @@ fn motor([x, y]: [f64; 2]) -> String {
     )
 }
 
-/// A joint seen along its axis.
+/// Joint seen along its axis.
 pub(super) fn disc([x, y]: [f64; 2], colour: usize, actuated: bool) -> String {
     let (cx, cy) = (n(x), n(y));
     if actuated {
@@ -55,9 +55,9 @@ pub(super) fn disc([x, y]: [f64; 2], colour: usize, actuated: bool) -> String {
     format!("<circle class=\"ov-ink\" cx=\"{cx}\" cy=\"{cy}\" r=\"6\" stroke-width=\"2.5\"/>\n")
 }
 
-/// A joint seen from any side: a cylinder about its axis.
+/// Joint seen from any direction: a cylinder about its axis.
 fn drum([x, y]: [f64; 2], axis: [f64; 3], colour: usize, actuated: bool) -> String {
-    // The cap that is seen is the one at the nearer end.
+    // The visible cap is at the nearer end.
     let [right, up, near] = if axis[2] < 0.0 {
         axis.map(|a| -a)
     } else {
@@ -99,7 +99,7 @@ fn drum([x, y]: [f64; 2], axis: [f64; 3], colour: usize, actuated: bool) -> Stri
     )
 }
 
-/// What slides on a rail.
+/// Slider on a rail.
 pub(super) fn block(
     [x, y]: [f64; 2],
     axis: [f64; 3],
@@ -108,7 +108,7 @@ pub(super) fn block(
     carries: bool,
 ) -> String {
     let angle = (-axis[1]).atan2(axis[0]);
-    // The letter makes room for the joint on the slider.
+    // Move the letter away from the joint on the slider.
     let (left, width, aside) = if carries {
         (-32.0, 50.0, -18.0)
     } else {
@@ -169,7 +169,7 @@ fn telescope(
     )
 }
 
-/// An end that only coincides in a point.
+/// End of a leg with a point closure.
 pub(super) fn ball([x, y]: [f64; 2], colour: usize) -> String {
     format!(
         "<circle class=\"ov-case ov-f{colour}\" cx=\"{0}\" cy=\"{1}\" r=\"7.5\" stroke-width=\"2\"/>\n",

@@ -1,4 +1,4 @@
-//! Letters: title, names of legs or joints, frames and the legend.
+//! Text of the drawing: title, names, frames and legend.
 
 use super::joints::{ball, block, disc, universal};
 use super::scene::{Part, Scene};
@@ -8,7 +8,7 @@ use super::view::View;
 use crate::counted::counted;
 use overact_codegen::mechanism::Mechanism;
 
-/// The robot's name and what it can do.
+/// Title: the robot's name, degrees of freedom and motors.
 pub(super) fn title(mechanism: &Mechanism) -> (String, String) {
     let freedoms = counted(mechanism.dof(), "degree of freedom", "degrees of freedom");
     let motors = counted(mechanism.actuated().len(), "motor", "motors");
@@ -22,19 +22,19 @@ pub(super) fn title(mechanism: &Mechanism) -> (String, String) {
     (mechanism.name.clone(), subtitle)
 }
 
-/// A rectangle on paper: left, top, right, bottom.
+/// Rectangle on the sheet: left, top, right, bottom.
 type Area = [f64; 4];
 
 fn overlap(a: &Area, b: &Area) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
 
-/// Width of a text in the size of names, pixels; letters differ, so this is rather too much.
+/// Upper estimate of a name's width, pixels.
 fn text_width(text: &str) -> f64 {
     text.chars().count() as f64 * 8.0
 }
 
-/// Names of the legs; of the joints, where there is one leg only.
+/// Names of the legs, or of the joints if there is one leg.
 pub(super) fn names(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
     let mut wanted: Vec<(usize, String, [f64; 2])> = Vec::new();
     if mechanism.is_tree() {
@@ -78,7 +78,7 @@ pub(super) fn names(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &S
     text
 }
 
-/// Where a name covers least: tried all around its place, outwards first.
+/// Area around a place where a name covers least; outer positions are tried first.
 fn best_area(
     name: &str,
     at: [f64; 2],
@@ -167,7 +167,7 @@ fn obstacles(scene: &Scene, view: &View, sheet: &Sheet) -> Vec<[f64; 2]> {
     points
 }
 
-/// The platform's frame in its place, and the base frame's directions in a corner.
+/// Frame of the platform, and directions of the base frame in a corner.
 pub(super) fn frames(scene: &Scene, view: &View, sheet: &Sheet) -> String {
     let units = nalgebra::Matrix3::identity();
     let column = |m: &nalgebra::Matrix3<f64>, i: usize| m.column(i).into_owned();
@@ -187,7 +187,7 @@ pub(super) fn frames(scene: &Scene, view: &View, sheet: &Sheet) -> String {
     text
 }
 
-/// The corner for the base frame's directions: the first that the robot leaves free.
+/// First corner for the base frame that the robot leaves free.
 fn free_corner(scene: &Scene, view: &View, sheet: &Sheet) -> [f64; 2] {
     let (low, high) = (sheet.height - 88.0, 112.0);
     let corners = [
@@ -205,7 +205,7 @@ fn free_corner(scene: &Scene, view: &View, sheet: &Sheet) -> [f64; 2] {
     free.copied().unwrap_or(corners[0])
 }
 
-/// The axes of a frame; an axis that points at the reader is a dot.
+/// Axes of a frame; an axis towards the reader is a dot.
 fn triad(at: [f64; 2], axes: &[[f64; 3]; 3], size: f64, letters: bool) -> String {
     let mut text = String::new();
     let colours = ["#ef4444", "#22a55b", "#3b82f6"];
@@ -244,7 +244,7 @@ fn triad(at: [f64; 2], axes: &[[f64; 3]; 3], size: f64, letters: bool) -> String
     text
 }
 
-/// What the symbols mean, those that occur.
+/// Legend of the symbols that occur.
 pub(super) fn legend(scene: &Scene, sheet: &Sheet) -> String {
     let y = sheet.height - 22.0;
     let mut text = String::new();
@@ -274,9 +274,9 @@ pub(super) fn legend(scene: &Scene, sheet: &Sheet) -> String {
 
 /// A symbol of the legend.
 enum Symbol {
-    /// A joint around the origin.
+    /// Joint at the origin.
     Joint(String),
-    /// The platform's plate.
+    /// Plate of the platform.
     Plate,
 }
 

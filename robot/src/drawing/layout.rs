@@ -1,11 +1,11 @@
-//! From a mechanism to its scene: every leg's parts at the home configuration, sliders side by side.
+//! Scene of a mechanism at its home configuration.
 
 use super::scene::{NOTHING, Part, Point, Scene};
 use super::{sphere, walk};
 use nalgebra::Vector3;
 use overact_codegen::mechanism::{BodyIndex, End, Mechanism, numeric::platform_frame};
 
-/// The scene of a mechanism; `pixel` is the length of one pixel, m, where it is known.
+/// Scene of a mechanism; `pixel` is the length of one pixel in m, if known.
 pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     let pose = &mechanism.home.pose;
     let frame = mechanism
@@ -53,7 +53,7 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     scene
 }
 
-/// The part of a body that reaches from its joint to a chain, with the number of its leg.
+/// Part of a body between its joint and the base of a chain, with the number of its leg.
 fn branch(mechanism: &Mechanism, body: Option<BodyIndex>, to: Point) -> Option<(usize, Part)> {
     let BodyIndex { leg, joint } = body?;
     let home = &mechanism.home;
@@ -63,7 +63,7 @@ fn branch(mechanism: &Mechanism, body: Option<BodyIndex>, to: Point) -> Option<(
     ((to - from).norm() > NOTHING).then_some((leg, Part::Link { body: joint, path }))
 }
 
-/// Sliders of several legs at one place are drawn side by side.
+/// Separates coincident sliders of several legs.
 fn part_sliders(scene: &mut Scene, pixel: f64) {
     let sliders: Vec<(usize, Point, Point)> = scene
         .parts
@@ -89,7 +89,7 @@ fn part_sliders(scene: &mut Scene, pixel: f64) {
     }
 }
 
-/// Moves what belongs to a leg.
+/// Translates the parts of a leg.
 fn shift(scene: &mut Scene, leg: usize, by: &Point) {
     for (_, part) in scene.parts.iter_mut().filter(|(l, _)| *l == leg) {
         match part {

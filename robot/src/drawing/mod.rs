@@ -1,13 +1,14 @@
-//! A robot's drawing: bodies, joints, frames and platform at the home configuration, as one SVG text.
+//! Drawing of a robot at its home configuration, as an SVG text.
 //!
-//! - `layout`: a mechanism becomes a `scene` of lines, joints and plates in space, leg by leg (`walk`); a
-//!   robot whose axes all meet in one point has no lengths and is drawn on a `sphere` around it;
-//! - `view`: planar robots are seen along the normal of their plane, others from the side
-//!   that separates their joints best;
-//! - `paint` puts the scene on a `sheet`, from far to near: `ground`, `joints`, `labels`.
+//! - `layout` converts a mechanism to a `scene` of lines, joints and plates in space, leg by leg
+//!   (`walk`). A robot whose axes all meet in one point has no lengths and is drawn on a `sphere`
+//!   around it.
+//! - `view` chooses the direction: planar robots along the normal of their plane, others from the
+//!   side that separates their joints best.
+//! - `paint` draws the scene on a `sheet`, from far to near: `ground`, `joints`, `labels`.
 //!
-//! The text needs nothing from elsewhere: no fonts, no links, no scripts. Its colours follow the reader's
-//! choice of light or dark. All class names begin with `ov-`, so that the text may stand within a page.
+//! The text needs no external fonts, links or scripts. Its colours follow the reader's choice of
+//! light or dark. All class names begin with `ov-`, so that the text can be embedded in a page.
 
 mod ground;
 mod joints;
@@ -26,15 +27,16 @@ use overact_codegen::mechanism::Mechanism;
 use sheet::Sheet;
 use view::View;
 
-/// Draws a mechanism at its home configuration; the same bytes for the same mechanism.
+/// Draws a mechanism at its home configuration; the output is deterministic.
 #[must_use]
 pub fn svg(mechanism: &Mechanism) -> String {
     drawn(mechanism, None)
 }
 
-/// Draws a mechanism as it is seen after it has been turned by these angles, rad: `around` its vertical, to the
-/// right, and `over` towards the reader. The sheet holds the robot however it is turned, so that neither its size
-/// nor its scale changes from one view to the next.
+/// Draws a mechanism rotated by two angles, rad.
+///
+/// `around` rotates it about its vertical to the right, `over` then towards the reader. Size and
+/// scale of the sheet do not depend on the angles.
 #[must_use]
 pub fn turned(mechanism: &Mechanism, around: f64, over: f64) -> String {
     drawn(mechanism, Some([around, over]))
@@ -42,8 +44,7 @@ pub fn turned(mechanism: &Mechanism, around: f64, over: f64) -> String {
 
 fn drawn(mechanism: &Mechanism, turn: Option<[f64; 2]>) -> String {
     let mechanism = &bodies(mechanism);
-    // Some symbols are as large on paper for every robot: the scale has to be known before they are
-    // placed.
+    // Some symbols have a fixed size on paper, so the scale must be known before they are placed.
     let rough = scene(mechanism, 0.0);
     let own = View::of(mechanism, &rough);
     let view = turn.map_or(own, |[around, over]| own.turned(around, over));
@@ -57,7 +58,7 @@ fn drawn(mechanism: &Mechanism, turn: Option<[f64; 2]>) -> String {
     paint::document(mechanism, &scene, &view, &sheet)
 }
 
-/// The mechanism without the motors that turn several joints: they have no body.
+/// Mechanism without motors that drive several joints, which have no body.
 fn bodies(mechanism: &Mechanism) -> Mechanism {
     let mut mechanism = mechanism.clone();
     for leg in &mut mechanism.legs {
@@ -78,7 +79,7 @@ mod tests {
             .mechanism
     }
 
-    /// The first numbers that follow a mark, of all elements that have it.
+    /// First numbers after a mark, for each of its occurrences.
     fn places(drawing: &str, mark: &str) -> Vec<f64> {
         let after = drawing.split(mark).skip(1);
         let number = |text: &str| {

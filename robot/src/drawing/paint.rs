@@ -1,4 +1,4 @@
-//! From the scene to SVG elements, from far to near.
+//! Converts the scene to SVG elements, ordered from far to near.
 
 use super::ground::grounds;
 use super::joints;
@@ -10,7 +10,7 @@ use super::view::View;
 use overact_codegen::mechanism::Mechanism;
 use std::collections::BTreeMap;
 
-/// A piece of the drawing and how near it is.
+/// SVG elements with their depth.
 struct Piece {
     near: f64,
     text: String,
@@ -19,7 +19,7 @@ struct Piece {
 /// The whole SVG text.
 pub(super) fn document(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
     let mut pieces = pieces(mechanism, scene, view, sheet);
-    // Rounded, so that equally near pieces keep their order on every machine.
+    // Rounded, so that pieces of equal depth keep their order on all machines.
     pieces.sort_by_key(|piece| (piece.near * 100.0).round() as i64);
     let (title, subtitle) = labels::title(mechanism);
     let (width, height) = (n(WIDTH), n(sheet.height));
@@ -42,8 +42,9 @@ pub(super) fn document(mechanism: &Mechanism, scene: &Scene, view: &View, sheet:
     text
 }
 
-/// Everything but letters. In a plane nothing is near or far: grounds and rails lie below, then the
-/// platform, the bodies, and the joints.
+/// All elements except text.
+///
+/// Planar robots have a fixed order: grounds and rails, the platform, bodies, joints.
 fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> Vec<Piece> {
     let mut pieces = vec![Piece {
         near: f64::from(-1_000_000_000),
@@ -87,7 +88,7 @@ fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> V
     pieces
 }
 
-/// Whether a slider has another joint of its leg on it.
+/// Whether a slider carries another joint of its leg.
 fn carries(scene: &Scene, leg: usize, slider: &Part) -> bool {
     let Some(at) = slider.place() else {
         return false;
@@ -99,7 +100,7 @@ fn carries(scene: &Scene, leg: usize, slider: &Part) -> bool {
     })
 }
 
-/// How near a part is, and how much nearer it counts: joints stand before the bodies they join.
+/// Depth of a part, and an offset that draws joints before the bodies that they connect.
 fn nearness(part: &Part, view: &View, sheet: &Sheet) -> (f64, f64) {
     let at = |p: &Point| sheet.place(view, p)[2];
     match part {
@@ -115,7 +116,7 @@ fn nearness(part: &Part, view: &View, sheet: &Sheet) -> (f64, f64) {
     }
 }
 
-/// A joint is drawn on top of the bodies that it joins, also where they come nearer than itself.
+/// Depth that puts a joint in front of its bodies, even where these are nearer.
 fn before_its_bodies(
     scene: &Scene,
     leg: usize,
@@ -140,14 +141,14 @@ fn before_its_bodies(
     })
 }
 
-/// Whether a point lies on the line between two others.
+/// Whether a point is on the segment between two others.
 fn between(a: &Point, b: &Point, point: &Point) -> bool {
     let (whole, part) = (b - a, point - a);
     let share = (part.dot(&whole) / whole.norm_squared()).clamp(0.0, 1.0);
     (part - whole * share).norm() < 1e-6 * whole.norm()
 }
 
-/// Bodies of a leg take the two colours of the leg in turn.
+/// Assigns the two colours of a leg to its bodies alternately.
 fn shades(scene: &Scene) -> BTreeMap<(usize, usize), usize> {
     let mut shades = BTreeMap::new();
     for (leg, part) in &scene.parts {
@@ -165,7 +166,7 @@ fn shades(scene: &Scene) -> BTreeMap<(usize, usize), usize> {
     shades
 }
 
-/// A body, on a wider line in the colour of the sheet that sets it off from what it passes.
+/// Body with a wider outline in the colour of the sheet.
 fn link(path: &str, colour: usize, shade: usize, planar: bool) -> String {
     let class = ["a", "b"][shade];
     let width = match (shade, planar) {
@@ -182,7 +183,7 @@ fn link(path: &str, colour: usize, shade: usize, planar: bool) -> String {
     )
 }
 
-/// The platform: a plate through the attachments, a bar between two, a ring around one.
+/// Platform: a plate through the attachments, a bar between two, or a ring around one.
 fn platform(scene: &Scene, view: &View, sheet: &Sheet) -> Piece {
     let Some(frame) = &scene.platform else {
         return Piece {

@@ -1,15 +1,15 @@
-//! What is drawn, in space and in metres.
+//! Scene: the parts to draw, in space and in metres.
 
 use nalgebra::{Isometry3, Vector3};
 
 /// A point or a direction in the base frame.
 pub(super) type Point = Vector3<f64>;
 
-/// A body's part, a joint, or what else belongs to a leg.
+/// Part of a leg: a body segment, a joint or a rail.
 pub(super) enum Part {
-    /// A part of the body behind the joint number `body` of its leg.
+    /// Segment of the body after joint number `body` of its leg.
     Link { body: usize, path: Vec<Point> },
-    /// A body whose length the description does not say.
+    /// Body whose length the description does not give.
     Stub { body: usize, path: Vec<Point> },
     /// A revolute joint.
     Revolute {
@@ -21,7 +21,7 @@ pub(super) enum Part {
     Universal { at: Point },
     /// A fixed rail.
     Rail { from: Point, to: Point },
-    /// What slides on a rail.
+    /// Slider on a rail.
     Slider {
         at: Point,
         axis: Point,
@@ -33,12 +33,12 @@ pub(super) enum Part {
         to: Point,
         actuated: bool,
     },
-    /// An end that coincides with the platform in a point.
+    /// Point closure on the platform.
     Ball { at: Point },
 }
 
 impl Part {
-    /// The part as it stands on a body with this frame.
+    /// Transforms the part to the frame of a body.
     pub(super) fn carry(&mut self, frame: &Isometry3<f64>) {
         let point = |at: &mut Point| *at = (frame * nalgebra::Point3::from(*at)).coords;
         match self {
@@ -55,7 +55,7 @@ impl Part {
         }
     }
 
-    /// The place of a joint.
+    /// Position of a joint.
     pub(super) fn place(&self) -> Option<&Point> {
         match self {
             Self::Revolute { at, .. }
@@ -67,25 +67,25 @@ impl Part {
     }
 }
 
-/// What a robot's drawing shows.
+/// Scene of a robot.
 pub(super) struct Scene {
-    /// Parts with their leg.
+    /// Parts with the number of their leg.
     pub(super) parts: Vec<(usize, Part)>,
-    /// Where each leg is held, and where its name belongs.
+    /// Base of each leg, which is also the place of its name.
     pub(super) bases: Vec<Point>,
-    /// Where the legs are attached to the platform.
+    /// Attachment points of the legs on the platform.
     pub(super) attachments: Vec<Point>,
-    /// The platform's frame.
+    /// Frame of the platform.
     pub(super) platform: Option<Isometry3<f64>>,
-    /// Radius of the sphere on which a robot without lengths is drawn.
+    /// Radius of the sphere for robots without lengths.
     pub(super) sphere: Option<f64>,
 }
 
-/// Lengths below this are none, m.
+/// Length below which parts are not drawn, m.
 pub(super) const NOTHING: f64 = 1e-9;
 
 impl Scene {
-    /// Points that the sheet has to hold.
+    /// Points that the sheet must contain.
     pub(super) fn points(&self) -> Vec<Point> {
         let mut points = self.bases.clone();
         points.extend(&self.attachments);
@@ -105,7 +105,7 @@ impl Scene {
         points
     }
 
-    /// What should be seen apart: joints, a telescope at its middle.
+    /// Points that the view should separate: joints, and the middle of telescopes.
     pub(super) fn landmarks(&self) -> Vec<Point> {
         let landmark = |(_, part): &(usize, Part)| match part {
             Part::Telescope { from, to, .. } => Some((from + to) / 2.0),

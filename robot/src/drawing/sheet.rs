@@ -1,4 +1,4 @@
-//! The sheet: where points in space lie on paper, and the texts of numbers, paths and outlines.
+//! Sheet: projection to paper, and the text of numbers, paths and outlines.
 
 use super::scene::{NOTHING, Point, Scene};
 use super::view::View;
@@ -6,26 +6,26 @@ use std::fmt::Write;
 
 /// Width of the sheet, pixels.
 pub(super) const WIDTH: f64 = 720.0;
-/// Space at the left and right for names, and at the top and bottom for title and legend.
+/// Margins: left and right for names, top for the title, bottom for the legend.
 const MARGIN: [f64; 3] = [92.0, 104.0, 96.0];
-/// Largest height of the robot.
+/// Largest height of the robot, pixels.
 const TALLEST: f64 = 400.0;
-/// Diameter of the ball around a robot that is turned.
+/// Diameter of the sphere around a rotated robot, pixels.
 const LARGEST_TURNED: f64 = 500.0;
-/// Smallest height, for robots that lie flat.
+/// Smallest height, for flat robots, pixels.
 const LOWEST: f64 = 130.0;
 
-/// Scale and place of the robot on paper.
+/// Scale and position of the robot on paper.
 pub(super) struct Sheet {
     scale: f64,
-    /// What is at the middle of the robot's box, m.
+    /// Centre of the robot's bounding box, m.
     middle: [f64; 2],
     /// Height of the sheet, pixels.
     pub(super) height: f64,
 }
 
 impl Sheet {
-    /// The largest scale at which a scene fits; never larger than at the first fit.
+    /// Sheet with the largest scale at which a scene fits.
     pub(super) fn fitted(scene: &Scene, view: &View) -> Self {
         let mut places: Vec<[f64; 3]> = scene.points().iter().map(|p| view.project(p)).collect();
         let globe = scene.sphere.unwrap_or(0.0);
@@ -39,7 +39,7 @@ impl Sheet {
         };
         let ((left, right), (bottom, top)) = (range(0), range(1));
         let (width, height) = (right - left, top - bottom);
-        // A robot without extent, a single joint for instance, has any scale.
+        // A robot without extent, such as a single joint, fits any scale.
         let scale = if width.max(height) < NOTHING {
             400.0
         } else {
@@ -53,7 +53,7 @@ impl Sheet {
         }
     }
 
-    /// The scale at which a scene fits from wherever it is seen: that of the ball around it.
+    /// Sheet on which a scene fits from every direction: that of its bounding sphere.
     pub(super) fn around(scene: &Scene, view: &View) -> Self {
         let points = scene.points();
         let low = points.iter().copied().reduce(|a, b| a.inf(&b));
@@ -78,7 +78,7 @@ impl Sheet {
         1.0 / self.scale
     }
 
-    /// A point on paper, pixels from the top left, and its nearness, pixels.
+    /// Position on paper (pixels from the top left) and depth (pixels).
     pub(super) fn place(&self, view: &View, point: &Point) -> [f64; 3] {
         let [right, up, near] = view.project(point);
         let middle = (self.height - MARGIN[2] + MARGIN[1]) / 2.0;
@@ -90,7 +90,7 @@ impl Sheet {
     }
 }
 
-/// A number with one decimal; rounding leaves no minus zero.
+/// Number with one decimal, without minus zero.
 pub(super) fn n(value: f64) -> String {
     let rounded = (value * 10.0).round() / 10.0;
     let rounded = if rounded == 0.0 { 0.0 } else { rounded };
@@ -103,13 +103,13 @@ pub(super) fn path(points: &[Point], view: &View, sheet: &Sheet) -> String {
     for (index, point) in points.iter().enumerate() {
         let [x, y, _] = sheet.place(view, point);
         let command = if index == 0 { 'M' } else { 'L' };
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = write!(text, "{command}{} {}", n(x), n(y));
     }
     text
 }
 
-/// A plate with the outline of some points.
+/// SVG polygon through some points.
 pub(super) fn polygon(class: &str, places: &[[f64; 2]]) -> String {
     let points: Vec<String> = places
         .iter()
@@ -127,7 +127,7 @@ pub(super) fn flat(point: &Point, view: &View, sheet: &Sheet) -> [f64; 2] {
     [x, y]
 }
 
-/// The convex hull, points that coincide taken once.
+/// Convex hull without duplicate points.
 pub(super) fn hull(mut places: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let rounded = |p: &[f64; 2]| p.map(|v| (v * 10.0).round() as i64);
     places.sort_by_key(rounded);

@@ -1,14 +1,16 @@
-//! Robots whose axes all meet in one point: their description knows angles and no lengths. Their
-//! joints are drawn where the axes pass through a sphere, their bodies as arcs of great circles.
+//! Drawing of robots whose axes all meet in one point, on a sphere.
+//!
+//! Their descriptions have angles and no lengths. Joints are drawn where their axes meet the
+//! sphere, bodies as arcs of great circles.
 
 use super::scene::{NOTHING, Part, Point, Scene};
 use nalgebra::{Isometry3, Vector3};
 use overact_codegen::mechanism::{JointKind, Leg, Mechanism};
 
-/// Radii of the first bodies, the next ones and the platform: they pass each other.
+/// Radii of the first bodies, the next ones and the platform, so that they do not collide.
 const RADII: [f64; 3] = [1.18, 1.0, 0.82];
 
-/// Whether all joints turn about axes through one point.
+/// Whether all joints rotate about axes through one point.
 pub(super) fn has_no_lengths(mechanism: &Mechanism) -> bool {
     let leg_is_point = |(index, leg): (usize, &Leg)| {
         let frames = leg.frames(&mechanism.home.joints[mechanism.leg_range(index)]);
@@ -23,7 +25,7 @@ pub(super) fn has_no_lengths(mechanism: &Mechanism) -> bool {
     spherical && mechanism.legs.iter().enumerate().all(leg_is_point)
 }
 
-/// The scene on the sphere.
+/// Scene on the sphere.
 pub(super) fn scene(mechanism: &Mechanism, platform: Option<Isometry3<f64>>) -> Scene {
     let mut scene = Scene {
         parts: Vec::new(),
@@ -40,7 +42,7 @@ pub(super) fn scene(mechanism: &Mechanism, platform: Option<Isometry3<f64>>) -> 
                 continue;
             }
             let axis = frames[number] * Vector3::z();
-            // An axis meets the sphere twice: the side nearer to the joint before is taken.
+            // An axis meets the sphere twice; take the point nearer to the previous joint.
             let axis = match before {
                 Some((_, last)) if axis.dot(&last) < -NOTHING => -axis,
                 _ => axis,
@@ -72,7 +74,7 @@ fn radius(body: usize) -> f64 {
     RADII[body.min(RADII.len() - 1)]
 }
 
-/// The great circle between two directions.
+/// Great-circle arc between two directions.
 fn arc(from: &Point, to: &Point, radius: f64) -> Vec<Point> {
     const STEPS: usize = 24;
     let angle = from.dot(to).clamp(-1.0, 1.0).acos();

@@ -1,6 +1,6 @@
-//! Colours, in light and in dark.
+//! Colours for light and dark mode.
 
-/// Colours of a leg: of its first body and, alternating, of its next, in light and in dark.
+/// Colours of a leg's bodies, alternating: two for light mode, two for dark mode.
 const LEGS: [[&str; 4]; 8] = [
     ["#2563eb", "#6ea8fe", "#3b82f6", "#93c5fd"],
     ["#d9480f", "#ff9a5c", "#ea6a1f", "#fdba74"],
@@ -12,10 +12,10 @@ const LEGS: [[&str; 4]; 8] = [
     ["#475569", "#94a3b8", "#64748b", "#b6c2d2"],
 ];
 
-/// Number of the colours; later legs begin again.
+/// Number of leg colours; further legs repeat them.
 pub(super) const COLOURS: usize = LEGS.len();
 
-/// What does not depend on the leg: class, declarations in light, declarations in dark.
+/// Rules that do not depend on the leg: class, light declarations, dark declarations.
 const FIXED: [(&str, &str, &str); 13] = [
     ("sheet", "fill:#ffffff", "fill:#10151d"),
     ("case", "stroke:#ffffff;fill:none", "stroke:#10151d"),
@@ -71,7 +71,7 @@ pub(super) fn css() -> String {
     }
     for (leg, [first, next, dark_first, dark_next]) in LEGS.iter().enumerate() {
         light.push_str(&leg_rules(leg, first, next));
-        // A name has to be legible on the sheet, so it takes the brighter of the dark colours.
+        // Names use the brighter dark colour to be legible on the sheet.
         light.push_str(&format!(".ov-n{leg}{{fill:{first}}}"));
         dark.push_str(&leg_rules(leg, dark_first, dark_next));
         dark.push_str(&format!(".ov-n{leg}{{fill:{dark_next}}}"));
@@ -82,7 +82,7 @@ pub(super) fn css() -> String {
     )
 }
 
-/// Strokes and fills of the two colours.
+/// Stroke and fill rules of a leg's two colours.
 fn leg_rules(leg: usize, first: &str, next: &str) -> String {
     format!(
         ".ov-a{leg}{{stroke:{first};fill:none}}.ov-b{leg}{{stroke:{next};fill:none}}\

@@ -1,4 +1,4 @@
-//! From where a robot is seen.
+//! View direction of a drawing.
 
 use super::scene::{Part, Point, Scene};
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -13,19 +13,19 @@ pub(super) struct View {
     pub(super) up: Point,
     /// Towards the reader.
     pub(super) toward: Point,
-    /// About what the robot is turned: what is vertical on the sheet, and in space if there is gravity.
+    /// Rotation axis: the vertical on the sheet, and in space if there is gravity.
     vertical: Point,
-    /// Whether the robot lies in the plane of the sheet.
+    /// Whether the robot is planar and in the plane of the sheet.
     pub(super) planar: bool,
 }
 
-/// The elevation from which robots in space are seen, degrees.
+/// Elevation of the view of spatial robots, degrees.
 const ELEVATION: f64 = 24.0;
-/// Directions around the vertical that are tried.
+/// Number of azimuths that are tried.
 const AROUND: usize = 36;
 
 impl View {
-    /// The view of a mechanism.
+    /// View of a mechanism.
     pub(super) fn of(mechanism: &Mechanism, scene: &Scene) -> Self {
         match plane(mechanism, scene) {
             Some(normal) => Self::along(&normal, mechanism),
@@ -33,10 +33,9 @@ impl View {
         }
     }
 
-    /// The view of the robot after it has been turned around its vertical, to the right, and then over, towards the
-    /// reader, rad.
+    /// View after rotating the robot about its vertical, then towards the reader, rad.
     pub(super) fn turned(&self, around: f64, over: f64) -> Self {
-        // The reader goes the other way than the robot.
+        // Rotate the viewer opposite to the robot.
         let spin = Rotation3::from_axis_angle(&Unit::new_normalize(self.vertical), -around);
         let right = spin * self.right;
         let tilt = Rotation3::from_axis_angle(&Unit::new_normalize(right), -over);
@@ -50,7 +49,7 @@ impl View {
         }
     }
 
-    /// A place on paper (right, up) and its nearness to the reader, m.
+    /// Position on paper (right, up) and depth towards the reader, m.
     pub(super) fn project(&self, point: &Point) -> [f64; 3] {
         [
             self.right.dot(point),
@@ -59,7 +58,7 @@ impl View {
         ]
     }
 
-    /// Along the normal of a plane; what falls, falls downwards.
+    /// View along the normal of a plane, with gravity downwards.
     fn along(normal: &Point, mechanism: &Mechanism) -> Self {
         let fall = gravity(mechanism);
         let in_plane = -(fall - normal * normal.dot(&fall));
@@ -78,8 +77,10 @@ impl View {
         }
     }
 
-    /// The view from a little above that keeps the joints apart from each other best. A later one
-    /// has to be better by more than rounding, so that the choice is the same everywhere.
+    /// Elevated view that separates the joints best.
+    ///
+    /// A later azimuth must be better by more than rounding, so that the choice does not depend on
+    /// the machine.
     fn best(mechanism: &Mechanism, scene: &Scene) -> Self {
         let up = (-gravity(mechanism))
             .try_normalize(1e-6)
@@ -117,7 +118,7 @@ impl View {
         }
     }
 
-    /// The mean logarithm of the distances of joints on paper.
+    /// Mean logarithm of the distances between joints on paper.
     fn clearness(&self, scene: &Scene) -> f64 {
         let places: Vec<[f64; 3]> = scene.landmarks().iter().map(|p| self.project(p)).collect();
         let extent = extent(&places).max(1e-9);
@@ -148,7 +149,7 @@ fn gravity(mechanism: &Mechanism) -> Point {
     Vector3::new(x, y, z)
 }
 
-/// The normal of the plane in which the robot lies and moves, if there is one.
+/// Normal of the plane in which the robot lies and moves, if there is one.
 fn plane(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
     let axis = |axis: usize| {
         let mut normal = Point::zeros();
@@ -178,13 +179,15 @@ fn plane(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
         _ => true,
     });
     let first = scene.bases.first().copied().unwrap_or_default();
-    // A view is chosen before joints are drawn apart, so coinciding slides lie in one plane.
+    // The view is chosen before coincident sliders are separated, so these still lie in one plane.
     let level = scene.points().iter().all(|p| flat(&(p - first)));
     (lies && level).then_some(normal)
 }
 
-/// The normal for a robot that has only parallel slides: the coordinate axis across the slides that
-/// leaves gravity in the plane of the sheet, where there is one.
+/// Normal for a robot with parallel prismatic joints only.
+///
+/// It is the coordinate axis across the slides that keeps gravity in the plane of the sheet, if
+/// there is one.
 fn straight(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
     let slide = scene.parts.iter().find_map(|(_, part)| match part {
         Part::Slider { axis, .. } => Some(*axis),

@@ -1,11 +1,10 @@
-//! The way along a leg, joint by joint: its bodies and joints as parts of the scene.
+//! Converts a leg to parts of the scene, joint by joint.
 
 use super::scene::{NOTHING, Part, Point};
 use nalgebra::{Isometry3, Vector3};
 use overact_codegen::mechanism::{Joint, JointKind, Leg, placement_isometry};
 
-/// The parts of a leg and where it is held. `pixel` is the length of one pixel, m; a `tree` is a robot of its
-/// own, without platform.
+/// Parts and base of a leg. `pixel` is the length of one pixel, m; `tree`: a serial robot.
 pub(super) fn parts(leg: &Leg, positions: &[f64], pixel: f64, tree: bool) -> (Vec<Part>, Point) {
     let mut walk = Walk::new(leg, positions, pixel, tree);
     walk.run();
@@ -13,19 +12,19 @@ pub(super) fn parts(leg: &Leg, positions: &[f64], pixel: f64, tree: bool) -> (Ve
     (walk.parts, walk.base)
 }
 
-/// The way along a leg, joint by joint.
+/// State of the conversion of a leg.
 struct Walk<'m> {
     leg: &'m Leg,
     frames: Vec<Isometry3<f64>>,
     positions: Vec<f64>,
     pixel: f64,
-    /// Whether the leg is a robot of its own, without platform.
+    /// Whether the leg is a serial robot of its own.
     tree: bool,
     parts: Vec<Part>,
     base: Point,
 }
 
-/// How far joints that meet in one point of a serial robot are drawn apart, pixels.
+/// Separation of coincident joints of a serial robot, pixels.
 const APART: f64 = 34.0;
 
 impl<'m> Walk<'m> {
@@ -69,8 +68,8 @@ impl<'m> Walk<'m> {
         self.frames[index].translation.vector
     }
 
-    /// The point of a joint's axis that the body before it reaches; for a prismatic joint, where it
-    /// is at position zero.
+    /// Point on a joint's axis that the preceding body reaches; for a prismatic joint, at position
+    /// zero.
     fn foot(&self, index: usize) -> Point {
         let joint = &self.leg.joints[index];
         let slide = match joint.kind {
@@ -80,7 +79,7 @@ impl<'m> Walk<'m> {
         self.origin(index) - self.axis(index) * slide
     }
 
-    /// The body from the antecedent's frame to the joint, and the joint.
+    /// Adds the body from the antecedent's frame to the joint, and the joint.
     fn step(&mut self, index: usize) {
         let joint = &self.leg.joints[index];
         let foot = self.foot(index);
@@ -99,7 +98,7 @@ impl<'m> Walk<'m> {
         }
     }
 
-    /// A body's part along a path whose steps of no length are left out.
+    /// Adds a body segment along a path, without steps of zero length.
     fn link(&mut self, body: usize, mut path: Vec<Point>) {
         path.dedup_by(|a, b| (*a - *b).norm() < NOTHING);
         if path.len() > 1 {
@@ -107,8 +106,10 @@ impl<'m> Walk<'m> {
         }
     }
 
-    /// A revolute joint. Where joints of a serial robot meet in one point, those whose axes point out
-    /// of it are drawn a little further along them.
+    /// Adds a revolute joint.
+    ///
+    /// If joints of a serial robot coincide, those with axes pointing outwards are moved along
+    /// their axes.
     fn revolute(&mut self, index: usize, foot: Point) {
         let axis = self.axis(index);
         let outwards = self.origin(index) - foot;
@@ -166,8 +167,10 @@ impl<'m> Walk<'m> {
         self.parts.push(Part::Slider { at, axis, actuated });
     }
 
-    /// A body that no other joint continues: a bar of a parallelogram ends like the bar that it
-    /// follows; the last body of a serial robot has a length that nobody knows.
+    /// Adds a body that no other joint continues.
+    ///
+    /// The bar of a parallelogram ends like the bar that it is coupled to. The last body of a
+    /// serial robot has unknown length.
     fn leaf(&mut self, index: usize) {
         let joints = &self.leg.joints;
         let children =
@@ -196,7 +199,7 @@ impl<'m> Walk<'m> {
         }
     }
 
-    /// Two passive revolute joints in one point are a universal joint.
+    /// Merges two coincident passive revolute joints into a universal joint.
     fn join_universals(&mut self) {
         let passive = |part: &Part| match part {
             Part::Revolute {
@@ -221,8 +224,9 @@ impl<'m> Walk<'m> {
         }
     }
 
-    /// The last body points away from what is before it: along its x axis in a planar arm, along its
-    /// joint where that is the last of a wrist.
+    /// Adds a last body of unknown length, which points away from the preceding body.
+    ///
+    /// It points along the x axis in a planar arm, and along the joint axis at the end of a wrist.
     fn stub(&mut self, index: usize) {
         let wrist = index > 0 && (self.foot(index - 1) - self.foot(index)).norm() < NOTHING;
         let direction = if wrist {

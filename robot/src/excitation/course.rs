@@ -1,4 +1,4 @@
-//! A period of a run as the robot goes through it, and the peaks of everything that is limited.
+//! Evaluates a period of a run and the peaks of all limited quantities.
 
 use super::frame::Frame;
 use super::kind::LimitKind;
@@ -7,31 +7,31 @@ use overact::{Columns, Error, Function, Info, Model, math::wrap_angle};
 use overact_simulation::{Sampled, Trajectory, sample, trajectory::Displacement};
 use std::f64::consts::{PI, TAU};
 
-/// Between two samples a smooth series rises above both by at most an eighth of its largest second
-/// difference.
+/// Bound on a smooth series between two samples, relative to its largest second difference.
 const BETWEEN_SAMPLES: f64 = 0.125;
 
-/// Second differences of what is no Fourier series may be larger between the samples than at them.
+/// Safety factor on second differences of series that are not Fourier series.
 const UNKNOWN_BETWEEN: f64 = 2.0;
 
-/// The robot whose runs are judged.
+/// Robot on which runs are evaluated.
 pub(super) struct Bench<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) info: Info<'a>,
     pub(super) has_platform: bool,
-    /// Whether it has a platform or chains, whose actuators may be at a singularity.
+    /// Whether it has a platform or chains, whose actuators may be singular.
     pub(super) has_loop: bool,
-    /// Which coordinates are lengths.
+    /// Whether each coordinate is a length.
     pub(super) lengths: Vec<bool>,
-    /// Actuators whose rows of J_p^inv have to be regular: all, or the kept ones of a redundant robot.
+    /// Actuators whose rows of J_p^inv must be regular: all, or the kept ones of an overactuated
+    /// robot.
     pub(super) kept: Vec<usize>,
     /// Inverse norms of the columns of J_p^inv at home.
     pub(super) scales: Vec<f64>,
-    /// Parameters from which torques are predicted, the payload's last; none where they are not known.
+    /// Parameters for torque prediction, the payload's last; `None` if unknown.
     pub(super) parameters: Option<Vec<f64>>,
 }
 
-/// A period of a run, one row of numbers for each sample.
+/// One period of a run, with one row of numbers per sample.
 pub(super) struct Course {
     pub(super) samples: usize,
     pub(super) states: Sampled,
@@ -39,7 +39,7 @@ pub(super) struct Course {
     pub(super) jacobian: Vec<f64>,
     /// Displacements of the coordinates from home, m or rad.
     displacement: Vec<f64>,
-    /// By how much each coordinate may rise between two samples, m or rad: a bound from its series.
+    /// Bound on the rise of each coordinate between two samples, m or rad.
     rise: Vec<f64>,
     travel: Vec<f64>,
     velocity: Vec<f64>,
@@ -54,7 +54,7 @@ impl<'a> Bench<'a> {
         self.lengths.get(coordinate).copied().unwrap_or(false)
     }
 
-    /// The units of what is limited, of each coordinate or actuator.
+    /// Units of a limited quantity for each coordinate or actuator.
     pub(super) fn units(&self, kind: LimitKind) -> Vec<&'static str> {
         let unit = |is_length: &bool| kind.unit(*is_length);
         match kind {
@@ -67,10 +67,10 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// A period of a run at so many samples.
+    /// Evaluates a period of a run at `samples` samples.
     ///
     /// # Errors
-    /// The model's error where the robot does not reach the motion.
+    /// The model's error if the robot cannot reach the motion.
     pub(super) fn course(
         &self,
         frame: &Frame,
@@ -128,7 +128,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// Displacements of the coordinates, and by how much each may rise between two samples.
+    /// Displacements of the coordinates, and bounds on their rise between two samples.
     fn displacement(
         &self,
         frame: &Frame,
@@ -164,7 +164,7 @@ impl<'a> Bench<'a> {
         (displacement, rise)
     }
 
-    /// Displacements of the actuators from home; angles by less than half a turn at the start.
+    /// Displacements of the actuators from home; angles start within half a turn of home.
     fn travel(&self, positions: &[f64]) -> Vec<f64> {
         let n = self.info.sizes.actuators;
         let from = |index: usize| {
@@ -188,8 +188,10 @@ impl<'a> Bench<'a> {
             .collect()
     }
 
-    /// The condition number at each sample; infinite where the sign of the determinant differs from that at the
-    /// first one, because the motion crosses a singularity then.
+    /// Condition number at each sample.
+    ///
+    /// It is infinite where the determinant has another sign than at the first sample: the motion
+    /// then crosses a singularity.
     fn conditions(&self, jacobians: &[f64]) -> Vec<f64> {
         let (n, r) = (self.info.sizes.actuators, self.info.sizes.dof);
         if !self.has_loop {
@@ -216,7 +218,7 @@ impl<'a> Bench<'a> {
         jacobians.chunks_exact(n * r).map(condition).collect()
     }
 
-    /// The condition number at a displacement from home, where the robot reaches it.
+    /// Condition number at a displacement from home; `None` if it is not reached.
     pub(super) fn condition_at(&self, displacement: &[f64]) -> Option<f64> {
         let sizes = self.info.sizes;
         let mut pose = self.info.home_pose.to_vec();
@@ -230,7 +232,7 @@ impl<'a> Bench<'a> {
 }
 
 impl Course {
-    /// The largest magnitudes of what is limited, with what it may rise between the samples if asked for.
+    /// Largest magnitudes of a limited quantity, optionally with a bound between samples.
     pub(super) fn peaks(&self, kind: LimitKind, between: bool) -> Vec<f64> {
         let (series, width) = match kind {
             LimitKind::Position => (&self.displacement, self.rise.len()),
@@ -251,7 +253,8 @@ impl Course {
                 return largest + self.rise[at];
             }
             let bend = |row: usize| (value(row + 2) - 2.0 * value(row + 1) + value(row)).abs();
-            // Where friction changes its sign two neighbours have the jump, which is none of the smooth parts.
+            // Friction sign changes cause a jump between two samples, which is excluded from the
+            // smooth bound.
             let smooth = |row: usize| bend(row).min(bend(row + 1)).min(bend(row + 2));
             let largest_bend = (0..rows).map(smooth).fold(0.0, f64::max);
             largest + UNKNOWN_BETWEEN * BETWEEN_SAMPLES * largest_bend

@@ -1,22 +1,22 @@
-//! A search for the largest value of a function of many numbers: evolution with a covariance that adapts,
-//! CMA-ES as in Hansen, The CMA evolution strategy: a tutorial, arXiv:1604.00772, eqs. (38) to (56).
+//! Covariance matrix adaptation evolution strategy (CMA-ES), maximising.
 //!
-//! It needs no derivatives, which limits and Coulomb friction do not have everywhere, and the order of the
-//! values is all that it sees of them.
+//! Hansen, The CMA evolution strategy: a tutorial, arXiv:1604.00772, eqs. (38) to (56). It uses no
+//! derivatives, which limits and Coulomb friction do not have everywhere, and depends only on the
+//! order of the values.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 
-/// Generations between two decompositions of the covariance.
+/// Number of generations between two eigendecompositions of the covariance.
 const LAZY: usize = 5;
 
-/// Candidates of a generation, and what was learned from the generations before.
+/// State of the evolution: candidates and adapted distribution.
 pub(super) struct Evolution {
     mean: DVector<f64>,
     step: f64,
     covariance: DMatrix<f64>,
-    /// Eigenvectors of the covariance, and roots of its eigenvalues.
+    /// Eigenvectors of the covariance, and square roots of its eigenvalues.
     axes: (DMatrix<f64>, DVector<f64>),
     path: DVector<f64>,
     step_path: DVector<f64>,
@@ -26,7 +26,7 @@ pub(super) struct Evolution {
     drawn: Vec<DVector<f64>>,
 }
 
-/// How fast is learned.
+/// Learning rates.
 #[derive(Clone, Copy)]
 struct Rates {
     /// Effective number of parents.
@@ -36,12 +36,12 @@ struct Rates {
     path: f64,
     rank_one: f64,
     rank_many: f64,
-    /// Expected length of a normal vector.
+    /// Expected norm of a standard normal vector.
     length: f64,
 }
 
 impl Evolution {
-    /// A search around a start, with `size` candidates in a generation.
+    /// Evolution from a start point, with `size` candidates per generation.
     pub(super) fn new(start: &[f64], step: f64, size: usize) -> Self {
         let n = start.len() as f64;
         let half = size / 2;
@@ -78,7 +78,7 @@ impl Evolution {
         }
     }
 
-    /// The length of a step, in units of the numbers.
+    /// Current step size.
     pub(super) const fn step(&self) -> f64 {
         self.step
     }
@@ -98,7 +98,7 @@ impl Evolution {
         self.drawn.iter().map(at).collect()
     }
 
-    /// Learns from the values of the candidates, in their order.
+    /// Updates the distribution from the candidates' values, in their order.
     pub(super) fn learn(&mut self, values: &[f64]) {
         let mut order: Vec<usize> = (0..values.len().min(self.drawn.len())).collect();
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
@@ -145,7 +145,7 @@ impl Evolution {
         }
     }
 
-    /// Axes of the covariance.
+    /// Eigendecomposition of the covariance.
     fn decompose(&mut self) {
         let symmetric = (&self.covariance + self.covariance.transpose()) * 0.5;
         let eigen = SymmetricEigen::new(symmetric);
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_narrow_valley_is_followed_to_its_end() {
-        // -Σ 100^i (x_i - 1)² of 6 numbers with axes of very different lengths.
+        // −Σ 100^i (x_i − 1)² in 6 dimensions: an ill-conditioned test function.
         let value = |x: &Vec<f64>| {
             let terms = x
                 .iter()

@@ -1,37 +1,37 @@
-//! What is fixed of a run before its motion is searched, and its motion as a Fourier series.
+//! Fixed settings of a run, and its motion as a Fourier series.
 
 use overact_codegen::description::{Description, JointKind, independent_joints};
 use overact_simulation::{Term, Trajectory};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-/// Part of the controller's bandwidth at which the highest harmonic lies where nothing else is said.
+/// Default for the highest harmonic, as a fraction of the controller's bandwidth.
 const BANDWIDTH_SHARE: f64 = 0.1;
 
-/// Bandwidth (Hz) and duration (s) of a description without an experiment, as in one that names neither.
+/// Default bandwidth (Hz) and duration (s).
 const USUAL: [f64; 2] = [70.0, 10.0];
 
-/// Harmonics where neither table nor runs say how many.
+/// Default number of harmonics.
 const HARMONICS: usize = 5;
 
-/// What is fixed of a run.
+/// Fixed settings of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Frame {
     pub(super) name: String,
     /// Frequency of the first harmonic, Hz.
     pub(super) fundamental: f64,
     pub(super) harmonics: usize,
-    /// Whether the payload is on the platform.
+    /// Whether the platform carries the payload.
     pub(super) payload: bool,
-    /// Name of the payload, where there are several.
+    /// Name of the payload, if there are several.
     pub(super) payload_name: Option<String>,
-    /// Duration where the run has its own, s.
+    /// Duration specified for this run, s.
     pub(super) own_duration: Option<f64>,
     /// Duration, s.
     pub(super) duration: f64,
 }
 
-/// The runs of a description from which parameters are identified.
+/// Training runs of a description.
 pub(super) fn described(
     description: &Description,
     coordinates: &[&str],
@@ -68,7 +68,7 @@ pub(super) fn described(
     own.collect()
 }
 
-/// The runs that are searched: as many as asked for, as the table says, or as there are.
+/// Runs to search: the requested number, else that of the table or description.
 pub(super) fn wanted(
     description: &Description,
     described: &[(Frame, Trajectory)],
@@ -127,7 +127,7 @@ pub(super) fn wanted(
     frames
 }
 
-/// Names of the coordinates as the description writes them, and whether each is a length.
+/// Names of the coordinates in the description, and whether each is a length.
 pub(super) fn coordinates(description: &Description) -> Vec<(String, bool)> {
     if let Some(platform) = &description.platform {
         let names = platform.motion.value.coordinates().into_iter();
@@ -140,25 +140,25 @@ pub(super) fn coordinates(description: &Description) -> Vec<(String, bool)> {
         .collect()
 }
 
-/// Fourier series of a run: numbers without unit to terms of coordinates that keep their limits.
+/// Maps dimensionless numbers to the Fourier series of a run within its position limits.
 ///
-/// Two numbers for each harmonic of each coordinate, of sine and cosine, times limit / harmonic.
+/// Each harmonic of each coordinate has two numbers, for sine and cosine, in units of limit /
+/// harmonic.
 #[derive(Debug)]
 pub(super) struct Series<'a> {
     pub(super) frame: &'a Frame,
-    /// Names of the coordinates in the model, largest displacement (m or rad), and whether it is a length.
+    /// Model name, largest displacement (m or rad) and whether it is a length, for each coordinate.
     pub(super) coordinates: Vec<(&'a str, f64, bool)>,
     pub(super) samples: usize,
 }
 
 impl Series<'_> {
-    /// How many numbers make a series.
+    /// Number of values of a series.
     pub(super) fn len(&self) -> usize {
         2 * self.frame.harmonics * self.coordinates.len()
     }
 
-    /// The series, and by how much of the limits it would be too large if coordinates that are had not been
-    /// scaled down to them.
+    /// Series scaled down to the position limits, and the relative excess before scaling.
     pub(super) fn bounded(&self, numbers: &[f64]) -> (Trajectory, f64) {
         let mut terms = Vec::new();
         let mut excess = 0.0;
@@ -190,11 +190,11 @@ impl Series<'_> {
         (self.trajectory(terms), excess)
     }
 
-    /// The largest displacement at the samples.
+    /// Largest displacement at the samples.
     fn peak(&self, pairs: &[(f64, f64)]) -> f64 {
         let value = |sample: usize| {
             let (sin, cos) = (TAU * sample as f64 / self.samples as f64).sin_cos();
-            // Sine and cosine of the next harmonic by the sums of angles.
+            // Angle addition gives sine and cosine of the next harmonic.
             let (mut s, mut c, mut sum) = (sin, cos, 0.0);
             for (sine, cosine) in pairs {
                 sum += sine * s + cosine * c;
@@ -205,7 +205,7 @@ impl Series<'_> {
         (0..self.samples).map(value).fold(0.0, f64::max)
     }
 
-    /// The numbers of a series, see [`Series::bounded`].
+    /// Numbers of a series, the inverse of [`Series::bounded`].
     pub(super) fn numbers(&self, trajectory: &Trajectory) -> Vec<f64> {
         let mut numbers = vec![0.0; self.len()];
         let Trajectory::Periodic { terms, .. } = trajectory else {
@@ -227,7 +227,7 @@ impl Series<'_> {
         numbers
     }
 
-    /// A series times a factor.
+    /// Series times a factor.
     pub(super) fn scaled(&self, trajectory: &Trajectory, factor: f64) -> Trajectory {
         let Trajectory::Periodic { terms, .. } = trajectory else {
             return trajectory.clone();
@@ -239,8 +239,8 @@ impl Series<'_> {
         self.trajectory(terms.iter().map(scaled).collect())
     }
 
-    /// A series with its numbers rounded as they are written: micrometres, 10⁻⁴ of a degree, and hundredths of
-    /// a degree of phase.
+    /// Series rounded to the written precision: micrometres, 10⁻⁴ degrees, and 10⁻² degrees of
+    /// phase.
     pub(super) fn rounded(&self, trajectory: &Trajectory) -> Trajectory {
         let Trajectory::Periodic { terms, .. } = trajectory else {
             return trajectory.clone();

@@ -1,8 +1,7 @@
-//! What runs tell of the base parameters: the information matrix of the weighted least squares (44) that an
-//! identification from them solves, in each case.
+//! Information matrices of runs for weighted least squares (44), for each projection.
 //!
-//! A line of the model is weighed by the variance that the torque noise has on it: of case 1 that of
-//! Γ¹ = J_p^invᵀ τ, of case 2 that of Γ² = τ_a + J_a^-T J_bᵀ τ_b, each the mean over the run.
+//! A row is weighted by its mean noise variance over the run. The platform projection has Γ¹ =
+//! J_p^invᵀ τ, the actuator projection Γ² = τ_a + J_a^-T J_bᵀ τ_b.
 
 use super::course::{Bench, Course};
 use super::frame::Frame;
@@ -15,42 +14,41 @@ use overact_identification::{
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Information that is added to that of normalised parameters, so that one which no run tells of counts as known
-/// badly instead of not at all.
+/// Ridge on normalised information; a parameter without information then has a finite cost.
 const RIDGE: f64 = 1e-8;
 
-/// What is asked of the runs.
+/// Criterion by which runs are judged.
 pub(super) struct Question {
     columns: ColumnSet,
     base: BaseParameters,
     projections: Vec<Projection>,
-    /// Standard deviation of the torque noise of each actuator, N m or N.
+    /// Standard deviation of each actuator's torque noise, N m or N.
     noise: Vec<f64>,
     /// Frequency at which torques are measured, Hz.
     sampling: f64,
-    /// Values of the base parameters, where they are known.
+    /// Values of the base parameters, if known.
     values: Vec<Option<f64>>,
-    /// Factors of the parameters in which information is compared.
+    /// Normalisation factors of the parameters.
     pub(super) scales: Vec<DVector<f64>>,
 }
 
-/// How well runs determine the base parameters in one case.
+/// How well runs determine the base parameters in one projection.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CaseOfRuns {
-    /// Which inputs the model explains.
+    /// Model that the runs are judged for.
     pub model: ModelKind,
-    /// Logarithm of the determinant of the information matrix; parameters are normalised alike for all runs
-    /// that are compared.
+    /// Log-determinant of the normalised information matrix; comparable between runs of one search.
     pub log_det: f64,
     /// Condition number of the weighted regressor with columns of unit norm.
     pub condition: f64,
-    /// Smallest, median and largest standard deviation that the torque noise leaves, relative to the
-    /// parameters' values; none where these are not known.
+    /// Smallest, median and largest relative standard deviation due to torque noise.
+    ///
+    /// `None` if the parameter values are unknown.
     pub deviations: Option<[f64; 3]>,
 }
 
 impl Question {
-    /// The question of runs of a robot, of which some carry the payload.
+    /// Criterion for runs of a robot, some of which carry the payload.
     ///
     /// # Errors
     /// A robot without base parameters.
@@ -107,8 +105,9 @@ impl Question {
         self.base.columns.len()
     }
 
-    /// Information of a run, one matrix for each case; none where the model has no value or the kept actuators
-    /// do not determine the motion.
+    /// Information matrix of a run for each projection.
+    ///
+    /// `None` if the model has no value or the kept actuators do not determine the motion.
     pub(super) fn information(
         &self,
         bench: &Bench<'_>,
@@ -140,7 +139,7 @@ impl Question {
         self.projections.iter().map(of).collect()
     }
 
-    /// Σ Wᵀ W / σ² over the lines, times `weight`.
+    /// Σ Wᵀ W / σ² over the rows, times `weight`.
     fn sum(&self, lines: &[Vec<f64>], variances: &[f64], weight: f64) -> DMatrix<f64> {
         let width = self.len();
         let mut sum = DMatrix::zeros(width, width);
@@ -152,7 +151,7 @@ impl Question {
         sum
     }
 
-    /// Mean variances of the lines of Γ¹.
+    /// Mean noise variance of each row of Γ¹.
     fn platform_noise(&self, bench: &Bench<'_>, course: &Course) -> Vec<f64> {
         let r = bench.info.sizes.dof;
         let mut sums = vec![0.0; r];
@@ -168,7 +167,7 @@ impl Question {
         sums
     }
 
-    /// The lines of Γ² = J_a^-T Γ¹, and their mean variances.
+    /// Rows of Γ² = J_a^-T Γ¹, and their mean noise variances.
     fn on_actuators(
         &self,
         bench: &Bench<'_>,
@@ -204,7 +203,8 @@ impl Question {
         Some((projected, variances))
     }
 
-    /// Takes the factors by which parameters are normalised from typical information: that of each alone is 1.
+    /// Sets the normalisation factors so that each parameter alone has information 1 in typical
+    /// runs.
     pub(super) fn normalise(&mut self, typical: &[DMatrix<f64>]) {
         let factor = |value: &f64| {
             if *value > 0.0 {
@@ -219,13 +219,13 @@ impl Question {
         self.scales = typical.iter().map(factors).collect();
     }
 
-    /// The sum over the cases of the logarithms of the determinants of normalised information.
+    /// Sum of the log-determinants of the normalised information over the projections.
     pub(super) fn score(&self, information: &[DMatrix<f64>]) -> f64 {
         let cases = information.iter().zip(&self.scales);
         cases.map(|(matrix, scales)| log_det(matrix, scales)).sum()
     }
 
-    /// How well runs with this information determine the parameters in each case.
+    /// Evaluates how well the runs determine the parameters in each projection.
     pub(super) fn judge(&self, information: &[DMatrix<f64>]) -> Vec<CaseOfRuns> {
         let cases = self.projections.iter().zip(information).zip(&self.scales);
         let case =
@@ -240,7 +240,7 @@ impl Question {
         cases.map(case).collect()
     }
 
-    /// Smallest, median and largest relative standard deviation of the parameters whose values are known.
+    /// Smallest, median and largest relative standard deviation of parameters with known values.
     fn deviations(&self, information: &DMatrix<f64>) -> Option<[f64; 3]> {
         let inverse = Cholesky::new(correlation(information))?.inverse();
         let relative = |(index, value): (usize, &Option<f64>)| {
@@ -259,7 +259,7 @@ impl Question {
     }
 }
 
-/// The logarithm of the determinant of normalised information, a little added.
+/// Log-determinant of normalised information with the ridge.
 fn log_det(information: &DMatrix<f64>, scales: &DVector<f64>) -> f64 {
     let count = information.nrows();
     let scaled = DMatrix::from_fn(count, count, |i, j| {
@@ -273,11 +273,11 @@ fn log_det(information: &DMatrix<f64>, scales: &DVector<f64>) -> f64 {
             .map(|entry| 2.0 * entry.ln())
             .sum::<f64>()
     };
-    // Rounding may take the last digit of a matrix without information: it has the ridge alone.
+    // Rounding may make a matrix without information indefinite; only the ridge remains.
     factor.map_or(count as f64 * RIDGE.ln(), |factor| sum(factor.unpack()))
 }
 
-/// Information of parameters each of which, alone, has the information 1.
+/// Information matrix scaled to a unit diagonal.
 fn correlation(information: &DMatrix<f64>) -> DMatrix<f64> {
     let norms = information.diagonal().map(f64::sqrt);
     DMatrix::from_fn(information.nrows(), information.ncols(), |i, j| {
@@ -285,7 +285,7 @@ fn correlation(information: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// The condition number of the regressor with columns of unit norm; infinite where one is zero.
+/// Condition number of the regressor with unit columns; infinite if a column is zero.
 fn condition(information: &DMatrix<f64>) -> f64 {
     let matrix = correlation(information);
     if matrix.iter().any(|entry| !entry.is_finite()) {
@@ -305,7 +305,8 @@ mod tests {
 
     #[test]
     fn condition_and_determinant_are_those_of_the_columns() {
-        // Columns of lengths 2 and 3 at 60 degrees: WᵀW is [[4, 3], [3, 9]], unit columns have 1 ± 1/2.
+        // Columns of norms 2 and 3 at 60 degrees: WᵀW is [[4, 3], [3, 9]]; unit columns have
+        // eigenvalues 1 ± 1/2.
         let matrix = DMatrix::from_row_slice(2, 2, &[4.0, 3.0, 3.0, 9.0]);
         assert!((condition(&matrix) - 3.0_f64.sqrt()).abs() < 1e-12);
         let found = log_det(&matrix, &DVector::from_element(2, 1.0));

@@ -1,8 +1,8 @@
-//! What of a run is limited.
+//! Quantities that are limited in a run.
 
 use serde::Serialize;
 
-/// What is limited.
+/// Limited quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitKind {
@@ -16,12 +16,12 @@ pub enum LimitKind {
     Acceleration,
     /// Torque or force of each actuator, N m or N.
     Torque,
-    /// Condition number of J_p^inv or of its part of the kept actuators, columns scaled at home.
+    /// Condition number of J_p^inv, or of its rows of the kept actuators; columns scaled at home.
     Condition,
 }
 
 impl LimitKind {
-    /// `position`, `travel` and so on: the key of `[excitation]` where there is one.
+    /// Name, which is also the key of `[excitation]` if there is one.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -34,7 +34,7 @@ impl LimitKind {
         }
     }
 
-    /// The unit, of a length or a prismatic joint, or of an angle or a revolute one.
+    /// Unit for a length or prismatic joint, or for an angle or revolute joint.
     pub(super) const fn unit(self, is_length: bool) -> &'static str {
         match (self, is_length) {
             (Self::Position | Self::Travel, true) => "m",

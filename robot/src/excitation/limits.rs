@@ -1,4 +1,4 @@
-//! What exciting runs keep to: limits of coordinates, actuators and conditioning, and where they come from.
+//! Limits of exciting runs on coordinates, actuators and conditioning, and their origins.
 
 use super::course::{Bench, Course};
 use super::frame::Frame;
@@ -8,41 +8,41 @@ use overact_identification::significant;
 use overact_simulation::Trajectory;
 use serde::Serialize;
 
-/// Part of an actuator's largest torque that a desired motion may ask for: the rest is the controller's.
+/// Fraction of the torque limit for the desired motion; the rest is for the controller.
 const TORQUE_SHARE: f64 = 0.9;
 
-/// A condition number that is far from singular.
+/// Condition number that counts as far from singular.
 const SAFE_CONDITION: f64 = 10.0;
 
-/// Samples of one period from which the limits of described runs are taken.
+/// Samples of one period for limits taken from described runs.
 const SAMPLES: usize = 1024;
 
-/// Displacement of a joint that nothing is known of, rad or m.
+/// Default displacement of a joint, rad or m.
 const ASSUMED: [f64; 2] = [std::f64::consts::FRAC_PI_4, 0.1];
 
-/// Part of what is reached along a single coordinate that all of them may take together.
+/// Fraction of the reach along single coordinates that all may use together.
 const REACH_SHARE: f64 = 0.5;
 
-/// The first step along a coordinate when the reach is found out, m or rad, its growth and the last one.
+/// Search for the reach along a coordinate: first step, growth factor and last step (m or rad).
 const REACH: [f64; 3] = [1e-3, 1.1, 1.5];
 
-/// The shortest first step, m or rad, of coordinates that do not reach that of [`REACH`].
+/// Shortest first step, m or rad, for robots that do not reach that of [`REACH`].
 const SHORTEST_REACH: f64 = 1e-6;
 
-/// Where a limit comes from.
+/// Origin of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
-    /// The description gives it.
+    /// Given in the description.
     Described,
-    /// The runs of the description reach it.
+    /// Reached by the runs of the description.
     Runs,
-    /// Neither: half of what is reached, or a usual value.
+    /// Assumed: half of the reach, or a default.
     Assumed,
 }
 
 impl Origin {
-    /// In words.
+    /// Origin in words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -53,21 +53,21 @@ impl Origin {
     }
 }
 
-/// A limit that runs keep.
+/// A limit on runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Limit {
-    /// Of what.
+    /// Limited quantity.
     pub kind: LimitKind,
-    /// The largest magnitude of each coordinate or actuator, SI; a single number for the condition.
+    /// Largest magnitude for each coordinate or actuator, SI; a single number for the condition.
     pub values: Vec<f64>,
-    /// Their units, for instance `rad/s`; nothing for the condition.
+    /// Units, for instance `rad/s`; empty for the condition.
     pub units: Vec<&'static str>,
-    /// Where it comes from.
+    /// Origin of the limit.
     pub origin: Origin,
 }
 
 impl Limit {
-    /// The largest part of the limit that peaks take: 1 is all of it.
+    /// Largest ratio of a peak to its limit.
     fn used(&self, peaks: &[f64]) -> f64 {
         let part = |(peak, limit): (&f64, &f64)| if *peak == 0.0 { 0.0 } else { peak / limit };
         let parts = peaks.iter().zip(&self.values).map(part);
@@ -81,13 +81,13 @@ impl Limit {
     }
 }
 
-/// The largest part of each limit that a run takes, at the samples, or also between them.
+/// Largest ratio to each limit in a run, at the samples or also between them.
 pub(super) fn uses(course: &Course, limits: &[Limit], between: bool) -> Vec<f64> {
     let used = |limit: &Limit| limit.used(&course.peaks(limit.kind, between));
     limits.iter().map(used).collect()
 }
 
-/// What runs ask of the actuators' speeds where nothing limits them, in words.
+/// Sentence on the actuator speeds of runs that no limit bounds.
 pub(super) fn unlimited_speeds(
     bench: &Bench<'_>,
     limits: &[Limit],
@@ -111,7 +111,7 @@ pub(super) fn unlimited_speeds(
     ))
 }
 
-/// The limits of a description; `described` are its own runs to identify from.
+/// Limits for a description; `described` are its training runs.
 pub(super) fn limits(
     bench: &Bench<'_>,
     description: &Description,
@@ -119,7 +119,7 @@ pub(super) fn limits(
 ) -> Vec<Limit> {
     let reach =
         |(frame, trajectory): &(Frame, Trajectory)| bench.course(frame, trajectory, SAMPLES);
-    // A run that the robot can't follow tells nothing; making it fails with its own error.
+    // Ignore unreachable runs; simulating them reports the error.
     let courses: Vec<Course> = described.iter().filter_map(|run| reach(run).ok()).collect();
     let of_runs = |kind| reached_by(&courses, kind);
     let table = description.excitation.as_ref();
@@ -131,7 +131,7 @@ pub(super) fn limits(
     let own = table.and_then(|t| t.condition).map(|value| vec![value]);
     let runs = of_runs(LimitKind::Condition)
         .filter(|peak| peak.iter().all(|p| p.is_finite() && *p > SAFE_CONDITION));
-    // Where home itself is not far from singular, motion has to have some room.
+    // If home itself is nearly singular, allow twice its condition number.
     let at_home = bench.condition_at(&vec![0.0; bench.info.sizes.dof]);
     let safe = SAFE_CONDITION.max(2.0 * at_home.filter(|own| own.is_finite()).unwrap_or_default());
     let condition = own
@@ -167,7 +167,7 @@ pub(super) fn limits(
     all
 }
 
-/// A limit of what the description says, of what its runs reach or of what is assumed, the first that there is.
+/// Limit from the description, its runs or an assumption, in this order.
 fn chosen(
     bench: &Bench<'_>,
     kind: LimitKind,
@@ -187,20 +187,22 @@ fn chosen(
     })
 }
 
-/// The largest magnitudes in any of the runs; none without runs.
+/// Largest magnitudes over all runs; `None` without runs.
 fn reached_by(courses: &[Course], kind: LimitKind) -> Option<Vec<f64>> {
     let all = courses.iter().map(|course| course.peaks(kind, false));
     all.reduce(|a, b| a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect())
 }
 
-/// What a desired motion may ask of the largest torques of the virtual experiment.
+/// Torque limits for the desired motion, from those of the virtual experiment.
 fn torque_share(description: &Description) -> Option<Vec<f64>> {
     let largest = description.experiment.as_ref()?.torque_limit.as_ref()?;
     Some(largest.iter().map(|limit| TORQUE_SHARE * limit).collect())
 }
 
-/// Displacements of the coordinates where no run tells of them: half of what is reached along each alone on
-/// both sides without a larger condition number; of joints of a robot without platform at most a usual value.
+/// Assumed displacements if no run gives them.
+///
+/// They are half of the reach along each coordinate alone, on both sides, within the condition
+/// limit. Joints of serial robots also have the default as an upper bound.
 fn reached(bench: &Bench<'_>, condition: f64) -> Vec<f64> {
     let dof = bench.info.sizes.dof;
     let along = |coordinate: usize, sign: f64| {
@@ -211,7 +213,7 @@ fn reached(bench: &Bench<'_>, condition: f64) -> Vec<f64> {
             found.is_some_and(|found| found <= condition)
         };
         let [mut at, growth, last] = REACH;
-        // A small robot may not reach the usual first step.
+        // Small robots may not reach the first step.
         while !is_reached(at) && at > SHORTEST_REACH {
             at /= 2.0;
         }

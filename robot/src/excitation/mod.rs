@@ -1,13 +1,17 @@
-//! Exciting runs: periodic motions that determine the base parameters best inside all limits.
+//! Exciting runs: periodic motions that determine the base parameters best within all limits.
 //!
-//! The measure is the determinant of the information matrix Σ Wᵀ W / σ² of the base parameters (D-optimality;
-//! Swevers, Ganseman, Tükel, De Schutter, Van Brussel 1997), whose logarithms are added over case 1 and case 2 of
-//! a redundant robot. Each coordinate moves along a finite Fourier series. From the bottom up:
+//! The criterion is the determinant of the information matrix Σ Wᵀ W / σ² of the base parameters
+//! (D-optimality; Swevers, Ganseman, Tükel, De Schutter, Van Brussel 1997). For an overactuated
+//! robot, the log-determinants of both projections are added. Each coordinate moves along a finite
+//! Fourier series. The modules, from the bottom up:
 //!
-//! - `frame`: what is fixed of a run, and its series; `course`: the robot along it, and all peaks;
-//! - `kind`, `limits`: what is limited, how much, and where that comes from; `information`: what runs tell of the parameters;
-//! - `evolution`: a search without derivatives; `search`: random series, evolution, and the check of the limits
-//!   at and between the samples of a fine grid; `text`: the runs in a description.
+//! - `frame`: fixed settings of a run, and its series;
+//! - `course`: evaluation of a run and its peaks;
+//! - `kind`, `limits`: limited quantities, limits and their origins;
+//! - `information`: information matrices of runs;
+//! - `evolution`: derivative-free search;
+//! - `search`: random series, evolution, and the check of limits on a fine grid;
+//! - `text`: runs in a description.
 
 mod course;
 mod evolution;
@@ -40,26 +44,28 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Torque noise where none is described, as a part of the largest torque.
+/// Default torque noise relative to the largest torque.
 const NOISE_SHARE: f64 = 0.01;
 
-/// Samples of a period at which runs are judged, at least.
+/// Smallest number of samples per period for judging runs.
 const JUDGED_SAMPLES: usize = 256;
 
-/// Frequency at which torques are measured where none is described, Hz.
+/// Default torque sampling frequency, Hz.
 const SAMPLING: f64 = 5000.0;
 
-/// How exciting runs are searched.
+/// Settings of the search for exciting runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExcitationEffort {
     /// Number of runs; that of the description if absent.
     pub runs: Option<usize>,
-    /// Seed of everything random: the same search gives the same runs.
+    /// Seed of the random numbers; equal seeds give equal runs.
     pub seed: u64,
-    /// Generations of the evolution of each run, at most.
+    /// Largest number of generations for each run.
     pub generations: usize,
-    /// Time after which nothing better is searched; the runs depend on the machine then. What each run needs at
-    /// least comes on top: one random series that keeps the limits, and the check of the limits.
+    /// Time limit of the search; results then depend on the machine.
+    ///
+    /// The minimum for each run is additional: one feasible random series, and the check of the
+    /// limits.
     pub time: Option<Duration>,
 }
 
@@ -74,16 +80,16 @@ impl Default for ExcitationEffort {
     }
 }
 
-/// How well a set of runs determines the parameters, and how much of the limits it takes.
+/// Information of a set of runs, and their use of the limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JudgedRuns {
-    /// Case 1 and case 2 of a redundant robot; else one.
+    /// Both projections of an overactuated robot; otherwise one.
     pub cases: Vec<CaseOfRuns>,
-    /// The largest part of each limit that the runs take: 1 is all of it.
+    /// Largest ratio to each limit; 1 is at the limit.
     pub limits_used: Vec<f64>,
 }
 
-/// Exciting runs and what they are compared with, all at equal duration.
+/// Exciting runs and those that they are compared with, all at equal duration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Excitation {
     /// The limits.
@@ -92,54 +98,57 @@ pub struct Excitation {
     pub base_parameters: usize,
     /// Duration of all runs, s.
     pub duration: f64,
-    /// The runs of the description from which parameters are identified, if there are any.
+    /// Training runs of the description, if there are any.
     pub described: Option<JudgedRuns>,
-    /// The best of a hundred random ones, or of as many as were found, run after run.
+    /// Best of the random runs, chosen run after run.
     pub random: JudgedRuns,
-    /// The hundred, or as many as the time was enough for: of every run the first, of every run the second, and so
-    /// on. They are judged as candidates are, at fewer samples.
+    /// All random sets, up to a hundred within the time limit: the first series of every run, the
+    /// second, and so on.
+    ///
+    /// They are judged at fewer samples, as candidates are.
     #[serde(skip)]
     pub hundred: Vec<Vec<CaseOfRuns>>,
-    /// Those that were found.
+    /// Runs found by the search.
     pub found: JudgedRuns,
-    /// Names of the runs that were found.
+    /// Names of these runs.
     pub runs: Vec<String>,
     /// The runs as tables `[[experiment.run]]`.
     pub tables: String,
-    /// What was assumed for want of a word in the description.
+    /// Assumptions about settings that the description does not give.
     pub assumed: Vec<String>,
 }
 
 impl Robot {
-    /// Searches exciting runs. `progress` hears the part that is done, from 0 to 1, and the name of a run.
+    /// Searches exciting runs.
+    ///
+    /// `progress` is called with the completed fraction, from 0 to 1, and the name of a run.
     ///
     /// # Errors
-    /// A robot without base parameters, limits that no motion keeps, or a description whose runs are not written
-    /// as tables of their own.
+    /// A robot without base parameters, limits that no motion keeps, or a description whose runs
+    /// are not separate tables.
     pub fn excite(
         &self,
         effort: &ExcitationEffort,
         progress: &dyn Fn(f64, &str),
     ) -> Result<Excitation, Error> {
         let start = Instant::now();
-        // A description that can't take the runs is refused before they are searched.
+        // Reject a description that cannot take the runs before the search.
         text::description(self, "")?;
         let task = Task::new(self, effort, start)?;
         let chains = task.search(self, effort, start, progress)?;
         Ok(task.told(self, chains))
     }
 
-    /// The description with found runs in the place of those from which parameters are identified; runs that are
-    /// held out stay.
+    /// Description in which the found runs replace the training runs; validation runs stay.
     ///
     /// # Errors
-    /// Runs that are not written as tables of their own.
+    /// Runs that are not separate tables.
     pub fn with_runs(&self, found: &Excitation) -> Result<String, Error> {
         text::description(self, &found.tables)
     }
 }
 
-/// What is searched.
+/// Search problem.
 struct Task<'a> {
     bench: Bench<'a>,
     limits: Vec<Limit>,
@@ -154,9 +163,9 @@ struct Task<'a> {
 struct Chains {
     random: Vec<Trajectory>,
     found: Vec<Trajectory>,
-    /// What the first random ones of all runs tell together, the second ones, and so on.
+    /// Information of the first random series of all runs, of the second ones, and so on.
     hundred: Vec<Vec<DMatrix<f64>>>,
-    /// Whether the time for random ones was up in a run.
+    /// Whether the time limit cut the random search of a run.
     hurried: bool,
 }
 
@@ -195,7 +204,7 @@ impl<'a> Task<'a> {
         Ok(task)
     }
 
-    /// What is searched, with all that it stands on.
+    /// Search with its inputs.
     fn of(&self, effort: &ExcitationEffort) -> Search<'_> {
         Search {
             bench: &self.bench,
@@ -206,7 +215,7 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// Mean information of random runs with the payload and without, as far as there are such.
+    /// Mean information of random runs, with and without the payload, as needed.
     fn typical(
         &self,
         robot: &Robot,
@@ -214,7 +223,7 @@ impl<'a> Task<'a> {
         start: Instant,
     ) -> Result<Vec<DMatrix<f64>>, Error> {
         let mut search = self.of(effort);
-        // Half of the first run's share of the time, with the payload and without.
+        // Half of the first run's time, for both cases together.
         let share = |time: Duration| start + time.div_f64(2.0 * self.frames.len() as f64);
         search.deadlines = effort.time.map(share).map(Deadlines::until);
         let mut typical = Vec::new();
@@ -237,7 +246,7 @@ impl<'a> Task<'a> {
         Ok(typical)
     }
 
-    /// Searches run after run: each adds to what those before it tell.
+    /// Searches one run after the other; each adds to the information of the earlier ones.
     fn search(
         &self,
         robot: &Robot,
@@ -255,11 +264,11 @@ impl<'a> Task<'a> {
                 progress(part * (index as f64 + done), &frame.name);
             };
             tell(0);
-            // Each run has its share of the time.
+            // Each run has its fraction of the time.
             let share = |time: Duration| start + time.mul_f64(part * (index + 1) as f64);
             search.deadlines = effort.time.map(share).map(Deadlines::until);
             let mut random = stream(effort.seed, index as u64);
-            // A limit that holds every coordinate is refused; so each run has a series.
+            // A limit of zero for every coordinate was rejected, so each run has a series.
             let series = search.series(frame);
             let all = search.random(&series, &mut random);
             chains.hurried |= search.late().0;
@@ -269,7 +278,8 @@ impl<'a> Task<'a> {
             let (of_random, start) = best.ok_or_else(|| self.no_motion(robot))?;
             let evolved = search.evolved(&series, start, &told, &mut random, &tell);
             let settled = search.settled(&series, &evolved);
-            // A series may keep the limits at the samples and no scaled one between them: then another one does.
+            // A series may keep the limits at the samples while no scaled version keeps them
+            // between samples; try another then.
             let settled = settled.or_else(|| search.settled_random(&series, &told, &mut random));
             let found: Candidate = settled.ok_or_else(|| self.no_motion(robot))?;
             let both = chains.hundred.iter().zip(&all);
@@ -288,7 +298,7 @@ impl<'a> Task<'a> {
         Ok(chains)
     }
 
-    /// Why there is nothing to search.
+    /// Error for limits that no motion keeps.
     fn no_motion(&self, robot: &Robot) -> Error {
         let limits: Vec<String> = self
             .limits
@@ -309,7 +319,7 @@ impl<'a> Task<'a> {
             .into()
     }
 
-    /// All runs judged at equal duration.
+    /// Judges all runs at equal duration.
     fn told(&self, robot: &Robot, chains: Chains) -> Excitation {
         let names = self.frames.iter().map(|frame| frame.name.clone()).collect();
         let with = |all: Vec<Trajectory>| self.frames.iter().cloned().zip(all).collect();
@@ -354,8 +364,9 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// Runs judged together, their information times a factor; none where there is no run, or one that the robot
-    /// does not reach.
+    /// Judges runs together, with their information times a factor.
+    ///
+    /// `None` if there is no run, or one that the robot cannot reach.
     fn judged(&self, runs: &[(Frame, Trajectory)], factor: f64) -> Option<JudgedRuns> {
         let (mut information, mut used) = (Vec::new(), vec![0.0; self.limits.len()]);
         for (frame, trajectory) in runs {
@@ -376,12 +387,12 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Random numbers of a run.
+/// Random stream of a run.
 fn stream(seed: u64, run: u64) -> Pcg64 {
     Pcg64::new(u128::from(seed), u128::from(run))
 }
 
-/// The robot as it is judged.
+/// Robot on which runs are evaluated.
 fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<Bench<'a>, Error> {
     let model = robot.model();
     let info = model.info();
@@ -416,7 +427,7 @@ fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<
     })
 }
 
-/// Standard deviations of the torque noise: those of the virtual experiment, or a part of the largest torques.
+/// Torque noise of the virtual experiment, else a fraction of the largest torques.
 fn noise(robot: &Robot, info: &Info<'_>, assumed: &mut Vec<String>) -> Vec<f64> {
     let experiment = robot.description().experiment.as_ref();
     let described = experiment.map(|e| e.torque_noise.clone());

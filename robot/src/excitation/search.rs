@@ -1,5 +1,6 @@
-//! The search: random series that keep all limits, and evolution from the best of them, run after run, each of
-//! which adds to what those before it tell.
+//! Search for one run after the other: feasible random series, then evolution from the best.
+//!
+//! Each run adds to the information of the earlier ones.
 
 use super::course::Bench;
 use super::evolution::Evolution;
@@ -14,63 +15,64 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Random series from which the best one is taken.
+/// Number of random series.
 pub(super) const RANDOM: usize = 100;
 
-/// Random series that are tried for so many that keep all limits, at most.
+/// Largest number of random series that are tried.
 const ATTEMPTS: usize = 5 * RANDOM;
 
-/// Steps in which a random series is scaled down to the limits.
+/// Largest number of steps to scale a random series to the limits.
 const FITS: usize = 15;
 
-/// Candidates of a generation.
+/// Candidates per generation.
 const CANDIDATES: usize = 16;
 
-/// Length of the first steps of the evolution, as a part of the limits.
+/// Initial step size of the evolution, relative to the limits.
 const FIRST_STEP: f64 = 0.15;
 
-/// A step of this length finds nothing better.
+/// Step size at which the evolution ends.
 const LAST_STEP: f64 = 1e-4;
 
-/// Samples of a period at which candidates are judged, at least, and for each harmonic.
+/// Samples per period for judging candidates: at least, and per harmonic.
 const SAMPLES: [usize; 2] = [96, 12];
 
-/// Samples of a period at which limits are checked in the end, at least, and for each harmonic.
+/// Samples per period for the final check of limits: at least, and per harmonic.
 const FINE_SAMPLES: [usize; 2] = [2048, 200];
 
-/// Part of the limits that candidates use: between their few samples a motion goes further.
+/// Fraction of the limits that candidates use, because peaks lie between their few samples.
 const AIM: f64 = 0.995;
 
-/// What a parameter loses in each case where a limit is exceeded by its own size: more than the larger motion
-/// gains, which is 2 to 4.
+/// Penalty per parameter and projection for exceeding a limit by its own size.
+///
+/// It outweighs the gain from the larger motion, which is 2 to 4.
 const PENALTY: f64 = 20.0;
 
-/// The value of a candidate that the robot can't follow.
+/// Value of an unreachable candidate.
 const UNREACHED: f64 = -1e9;
 
-/// Factor from one attempt to keep the limits for certain to the next, at least and at most.
+/// Smallest and largest scale factor between two attempts to keep the limits.
 const SHRINK: [f64; 2] = [0.9, 0.9995];
 
-/// The same where the time is up: a motion that is a little smaller costs less than many more attempts.
+/// The same after the time limit, when fewer attempts matter more than a slightly smaller motion.
 const LATE_SHRINK: [f64; 2] = [0.7, 0.99];
 
-/// Attempts to keep the limits for certain, at most.
+/// Largest number of such attempts.
 const SETTLING: usize = 300;
 
-/// Part of a run's time after which no more random series are drawn: the rest is the evolution's.
+/// Fraction of a run's time for random series; the evolution has the rest.
 const RANDOM_SHARE: f64 = 0.5;
 
-/// How far numbers that are printed may be off, relatively.
+/// Relative rounding of printed numbers.
 const PRINTED: f64 = 1e-9;
 
-/// A run that keeps the limits, and what it tells.
+/// A feasible run and its information.
 #[derive(Clone)]
 pub(super) struct Candidate {
     pub(super) trajectory: Trajectory,
     pub(super) information: Vec<DMatrix<f64>>,
 }
 
-/// What is searched, and how long.
+/// Search problem of a run and its time limit.
 pub(super) struct Search<'a> {
     pub(super) bench: &'a Bench<'a>,
     pub(super) question: &'a Question,
@@ -79,17 +81,17 @@ pub(super) struct Search<'a> {
     pub(super) deadlines: Option<Deadlines>,
 }
 
-/// When the phases of the search of a run end, if the time is limited.
+/// End of each phase of a run's search.
 #[derive(Clone, Copy)]
 pub(super) struct Deadlines {
-    /// No more random series are drawn, once there is one.
+    /// End of the random search, once there is a series.
     random: Instant,
-    /// Nothing better is searched.
+    /// End of the search.
     whole: Instant,
 }
 
 impl Deadlines {
-    /// Those of a run that is searched from now on until then.
+    /// Deadlines of a run whose search starts now.
     pub(super) fn until(whole: Instant) -> Self {
         let now = Instant::now();
         let random = now + whole.saturating_duration_since(now).mul_f64(RANDOM_SHARE);
@@ -98,14 +100,14 @@ impl Deadlines {
 }
 
 impl<'a> Search<'a> {
-    /// Whether no more random series are drawn, and whether nothing better is searched.
+    /// Whether the random search and the whole search are over.
     pub(super) fn late(&self) -> (bool, bool) {
         let now = Instant::now();
         self.deadlines
             .map_or((false, false), |ends| (now > ends.random, now > ends.whole))
     }
 
-    /// The series of a run: coordinates with a limit of 0 have none.
+    /// Series of a run; coordinates with limit 0 have none.
     pub(super) fn series(&self, frame: &'a Frame) -> Series<'a> {
         let limits = self
             .limits
@@ -124,11 +126,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Random series of a run that keep all limits, each as large as it can be. Once the time for them is up, those
-    /// that were found so far, one at least where there is any.
+    /// Random feasible series of a run, each as large as possible.
+    ///
+    /// After the deadline, those found so far, but at least one if possible.
     pub(super) fn random(&self, series: &Series<'_>, random: &mut Pcg64) -> Vec<Candidate> {
         let mut found = Vec::new();
-        // Where no coordinate may move there is nothing to draw.
+        // No coordinate may move.
         if series.len() == 0 {
             return found;
         }
@@ -139,7 +142,7 @@ impl<'a> Search<'a> {
                     .collect()
             };
             let drawn: Vec<Vec<f64>> = (0..RANDOM).map(draw).collect();
-            // With all the time there is no need to wait for one another.
+            // Without a time limit, draw all candidates in parallel.
             let together = match self.deadlines {
                 Some(_) => rayon::current_num_threads().min(CANDIDATES),
                 None => RANDOM,
@@ -151,7 +154,7 @@ impl<'a> Search<'a> {
                     break 'all;
                 }
             }
-            // Where none of so many keeps the limits, more would hardly.
+            // If none of so many is feasible, further ones hardly would be.
             if found.is_empty() || found.len() >= RANDOM {
                 break;
             }
@@ -160,7 +163,7 @@ impl<'a> Search<'a> {
         found
     }
 
-    /// The series of these numbers, scaled down until it keeps all limits at the samples.
+    /// Series scaled down until it keeps all limits at the samples.
     fn fitted(&self, series: &Series<'_>, numbers: &[f64]) -> Option<Candidate> {
         let (whole, _) = series.bounded(numbers);
         let mut factor = AIM;
@@ -184,7 +187,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// The value of a candidate beside what the runs before it tell, and whether it keeps all limits.
+    /// Value of a candidate given the earlier runs' information, and whether it is feasible.
     fn value(&self, series: &Series<'_>, numbers: &[f64], before: &[DMatrix<f64>]) -> (f64, bool) {
         let (trajectory, excess) = series.bounded(numbers);
         let unreached = || {
@@ -198,7 +201,7 @@ impl<'a> Search<'a> {
         };
         let uses = uses(&course, self.limits, false).into_iter();
         let kinds = self.limits.iter().map(|limit| limit.kind);
-        // The series itself keeps the limits of position.
+        // The series already keeps the position limits.
         let others = uses
             .zip(kinds)
             .filter(|(_, kind)| *kind != LimitKind::Position);
@@ -212,7 +215,8 @@ impl<'a> Search<'a> {
         (score - parameters * lost, violation == 0.0)
     }
 
-    /// The best series that evolution finds from a start. `tell` hears how many generations are done.
+    /// Best series that evolution finds from a start; `tell` receives the number of completed
+    /// generations.
     pub(super) fn evolved(
         &self,
         series: &Series<'_>,
@@ -251,8 +255,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// A series with the numbers that are written, scaled down until it keeps all limits at and between the
-    /// samples of a fine grid.
+    /// Series with rounded numbers, scaled down until it keeps all limits at and between fine
+    /// samples.
     pub(super) fn settled(
         &self,
         series: &Series<'_>,
@@ -263,7 +267,7 @@ impl<'a> Search<'a> {
         let mut factor = 1.0;
         for _ in 0..SETTLING {
             let trajectory = series.rounded(&series.scaled(trajectory, factor));
-            // Amplitudes below the written digits are no motion.
+            // All amplitudes were rounded to zero.
             if is_standstill(&trajectory) {
                 return None;
             }
@@ -290,8 +294,8 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// The best of some random series, as [`settled`](Self::settled), that can be; the time is not looked at, for
-    /// there is nothing yet.
+    /// Best random series for which [`settled`](Self::settled) succeeds, regardless of the
+    /// deadline.
     pub(super) fn settled_random(
         &self,
         series: &Series<'_>,
@@ -309,7 +313,7 @@ impl<'a> Search<'a> {
             .find_map(|one| unhurried.settled(series, &one.trajectory))
     }
 
-    /// The candidate that tells most beside what the runs before it tell.
+    /// Candidate with the most information in addition to that of the earlier runs.
     pub(super) fn best<'c>(
         &self,
         all: &'c [Candidate],
@@ -324,7 +328,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The information of runs together.
+/// Sum of the information matrices of runs.
 pub(super) fn added(before: &[DMatrix<f64>], own: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
     match before.is_empty() {
         true => own.to_vec(),

@@ -1,4 +1,4 @@
-//! Runs as tables of a description, and a description with them in the place of its own.
+//! Formats runs as tables, and replaces the runs of a description.
 
 use super::frame::Frame;
 use crate::error::{Error, Problem};
@@ -8,12 +8,13 @@ use overact_simulation::{Term, Trajectory};
 use std::fmt::Write;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
-/// What stands above the runs.
+/// Heading of the runs.
 const COMMENT: &str =
     "\n# Found by `overact excite`: they determine the base parameters best inside the limits.\n";
 
-/// The tables `[[experiment.run]]` of runs; `coordinates` are the names that the model and the description have
-/// for the coordinates, and whether each is a length.
+/// Formats runs as `[[experiment.run]]` tables.
+///
+/// `coordinates` has the model's name, the description's name, and whether each is a length.
 pub(super) fn tables(runs: &[(Frame, Trajectory)], coordinates: &[(&str, String, bool)]) -> String {
     let mut text = COMMENT.to_owned();
     for (frame, trajectory) in runs {
@@ -41,7 +42,7 @@ pub(super) fn tables(runs: &[(Frame, Trajectory)], coordinates: &[(&str, String,
     text
 }
 
-/// A line of `terms`.
+/// Formats a line of `terms`.
 fn term(term: &Term, coordinates: &[(&str, String, bool)]) -> String {
     let known = coordinates
         .iter()
@@ -60,11 +61,10 @@ fn term(term: &Term, coordinates: &[(&str, String, bool)]) -> String {
     )
 }
 
-/// The text of a description, in which the runs of `tables` stand for those from which parameters are
-/// identified; runs that are held out stay.
+/// Description in which the runs of `tables` replace the training runs; validation runs stay.
 ///
 /// # Errors
-/// Runs that are not written as tables of their own.
+/// Runs that are not separate tables.
 pub(super) fn description(robot: &Robot, tables: &str) -> Result<String, Error> {
     let source = robot.source();
     let problem = |message: String| {

@@ -1,5 +1,4 @@
-//! What the simulation refuses, in the words of the description: at the line of the key, and by the
-//! names that keys have there.
+//! Maps errors of the simulation to lines and keys of the description.
 
 use overact_codegen::diagnostic::Code;
 use overact_codegen::{
@@ -8,7 +7,7 @@ use overact_codegen::{
 };
 use overact_simulation::{Error, Problem, RunError};
 
-/// Names of the simulation's values that are keys of another name in a description.
+/// Fields of the simulation and the description's keys for them.
 const KEYS: [(&str, &str); 13] = [
     ("sampling_hz", "sampling"),
     ("duration_s", "duration"),
@@ -22,11 +21,11 @@ const KEYS: [(&str, &str); 13] = [
     ("fundamental_hz", "fundamental"),
     ("phase_rad", "phase"),
     ("runs", "run"),
-    // A run's trajectory is no table of its own.
+    // A run's trajectory has no table of its own.
     ("trajectory", ""),
 ];
 
-/// The simulation's errors as errors of the description.
+/// Converts the simulation's errors to errors of the description.
 pub(crate) fn diagnostics(
     source: &Source,
     description: &Description,
@@ -48,7 +47,7 @@ pub(crate) fn diagnostics(
     all
 }
 
-/// A value that makes no sense.
+/// Error for an invalid value.
 fn of_problem(source: &Source, problem: &Problem) -> Diagnostic {
     let path = path(&problem.field);
     let name = path.rsplit('.').next().unwrap_or(&path);
@@ -60,7 +59,7 @@ fn of_problem(source: &Source, problem: &Problem) -> Diagnostic {
     .at(place)
 }
 
-/// A run that could not be finished, at its name.
+/// Error for a run that failed, located at its name.
 fn of_run(source: &Source, description: &Description, error: &RunError) -> Diagnostic {
     let runs = description.experiment.iter().flat_map(|table| &table.runs);
     let run = runs.into_iter().find(|run| run.name.value == error.run);
@@ -70,8 +69,7 @@ fn of_run(source: &Source, description: &Description, error: &RunError) -> Diagn
     Diagnostic::global(Code::EXPERIMENT, message).at(place)
 }
 
-/// The path of a value among the description's keys: `runs[1].trajectory.terms[0].phase_rad` is
-/// `run[1].terms[0].phase`.
+/// Key path of a field: `runs[1].trajectory.terms[0].phase_rad` becomes `run[1].terms[0].phase`.
 fn path(field: &str) -> String {
     let part = |part: &str| {
         let (name, index) = part.split_at(part.find('[').unwrap_or(part.len()));
@@ -82,13 +80,13 @@ fn path(field: &str) -> String {
     parts.join(".")
 }
 
-/// The key of a value.
+/// Key of a field.
 fn key(name: &str) -> &str {
     let known = KEYS.iter().find(|(own, _)| *own == name);
     known.map_or(name, |(_, key)| key)
 }
 
-/// A message whose names in backticks are keys.
+/// Message with fields in backticks replaced by keys.
 fn in_keys(message: &str) -> String {
     let parts = message.split('`').enumerate();
     let renamed = parts.map(|(at, part)| if at % 2 == 1 { key(part) } else { part });

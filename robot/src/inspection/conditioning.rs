@@ -1,17 +1,17 @@
-//! How well the actuators, and every choice of kept ones, determine the platform at home.
+//! Conditioning at home of the actuators and of every partition.
 
 use crate::{interpreted::InterpretedRobot, partitions::partitions};
 use nalgebra::DMatrix;
 use overact::{Function, Model};
 use serde::Serialize;
 
-/// Condition numbers at the home pose, angular columns as they are (rad).
+/// Condition numbers at home; angular columns are in rad.
 #[derive(Debug, Serialize)]
 #[non_exhaustive]
 pub struct Conditioning {
-    /// Of J_p^inv; null where it is singular.
+    /// Condition number of J_p^inv; `None` if singular.
     pub home: Option<f64>,
-    /// Of J_a for every choice of kept actuators of case 2, best first.
+    /// Condition number of J_a for every partition, best first.
     pub partitions: Vec<Partition>,
 }
 
@@ -19,11 +19,11 @@ pub struct Conditioning {
 #[derive(Debug, Serialize)]
 #[non_exhaustive]
 pub struct Partition {
-    /// Their names.
+    /// Names of the kept actuators.
     pub kept_actuators: Vec<String>,
-    /// Whether it is the description's choice.
+    /// Whether the description chooses it.
     pub chosen: bool,
-    /// The condition number; null where they do not determine the platform.
+    /// Condition number; `None` if the actuators do not determine the platform's motion.
     pub condition: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl Conditioning {
     }
 }
 
-/// Largest by smallest singular value; none for a singular matrix.
+/// Ratio of the largest to the smallest singular value; `None` if singular.
 fn condition(matrix: &DMatrix<f64>) -> Option<f64> {
     if matrix.is_empty() {
         return None;

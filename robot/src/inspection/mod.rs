@@ -1,5 +1,6 @@
-//! What a robot's model consists of and what it costs: the document of `overact inspect`, whose keys are the
-//! names of the fields.
+//! Composition and cost of a robot's model: the document of `overact inspect`.
+//!
+//! The field names are the keys of the document.
 
 mod conditioning;
 
@@ -12,21 +13,21 @@ use overact_codegen::{
 };
 use serde::Serialize;
 
-/// What a robot's model consists of and what it costs.
+/// Composition and cost of a robot's model.
 #[derive(Debug, Serialize)]
 #[non_exhaustive]
 pub struct Inspection {
     /// Name of the robot.
     pub robot: String,
-    /// What the robot is, in a sentence; empty where the description does not say.
+    /// Summary of one sentence; empty if the description has none.
     pub summary: String,
-    /// The description as the user named it.
+    /// File name as the user gave it.
     pub file: String,
     /// Degrees of freedom r.
     pub dof: usize,
     /// Actuators n.
     pub actuators: usize,
-    /// Joints of all legs n_t.
+    /// Number of joints of all legs, n_t.
     pub joints: usize,
     /// Names of the n actuators.
     pub actuator_names: Vec<String>,
@@ -40,33 +41,33 @@ pub struct Inspection {
     pub home_pose: Vec<f64>,
     /// The joints at home, rad or m.
     pub home_joints: Vec<f64>,
-    /// Names of the actuators that case 2 keeps.
+    /// Names of the actuators that the actuator projection keeps.
     pub kept_actuators: Vec<String>,
     /// Joints with their bodies, platform and payload.
     pub bodies: Vec<Body>,
-    /// Names in column order, the payload's last.
+    /// Parameter names in column order, the payload's last.
     pub parameters: Vec<String>,
-    /// Those of them that are the platform's payload's.
+    /// Names of the payload's parameters among them.
     pub payload_parameters: Vec<String>,
-    /// Base parameters in the order of their columns, with what is regrouped into them.
+    /// Base parameters in column order, with their regrouping.
     pub base_parameters: Vec<Base>,
-    /// All functions with what they cost.
+    /// All functions with their cost.
     pub functions: Vec<Function>,
-    /// How well the actuators determine the platform at home.
+    /// Conditioning of the actuators at home.
     pub conditioning: Conditioning,
 }
 
-/// A joint with the body behind it, the platform or the payload.
+/// A joint with the body that it carries, the platform or the payload.
 #[derive(Debug, Serialize)]
 #[non_exhaustive]
 pub struct Body {
     /// Name of the joint, `platform` or `payload`.
     pub name: String,
-    /// What kind of joint holds it: `revolute`, `prismatic`, `fixed`, `motor` or `free`.
+    /// Joint type: `revolute`, `prismatic`, `fixed`, `motor` or `free`.
     pub joint: &'static str,
     /// Whether a motor drives the joint.
     pub actuated: bool,
-    /// The name of its motor, if it has one.
+    /// Name of its motor, if it has one.
     pub actuator: Option<String>,
     /// Parameters whose columns are not identically zero.
     pub parameters: Vec<String>,
@@ -76,7 +77,7 @@ pub struct Body {
 #[derive(Debug, Serialize)]
 #[non_exhaustive]
 pub struct Base {
-    /// Name, with the suffix `R` where others are regrouped into it.
+    /// Name, with the suffix `R` if others are regrouped into it.
     pub name: String,
     /// The kept parameter first, with coefficient 1.
     pub regrouping: Vec<Term>,
@@ -100,36 +101,36 @@ pub struct Function {
     pub name: &'static str,
     /// Name of the Rust function.
     pub function: String,
-    /// Which parameters the columns stand for, where the function is a model of them.
+    /// Parameters of its columns, if the function is a regressor.
     pub columns: Option<&'static str>,
-    /// What it is evaluated from: pose, joints or actuators.
+    /// Variables that it is evaluated from: pose, joints or actuators.
     pub from: &'static str,
-    /// Its inputs in their order.
+    /// Inputs in order.
     pub inputs: Vec<Argument>,
     /// Its output.
     pub outputs: Vec<Argument>,
-    /// Additions, multiplications and divisions; what is called is counted in, once.
+    /// Additions, multiplications and divisions; each called function is counted once.
     pub operations: usize,
-    /// Operations by kind, with those of what is called.
+    /// Operations by type, including called functions.
     #[serde(flatten)]
     pub cost: TotalCost,
 }
 
-/// An array that goes in or comes out.
+/// An input or output array.
 #[derive(Debug, Serialize)]
 #[non_exhaustive]
 pub struct Argument {
     /// Name of the array.
     pub name: String,
-    /// How many numbers there are along each axis.
+    /// Number of values along each axis.
     pub shape: Vec<usize>,
-    /// Whether a caller may leave it out.
+    /// Whether a caller may omit it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub optional: bool,
 }
 
 impl Inspection {
-    /// What there is to be told of a robot that has been compiled.
+    /// Inspects a compiled robot.
     #[must_use]
     pub fn new(robot: CompiledFile) -> Self {
         let CompiledFile { file, model, .. } = robot;
@@ -183,7 +184,7 @@ impl Inspection {
                 .iter()
                 .map(|f| Function::new(&model, f))
                 .collect(),
-            // Last, since it takes the model.
+            // Last, because it takes ownership of the model.
             conditioning: Conditioning::new(&InterpretedRobot::new(model)),
         }
     }
@@ -202,13 +203,13 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
             .map(|&p| model.parameter_name(p))
             .collect()
     };
-    // Legs and joints are gone through in the order of the actuators.
+    // Legs and joints are in the order of the actuators.
     let mut actuators = mechanism.actuator_names().into_iter();
     let mut bodies = Vec::new();
     for (leg, l) in mechanism.legs.iter().enumerate() {
         for (joint, j) in l.joints.iter().enumerate() {
             let kind = match j.kind {
-                // A motor that turns several joints carries no body.
+                // A motor that drives several joints carries no body.
                 _ if j.motor.is_some() => "motor",
                 JointKind::Revolute => "revolute",
                 JointKind::Prismatic => "prismatic",
@@ -274,7 +275,7 @@ impl Function {
         let program = &function.program;
         let mut inputs: Vec<Argument> = program.inputs.iter().map(argument).collect();
         if function.from == MotionInput::Actuators {
-            // The pose is what forward kinematics finds from the actuators, near the start pose.
+            // Forward kinematics: the pose is computed from the actuators, near the start pose.
             let free = |name: &str, length, optional| Argument {
                 name: name.to_owned(),
                 shape: vec![length],

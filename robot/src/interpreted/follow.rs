@@ -1,32 +1,32 @@
-//! Forward kinematics from a pose that may be far from the wanted one.
+//! Forward kinematics by continuation from a distant start pose.
 
 use super::InterpretedRobot;
 use overact::{Error, Function, Model, math::wrap_angle};
 
-/// Forward kinematics walks towards far actuators in steps of this size (rad, m), so that the
-/// assembly mode stays that of the start.
+/// Continuation step of the actuators (rad, m); small steps keep the assembly mode of the start.
 const STEP: f64 = 0.05;
 
-/// Most steps of such a walk.
+/// Largest number of steps.
 const STEPS: usize = 200;
 
 impl InterpretedRobot {
-    /// Forward kinematics in small steps from the start's actuators to the wanted ones. Should the
-    /// straight way leave the workspace, the wanted ones are tried at once. `pose` is the start, and then
-    /// what was found.
+    /// Forward kinematics in small steps from the start's actuators to the given ones.
+    ///
+    /// If the straight path leaves the workspace, the given actuators are tried directly. `pose` is
+    /// the start on input and the solution on output.
     ///
     /// # Errors
     /// As [`Model::pose_from_actuators`]; `pose` is unchanged then.
     pub fn follow_actuators(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error> {
         let info = self.info();
         if actuators.len() != info.sizes.actuators {
-            // Forward kinematics says what is wrong with it.
+            // Forward kinematics reports the error.
             return self.pose_from_actuators(actuators, pose);
         }
         let mut from = vec![0.0; actuators.len()];
         let reached = self.evaluate(Function::ActuatorPositions, &[pose], &mut from);
         if reached.is_err() {
-            // There is no way from a pose that the robot has not; a closed form needs none.
+            // The robot cannot reach the start pose, so there is no path; a closed form needs none.
             return self.pose_from_actuators(actuators, pose);
         }
         let difference = |((to, from), revolute): ((&f64, &f64), &bool)| {
@@ -43,7 +43,7 @@ impl InterpretedRobot {
             .map(difference)
             .collect();
         let far = way.iter().fold(0.0_f64, |far, step| far.max(step.abs()));
-        // A cast from a float saturates.
+        // The cast saturates.
         let steps = ((far / STEP).ceil() as usize).clamp(1, STEPS);
         let mut at = pose.to_vec();
         for step in 1..steps {

@@ -1,4 +1,4 @@
-//! Forward kinematics of an interpreted robot, as generated code does it.
+//! Forward kinematics of an interpreted robot, as in generated code.
 
 use super::InterpretedRobot;
 use overact::{
@@ -8,7 +8,7 @@ use overact::{
 };
 use overact_codegen::{derivation::MotionInput, evaluation::Rows};
 
-/// Memory for forward kinematics.
+/// Working memory of forward kinematics.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     actuators: Vec<f64>,
@@ -19,7 +19,7 @@ pub(super) struct Scratch {
 }
 
 impl InterpretedRobot {
-    /// The pose that fits the actuators of a robot with loops, found from `start`.
+    /// Pose of a robot with loops for given actuators, solved from `start`.
     pub(super) fn found_pose(&self, actuators: &[f64], start: Vec<f64>) -> Result<Vec<f64>, Error> {
         let (sizes, mut start) = (self.names.sizes, start);
         if self.has_quaternion() {
@@ -37,7 +37,7 @@ impl InterpretedRobot {
         })
     }
 
-    /// The pose by rule, where the robot has one and the spheres meet.
+    /// Pose in closed form, if the robot has one and the spheres intersect.
     fn pose_in_closed_form(&self, actuators: &[f64]) -> Option<Vec<f64>> {
         let function = self
             .model
@@ -51,7 +51,7 @@ impl InterpretedRobot {
         found.ok().map(|()| pose)
     }
 
-    /// The pose of least squares, found from the one in `pose`.
+    /// Least-squares pose, solved from the one in `pose`.
     fn fit_pose(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error> {
         let sizes = self.names.sizes;
         self.scratch.with(Scratch::default, |scratch| {
@@ -94,8 +94,8 @@ impl InterpretedRobot {
         })
     }
 
-    /// Steps with positions and Jacobian in one, where the robot has a function of them. Whether they have led to
-    /// a pose.
+    /// Newton steps with the combined function of positions and Jacobian, if available; whether
+    /// they converged.
     fn steps_at_once(&self, actuators: &[f64], pose: &mut [f64], step: &mut [f64]) -> bool {
         let offered = self.model.served(Function::PoseStep).is_some();
         offered

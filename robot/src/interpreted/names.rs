@@ -1,4 +1,4 @@
-//! What a model says about its robot, as [`overact::Info`] wants it.
+//! Builds [`overact::Info`] of a model.
 
 use crate::body::body;
 use overact::{Info, Parameter, Sizes};
@@ -50,7 +50,7 @@ impl Names {
         }
     }
 
-    /// The name of a leg, with the life that errors need.
+    /// Name of a leg with static lifetime, for errors.
     pub(super) fn leg(&self, name: &str) -> &'static str {
         self.legs
             .iter()

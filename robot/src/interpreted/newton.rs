@@ -1,4 +1,4 @@
-//! Joints of robots whose legs no rule solves: Newton's method on the interpreted closure.
+//! Joints of legs without closed form: Newton's method on the interpreted closure.
 
 use super::InterpretedRobot;
 use overact::Function;
@@ -9,7 +9,7 @@ use overact::{
 use overact_codegen::{derivation::MotionInput, evaluation::Rows, lowering::Program};
 
 impl InterpretedRobot {
-    /// Joint positions of all poses, one after the other.
+    /// Joint positions of all poses, pose by pose.
     pub(super) fn find_joints(&self, poses: &[f64]) -> Result<Vec<f64>, SampleError> {
         let mechanism = &self.model.mechanism;
         let sizes = self.info().sizes;

@@ -1,4 +1,4 @@
-//! Intervals of calibrated parameters contain the truth as often as they say.
+//! Coverage of the intervals of calibrated parameters.
 //!
 //! `OVERACT_RANDOM_COUNT=100` draws more noise.
 
@@ -6,19 +6,21 @@ use super::runs::{Colour, Encoder, Reading, faulty, robot, run, text};
 use overact_identification::CalibrationScope;
 use overact_tier::{by_tier, drawn, is_full};
 
-/// What is wrong with the robot.
+/// Faults of the robot.
 const LINK: (&str, f64) = ("d_2_leg2", 2.8e-3);
 const OFFSET: (&str, f64) = ("offset_leg3", 3.490_658_503_988_659e-3);
 
-/// Under white noise the parameters that were changed are the right ones, and the 95 % intervals cover them;
-/// those of all parameters together cover, too.
+/// White noise: the right parameters are changed, and their 95 % intervals cover; so do those of
+/// all parameters together.
 #[test]
 fn intervals_cover_under_white_noise() {
     cover(Colour::White, by_tier([3.0, 1.25]));
 }
 
-/// Noise that is correlated over some ten of three hundred samples. So few that are independent make errors in
-/// units of the deviations as large as Student's distribution of few degrees of freedom has them.
+/// Noise correlated over about ten of three hundred samples.
+///
+/// With so few independent samples, errors in standard deviations follow Student's t distribution
+/// with few degrees of freedom.
 #[test]
 fn intervals_cover_under_correlated_noise() {
     if is_full() {
@@ -26,7 +28,7 @@ fn intervals_cover_under_correlated_noise() {
     }
 }
 
-/// Noise of low frequencies alone.
+/// Low-frequency noise only.
 #[test]
 fn intervals_cover_under_band_limited_noise() {
     if is_full() {
@@ -34,13 +36,11 @@ fn intervals_cover_under_band_limited_noise() {
     }
 }
 
-/// What the intervals say, and by how many deviations of the number of those that cover it may be missed: 88 % of a
-/// hundred draws.
+/// Nominal coverage, and tolerance in standard deviations of the count: 88 % of a hundred draws.
 const NOMINAL: f64 = 0.95;
 const DEVIATIONS: f64 = 3.2;
 
-/// Draws of noise of a colour; the intervals cover as often as so many draws tell, and errors in units of the deviations
-/// have at most so large a root mean square.
+/// Checks coverage and the root mean square error in standard deviations, for noise of a colour.
 fn cover(colour: Colour, largest: f64) {
     let draws = drawn([2, 40]);
     let deviation = (NOMINAL * (1.0 - NOMINAL) / draws as f64).sqrt();

@@ -1,4 +1,4 @@
-//! Encoder offsets and lengths found from the closure of redundant loops.
+//! Encoder offsets and lengths from the closure of redundant loops.
 
 mod coverage;
 mod runs;
@@ -13,7 +13,7 @@ fn calibrated(robot: &Robot, log: overact_identification::Log) -> Calibration {
     found.expect("a calibration")
 }
 
-/// The names of what is changed, and that each change is within so many deviations of the truth.
+/// Checks the names of the changes, and their errors in standard deviations.
 fn check(found: &Calibration, truth: &[(&str, f64)]) {
     let names: Vec<&str> = found
         .estimated
@@ -47,7 +47,7 @@ fn a_dualv_tells_an_encoder_offset_and_a_long_link() {
     let found = calibrated(&described, log.clone());
     check(&found, &[("offset_leg3", offset), ("d_2_leg2", 2.8e-3)]);
     assert!(found.misfit_before > 100.0);
-    // What does not lie in the plane has no effect; a factor of all lengths goes unseen.
+    // Lengths out of the plane have no effect; a common factor of all lengths is not observable.
     let out_of_plane = found.held.iter().find(|one| one.name == "base_z_leg1");
     let reason = out_of_plane.and_then(|one| one.reason.as_deref());
     assert_eq!(reason, Some("it has no effect on the sensors"));
@@ -57,7 +57,7 @@ fn a_dualv_tells_an_encoder_offset_and_a_long_link() {
             .iter()
             .any(|remark| remark.contains("no scale"))
     );
-    // The calibrated description keeps the author's words and leaves nothing to calibrate.
+    // The calibrated description keeps the author's text and needs no further calibration.
     let right = described.calibrated(&found).expect("a description");
     let own = &right.source().text;
     assert!(own.contains("d = \"l_ab + d_2_change\"\n"), "{own}");
@@ -89,7 +89,7 @@ fn without_redundancy_nothing_is_determined() {
     );
 }
 
-/// Single faults of other robots, planar, translational, spherical and spatial.
+/// Single faults of planar, translational, spherical and spatial robots.
 #[test]
 fn faults_of_other_robots_are_found() {
     let cases: &[(&str, &str, f64)] = by_tier([
@@ -127,7 +127,7 @@ fn faults_of_other_robots_are_found() {
             [one] => one,
             other => panic!("{name}, {parameter}: {other:?}"),
         };
-        // Where the data can't tell, the truth is among what they can't tell from each other.
+        // If the data cannot isolate the fault, it is among the indistinguishable parameters.
         if one.name == *parameter {
             let miss = (one.change - change) / one.standard_deviation;
             assert!(miss.abs() < 4.0, "{name}, {parameter}: off by {miss} σ");
@@ -141,7 +141,8 @@ fn faults_of_other_robots_are_found() {
     }
 }
 
-/// The essential parameters of case 1: names, relative errors in percent, and whether the intervals cover.
+/// Essential parameters of case 1: name, relative error in percent, and whether the interval
+/// covers.
 fn errors(result: &Identification) -> Vec<(String, f64, bool)> {
     let estimate = result
         .estimates
@@ -157,8 +158,9 @@ fn errors(result: &Identification) -> Vec<(String, f64, bool)> {
     parameters.map(error).collect()
 }
 
-/// The nine essential parameters of the DualV under an encoder offset and a long link: wrong as described,
-/// right as calibrated.
+/// The nine essential parameters of the DualV with an encoder offset and a long link.
+///
+/// They are wrong with the description and right with its calibration.
 #[test]
 fn a_calibrated_dualv_has_its_parameters_again() {
     if !is_full() {
@@ -189,7 +191,8 @@ fn a_calibrated_dualv_has_its_parameters_again() {
         for (name, error, _) in &errors {
             assert!(error.abs() < 2.0, "{name}: {error} %");
         }
-        // Of nine 95 % intervals one may miss; without any fault the same one does in this experiment.
+        // One of nine 95 % intervals may miss; without faults the same one misses in this
+        // experiment.
         let covered = errors.iter().filter(|(.., covered)| *covered).count();
         assert!(covered >= 8, "{errors:?}");
     }

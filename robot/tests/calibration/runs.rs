@@ -1,4 +1,4 @@
-//! Runs of robots as their encoders see them, without dynamics.
+//! Runs of robots as their encoders measure them, without dynamics.
 
 use overact::{Function, Model};
 use overact_identification::{CalibratedParameter, Calibration, CalibrationScope, Log};
@@ -9,46 +9,46 @@ use std::{
     path::Path,
 };
 
-/// The text of a description of `robots/`.
+/// Text of a description in `robots/`.
 pub(crate) fn text(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(path.join("../robots").join(name)).expect("a description")
 }
 
-/// The robot of a description.
+/// Robot of a description.
 pub(crate) fn robot(text: &str) -> Robot {
     Robot::from_text("robot.toml", text).expect("a robot")
 }
 
-/// What encoders make of positions.
+/// Encoder errors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Encoder {
-    /// Steps of so many rad or m.
+    /// Quantisation, rad or m.
     Resolution(f64),
-    /// Normal noise of a deviation (rad, m).
+    /// Gaussian noise with a standard deviation (rad, m).
     Noise { deviation: f64, colour: Colour },
 }
 
-/// How noise hangs together over time.
+/// Colour of noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Colour {
-    /// Not at all.
+    /// White noise.
     White,
-    /// A part is that of the sample before.
+    /// Autoregressive noise with a coefficient.
     Remembered(f64),
-    /// White noise through a filter of linear phase that leaves frequencies below a part of half the sampling
+    /// White noise through a linear-phase low-pass filter; cutoff relative to half the sampling
     /// frequency.
     BandLimited(f64),
 }
 
-/// How a robot moves and is read.
+/// Motion and measurement of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Reading {
     pub(crate) samples: usize,
-    /// How far each coordinate moves: m, rad.
+    /// Amplitude of each coordinate: m, rad.
     pub(crate) size: [f64; 2],
     pub(crate) encoder: Encoder,
-    /// What each encoder shows too much (rad, m); the others are right.
+    /// Offset of each encoder (rad, m); missing ones are zero.
     pub(crate) offsets: Vec<f64>,
     pub(crate) seed: u64,
 }
@@ -65,7 +65,7 @@ impl Default for Reading {
     }
 }
 
-/// A run in which every coordinate moves about home.
+/// Run in which every coordinate moves about home.
 pub(crate) fn run(robot: &Robot, of: &Reading) -> Log {
     let model = robot.model();
     let info = model.info();
@@ -99,15 +99,15 @@ pub(crate) fn run(robot: &Robot, of: &Reading) -> Log {
     Log::new("run", 100.0, n, positions, torques, false).expect("a log")
 }
 
-/// The errors of encoders.
+/// Encoder noise.
 struct Noise {
     state: u64,
-    /// Factors of the last white values, and these of each sensor.
+    /// Filter coefficients, and the last white values of each sensor.
     factors: Vec<f64>,
     white: Vec<VecDeque<f64>>,
 }
 
-/// Values of which filtered noise is made.
+/// Length of the filter.
 const LONGEST: usize = 121;
 
 impl Noise {
@@ -117,7 +117,8 @@ impl Noise {
             Encoder::Noise { colour, .. } => factors(colour),
         };
         let mut noise = Self {
-            // Not a multiple of the step of the sequence, so that no two seeds have one sequence shifted.
+            // Not a multiple of the step of the sequence, so that no two seeds give shifted
+            // sequences.
             state: seed.wrapping_mul(0xd134_2543_de82_ef95),
             white: vec![VecDeque::new(); sensors],
             factors,
@@ -131,7 +132,7 @@ impl Noise {
         noise
     }
 
-    /// A number between 0 and 1.
+    /// Uniform number between 0 and 1.
     fn uniform(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.state;
@@ -162,7 +163,7 @@ impl Noise {
     }
 }
 
-/// Factors of successive white values that make noise of a colour and of variance one.
+/// Filter coefficients for noise of a colour with unit variance.
 fn factors(colour: Colour) -> Vec<f64> {
     let factors: Vec<f64> = match colour {
         Colour::White => vec![1.0],
@@ -181,7 +182,7 @@ fn factors(colour: Colour) -> Vec<f64> {
     factors.into_iter().map(|one| one / size).collect()
 }
 
-/// The parameters that calibration knows of a robot, with their places.
+/// Parameters that calibration knows of a robot, with their indices.
 pub(crate) fn parameters(robot: &Robot) -> Vec<(String, usize)> {
     let reading = Reading {
         samples: 20,
@@ -200,7 +201,7 @@ pub(crate) fn parameters(robot: &Robot) -> Vec<(String, usize)> {
     names.collect()
 }
 
-/// A robot of which lengths are other than described (m).
+/// Robot with changed lengths (m).
 pub(crate) fn faulty(robot: &Robot, changes: &[(&str, f64)]) -> Robot {
     let reading = Reading {
         samples: 20,

@@ -1,4 +1,4 @@
-//! The kinematics of the test robots.
+//! Kinematics of the test robots.
 
 use overact::Error;
 use std::sync::LazyLock;
@@ -16,7 +16,7 @@ pub trait Kinematics: Sync {
     fn jacobian(&self, x: &[f64], j: &mut [f64]) -> Result<(), Error>;
     /// c(x, v) = dJ/dt v.
     fn convection(&self, x: &[f64], v: &[f64], c: &mut [f64]) -> Result<(), Error>;
-    /// J_p^inv and c(x, v) at once.
+    /// J_p^inv and c(x, v) together.
     fn motion(&self, x: &[f64], v: &[f64], j: &mut [f64], c: &mut [f64]) -> Result<(), Error> {
         self.jacobian(x, j)?;
         self.convection(x, v, c)
@@ -56,8 +56,9 @@ impl Kinematics for TwoMotors {
     }
 }
 
-/// A shaft with two motors whose angle is kept as (cos, sin), so that its pose does not add; the
-/// displacement is a chart like that of a quaternion: a step s turns by 2 atan(s / 2).
+/// A shaft with two motors whose pose is (cos, sin) of the angle, so that it is not additive.
+///
+/// The displacement is a chart like that of a quaternion: a step s rotates by 2 atan(s / 2).
 pub struct Shaft;
 
 impl Kinematics for Shaft {
@@ -150,7 +151,7 @@ const GAMMA: [f64; 4] = [15.52, 164.48, -164.48, -15.52];
 /// The elbows point away from the platform's centre.
 const MODE: [f64; 4] = [-1.0, 1.0, -1.0, 1.0];
 
-/// Cosine and sine of gamma: where the motors stand.
+/// Cosine and sine of the motors' directions gamma.
 static MOTORS: LazyLock<[[f64; 2]; 4]> = LazyLock::new(|| {
     GAMMA.map(|gamma| {
         let (sin, cos) = gamma.to_radians().sin_cos();
@@ -179,7 +180,7 @@ impl Leg {
         let [ca, sa] = MOTORS[i];
         let span = [x[0] + lever[0] - BASE * ca, x[1] + lever[1] - BASE * sa];
         let length = (span[0] * span[0] + span[1] * span[1]).sqrt();
-        // The arm is turned away from the span by the angle of this cosine.
+        // The angle between arm and span has this cosine.
         let c = length / (2.0 * LINK);
         if c > 1.0 {
             return Err(Error::OutOfReach {

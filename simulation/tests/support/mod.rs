@@ -1,6 +1,7 @@
-//! Hand-written robots: a platform that moves in the plane and actuators with inertia and friction of
-//! their own. Everything dynamic follows from one formula,
-//! Γ = Σ J_iᵀ (ia_i q̈_i + fv_i q̇_i + fs_i sign q̇_i) + platform, with q̇ = J v and q̈ = J a + c(x, v).
+//! Hand-written robots: a planar platform, and actuators with inertia and friction.
+//!
+//! All dynamics follow from Γ = Σ J_iᵀ (ia_i q̈_i + fv_i q̇_i + fs_i sign q̇_i) + platform, with q̇
+//! = J v and q̈ = J a + c(x, v).
 #![allow(
     dead_code,
     unreachable_pub,
@@ -15,10 +16,10 @@ use overact::{
     forward::solve_positive_definite, math::sign,
 };
 
-/// Largest n and r of the robots here.
+/// Largest n and r of these robots.
 const MAX: usize = 4;
 
-/// A robot made of its kinematics.
+/// A robot defined by its kinematics.
 pub struct Robot<K> {
     pub kinematics: K,
     sizes: Sizes,
@@ -28,17 +29,18 @@ pub struct Robot<K> {
     kept: Vec<usize>,
 }
 
-/// What the forces at a motion share, whatever the parameters are.
+/// Parameter-independent part of the forces at a motion.
 struct Moving {
     /// J_p^inv, n x r.
     jacobian: [f64; MAX * MAX],
     /// c(x, v) = dJ/dt v.
     convection: [f64; MAX],
-    /// Sine and cosine of a platform's angle.
+    /// Sine and cosine of the platform's angle.
     turn: (f64, f64),
 }
 
-/// Columns: ia, fv, fs of each actuator, then the platform's; the payload's are like the platform's.
+/// Columns: ia, fv, fs of each actuator, then the platform's; the payload's are like the
+/// platform's.
 impl<K: Kinematics> Robot<K> {
     pub fn new(kinematics: K) -> Self {
         let (n, r) = (kinematics.actuators().len(), kinematics.coordinates().len());
@@ -115,7 +117,7 @@ impl<K: Kinematics> Robot<K> {
         let own = self.sizes.parameters - self.sizes.payload_parameters;
         out.fill(0.0);
         for i in 0..n {
-            // Of a column of the regressor all parameters but one are zero.
+            // For a column of the regressor, all parameters but one are zero.
             if chi[3 * i..3 * i + 3] == [0.0; 3] {
                 continue;
             }

@@ -1,9 +1,9 @@
-//! Values of compiled robots for those who ask from elsewhere, as the tests of the Python package do:
-//! `cargo run -p overact-compiled --example values < questions`.
+//! Evaluates compiled robots for the tests of the Python package.
 //!
-//! A question is a line `STEM FUNCTION SAMPLES INPUTS` and a line of numbers for each input, sample after
-//! sample; FUNCTION is the name in the table of functions, with `_base` for base parameters. The answer is
-//! a line of numbers, or one that begins with `error`.
+//! `cargo run -p overact-compiled --example values < questions`. A question is a line `STEM
+//! FUNCTION SAMPLES INPUTS` and a line of numbers for each input, sample by sample. FUNCTION is the
+//! name in the table of functions, with `_base` for base parameters. The answer is a line of
+//! numbers, or one that begins with `error`.
 
 use overact::Function;
 use std::io::{self, BufRead, Write};

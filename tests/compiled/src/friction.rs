@@ -1,4 +1,4 @@
-//! Robots with every kind of friction and with screws, and the text of their descriptions.
+//! Robots with all kinds of friction and with screws, and the text of their descriptions.
 
 robot!(friction_arm: FrictionArm);
 robot!(friction_bar: FrictionBar);

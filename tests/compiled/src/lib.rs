@@ -1,8 +1,8 @@
 //! All robots of `robots/` as compiled Rust, built once for all test binaries.
 //!
-//! Those whose text is kept come from `generated/`, the others from the build script.
+//! Their modules come from `generated/` or from the build script.
 
-/// A module that the build script wrote, and its robot.
+/// A module from the build script, and its robot.
 macro_rules! robot {
     ($stem:ident: $robot:ident) => {
         mod $stem {

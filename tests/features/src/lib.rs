@@ -1,7 +1,5 @@
-//! Nothing but dependencies: the features in which other packages of the workspace need crates that the
-//! generator stands on.
+//! Dependencies with the same features as in other packages of the workspace.
 //!
-//! Cargo builds a package once for each set of features of what it depends on. The generator is built
-//! optimised, which takes a minute of processor time, for tests and commands on one side, for the macro
-//! and a build script on the other, and for `cargo xtask` by itself. With the same features on all sides
-//! one build serves all.
+//! Cargo builds a package once for each set of features of its dependencies. The optimised
+//! generator takes a minute of processor time to build, for tests and commands, for macro and build
+//! script, and for `cargo xtask`. Equal features share one build.

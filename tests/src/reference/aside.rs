@@ -1,11 +1,11 @@
-//! Platforms that move aside: a free body and all joints of the legs at once, closed by the equations of all
-//! legs' ends.
+//! Platforms with parasitic motion: a free body and all joints, closed by the equations of all leg
+//! ends.
 //!
-//! No leg is solved by itself, and no matrix that gives the dependent coordinates is formed. With Φ the
-//! derivative of all ends' equations by all joint rates and the six components of the platform's velocity t,
-//! Φ [q̇; t] = 0 stands above S t = v, which names the independent components, and both are solved together by
-//! least squares: the null space of Φ in the basis in which the independent components are units.
-//! Accelerations follow from the same matrix with the bias accelerations of both sides of every end.
+//! No leg is solved separately, and no matrix of the dependent coordinates is formed. Let Φ be the
+//! derivative of all end equations by the joint rates and the platform's twist t. Φ [q̇; t] = 0 and
+//! S t = v, which selects the independent components, are solved together by least squares. The
+//! result is the null space of Φ in the basis with unit independent components. Accelerations use
+//! the same matrix with the bias accelerations of both sides of every end.
 
 use super::Error;
 use super::closure::{State, closure_residual};
@@ -19,16 +19,16 @@ use super::mechanism::{Leg, Mechanism};
 use super::motion::Motion;
 use nalgebra::{DMatrix, DVector};
 
-/// Largest relative residual of the equations that counts as rounding.
+/// Relative residual of the equations up to which it counts as rounding.
 const CONSISTENCY: f64 = 1e-9;
 /// Largest closure residual, metres and radians.
 const CLOSED: f64 = 1e-12;
-/// Residual at which Newton's method stops: rounding.
+/// Residual at which Newton's method stops, near rounding.
 const EXACT: f64 = 3e-16;
-/// Steps on the way to a pose.
+/// Continuation steps to a pose.
 const STEPS: usize = 8;
 
-/// The same robot with a platform whose six components are all independent.
+/// The robot with a free platform, whose six components are all independent.
 #[must_use]
 pub fn freed(mechanism: &Mechanism) -> Mechanism {
     Mechanism {
@@ -37,7 +37,7 @@ pub fn freed(mechanism: &Mechanism) -> Mechanism {
     }
 }
 
-/// Φ: velocities of all ends less those of their places, per joint rate and per component of t.
+/// Φ: velocity of each end relative to its place, for unit joint rates and unit components of t.
 fn closures(free: &Mechanism, pose: &[f64], q: &DVector<f64>) -> DMatrix<f64> {
     let equations: usize = free.legs.iter().map(end_equations).sum();
     let joints = free.joints();
@@ -55,7 +55,7 @@ fn closures(free: &Mechanism, pose: &[f64], q: &DVector<f64>) -> DMatrix<f64> {
     all
 }
 
-/// Which of the six components are independent, as rows.
+/// Selection matrix of the independent components.
 fn selection(mechanism: &Mechanism, joints: usize) -> DMatrix<f64> {
     let own = mechanism.motion.independent();
     let mut rows = DMatrix::zeros(own.len(), joints + 6);
@@ -65,7 +65,7 @@ fn selection(mechanism: &Mechanism, joints: usize) -> DMatrix<f64> {
     rows
 }
 
-/// The closures with the independent components, solved for given right-hand sides.
+/// Solves the closures with the independent components for given right-hand sides.
 fn solve(
     mechanism: &Mechanism,
     closures: &DMatrix<f64>,
@@ -155,8 +155,10 @@ pub fn platform(mechanism: &Mechanism, state: &State) -> Result<BodyMotion, Erro
     ))
 }
 
-/// Jacobians at a pose and at joint positions that close the loops. `attachments` are those of the free
-/// platform, six columns, so that its wrench is nowhere projected.
+/// Jacobians at a pose and at joint positions that close the loops.
+///
+/// `attachments` are those of the free platform, with six columns, so that its wrench is not
+/// projected.
 ///
 /// # Errors
 ///
@@ -206,8 +208,10 @@ pub fn jacobians(
     Ok(jacobians)
 }
 
-/// Of a leg's equations as many as it has joints, in order: in turn the row that is longest without its part
-/// along those chosen before, the first of those that are equally so. Which they are is a convention.
+/// Chooses as many equations of a leg as it has joints, in order.
+///
+/// Each step takes the row that is longest after removing its components along the chosen rows; the
+/// first on ties. The choice is a convention.
 fn longest_rows(matrix: &DMatrix<f64>) -> Vec<usize> {
     let mut left = matrix.clone();
     let mut chosen: Vec<usize> = Vec::new();
@@ -226,8 +230,10 @@ fn longest_rows(matrix: &DMatrix<f64>) -> Vec<usize> {
     chosen
 }
 
-/// The pose after a displacement of the independent components, with joints that close the loops. The dependent
-/// components of the one displacement vector are found with them, from a pose and joints that are closed.
+/// Pose after a displacement of the independent components, with joints that close the loops.
+///
+/// The dependent components of the displacement are solved for at the same time. The start must be
+/// closed.
 ///
 /// # Errors
 ///
@@ -260,7 +266,8 @@ pub fn displaced(
     }
 }
 
-/// Newton's method on all legs' ends, in the joints and the dependent components of a displacement; what is left.
+/// Newton's method on all leg ends, in the joints and the dependent displacement components;
+/// returns the residual.
 fn close(
     free: &Mechanism,
     from: &[f64],
@@ -294,7 +301,7 @@ fn close(
     best
 }
 
-/// What all ends still have to move.
+/// Remaining displacement of all ends.
 fn residual(free: &Mechanism, pose: &[f64], q: &DVector<f64>) -> DVector<f64> {
     let legs = free.legs.iter().zip(free.leg_ranges());
     let of_leg = |(leg, range): (&Leg, std::ops::Range<usize>)| {

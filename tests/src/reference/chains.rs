@@ -1,10 +1,9 @@
-//! Robots whose loops are closed between bodies of a tree: all joints move freely at first, and every loop
-//! is a cut that closes again by equations between two bodies of the whole tree.
+//! Robots with loops between bodies of a tree, closed by cut equations.
 //!
-//! Nothing is solved loop by loop: the equations of all cuts, Φ q̇ = 0, stand above those that give the
-//! independent joints their rates, and are solved together by least squares. The positions of the other
-//! joints come from Newton's method on the same equations. A cut's equations are written in the axes of the
-//! body that its chain starts from.
+//! All joints are free at first; every loop is a cut that equations between two bodies close again.
+//! The equations of all cuts, Φ q̇ = 0, and those of the independent joints are solved together by
+//! least squares. Positions of the other joints come from Newton's method on the same equations.
+//! The equations of a cut are expressed in the axes of the body where its chain starts.
 
 use super::Error;
 use super::closure::State;
@@ -15,16 +14,16 @@ use super::linear::pseudo_inverse;
 use super::mechanism::{Leg, Mechanism};
 use nalgebra::{DMatrix, DVector, Vector6};
 
-/// Largest relative residual of the equations that counts as rounding.
+/// Relative residual of the equations up to which it counts as rounding.
 const CONSISTENCY: f64 = 1e-9;
 /// Largest distance of the two sides of a cut, metres and radians.
 const CLOSED: f64 = 1e-12;
-/// Distance at which Newton's method stops: rounding.
+/// Residual at which Newton's method stops, near rounding.
 const EXACT: f64 = 3e-16;
 /// Steps from the home pose.
 const STEPS: usize = 8;
 
-/// A six-vector in other axes.
+/// Spatial vector in other axes.
 fn turned(axes: &Frame, of: &Vector6<f64>) -> Vector6<f64> {
     let into = axes.rotation.transpose();
     let (linear, angular) = (into * of.fixed_rows::<3>(0), into * of.fixed_rows::<3>(3));
@@ -33,7 +32,7 @@ fn turned(axes: &Frame, of: &Vector6<f64>) -> Vector6<f64> {
     )
 }
 
-/// The two sides of a chain's cut, and the frame in whose axes its equations are.
+/// Motions of both sides of a chain's cut, and the frame of its equations.
 fn sides(leg: &Leg, k: usize, bodies: &[Vec<BodyMotion>]) -> (BodyMotion, BodyMotion, Frame) {
     let other = leg.body.map_or(bodies[0][0], |(of, body)| bodies[of][body]);
     let axes = leg
@@ -43,7 +42,7 @@ fn sides(leg: &Leg, k: usize, bodies: &[Vec<BodyMotion>]) -> (BodyMotion, BodyMo
     (own, end_from_platform(leg, &other), axes)
 }
 
-/// For all cuts in turn, a quantity of both sides in the components that they share.
+/// For all cuts: a quantity of both sides, in the constrained components.
 fn of_cuts(
     mechanism: &Mechanism,
     bodies: &[Vec<BodyMotion>],
@@ -62,7 +61,7 @@ fn of_cuts(
     DVector::from_vec(all)
 }
 
-/// Φ: velocities by which the sides of all cuts part, per unit rate of every joint.
+/// Φ: relative velocity of the sides of all cuts for unit joint rates.
 fn cuts(mechanism: &Mechanism, q: &DVector<f64>) -> DMatrix<f64> {
     let zero = DVector::zeros(q.len());
     let columns: Vec<DVector<f64>> = (0..q.len())
@@ -76,7 +75,7 @@ fn cuts(mechanism: &Mechanism, q: &DVector<f64>) -> DMatrix<f64> {
     DMatrix::from_columns(&columns)
 }
 
-/// The equations of the cuts above those of the independent joints.
+/// Equations of the cuts above those of the independent joints.
 fn equations(mechanism: &Mechanism, cuts: &DMatrix<f64>) -> DMatrix<f64> {
     let own = mechanism.independent();
     let mut all = DMatrix::zeros(cuts.nrows() + own.len(), cuts.ncols());
@@ -87,7 +86,7 @@ fn equations(mechanism: &Mechanism, cuts: &DMatrix<f64>) -> DMatrix<f64> {
     all
 }
 
-/// All joints from what the cuts and the independent joints ask for.
+/// Solves for all joints from the cuts and the independent joints.
 fn solve(matrix: &DMatrix<f64>, sides: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let found = pseudo_inverse(matrix) * sides;
     let residual = (matrix * &found - sides).amax() / (1.0 + sides.amax() + found.amax());
@@ -168,7 +167,7 @@ pub fn accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f64
     Ok(found.column(0).into_owned())
 }
 
-/// How far the two sides of all cuts are apart.
+/// Residuals of all cuts.
 #[must_use]
 pub fn gaps(mechanism: &Mechanism, q: &DVector<f64>) -> DVector<f64> {
     let still = DVector::zeros(q.len());
@@ -215,7 +214,7 @@ pub fn close(
     }
 }
 
-/// Damped Newton on all cuts at once, the independent joints held at the pose.
+/// Damped Newton's method on all cuts at once with the independent joints fixed.
 fn newton(
     mechanism: &Mechanism,
     pose: &[f64],

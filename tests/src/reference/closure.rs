@@ -26,9 +26,9 @@ use nalgebra::{DMatrix, DVector};
 const STEPS: usize = 8;
 /// Largest closure residual of a solved leg, metres and radians.
 const CLOSED: f64 = 1e-12;
-/// Residual at which Newton's method stops: rounding.
+/// Residual at which Newton's method stops, near rounding.
 const EXACT: f64 = 3e-16;
-/// Residual that is good enough on the way to the pose.
+/// Residual that is sufficient on the way to the pose.
 const ON_THE_WAY: f64 = 1e-5;
 
 /// Motion of a robot at an instant; joint vectors have the layout of [`Mechanism::variables`].
@@ -201,7 +201,8 @@ pub fn close(
     }
 }
 
-/// Damped Newton until the residual is small enough or shrinks no more; positions and residual.
+/// Damped Newton's method until the residual is small enough or stops decreasing; returns positions
+/// and residual.
 fn newton(
     mechanism: &Mechanism,
     leg: &Leg,
@@ -216,7 +217,7 @@ fn newton(
             break;
         }
         let mut step = pseudo_inverse(&end_jacobian(leg, &q)) * &residual;
-        // Half a unit at most keeps the iteration within its working mode.
+        // Steps of at most half a unit keep the iteration in its working mode.
         step *= (0.5 / step.amax()).min(1.0);
         let Some((better, smaller)) = backtrack(mechanism, leg, pose, &q, &step, residual.norm())
         else {
@@ -227,7 +228,7 @@ fn newton(
     (q, residual.norm())
 }
 
-/// Halves a step until the residual shrinks; none if it never does.
+/// Halves a step until the residual decreases; `None` if it never does.
 fn backtrack(
     mechanism: &Mechanism,
     leg: &Leg,
@@ -244,7 +245,7 @@ fn backtrack(
     })
 }
 
-/// What the leg's end still has to move to meet the platform, in the rows of the end (7).
+/// Remaining displacement of the leg's end to its place on the platform (7).
 #[must_use]
 pub fn closure_residual(mechanism: &Mechanism, leg: &Leg, pose: &[f64], q: &[f64]) -> DVector<f64> {
     let zero = vec![0.0; q.len()];

@@ -1,18 +1,20 @@
-//! Dynamics of the closed robot: the constrained system, case 1 and case 2.
+//! Dynamics of the closed robot: constrained system, platform projection and actuator projection.
 //!
-//! *Lagrange multipliers.* Each leg end passes a wrench w, in the rows of the ends, to the
-//! platform; motors act on the actuated joints, placed by E:
+//! *Lagrange multipliers.* Each leg end exerts a wrench w, in the rows of the ends, on the
+//! platform. Motors act on the actuated joints, selected by E:
 //!
 //! - legs: E τ - J_endsᵀ w = τ_t, platform: J_attachmentsᵀ w = τ_pr.
 //!
-//! This is (15) and (16) with every multiplier a physical wrench: no inverse of J_k, no A_p, no
-//! B_p. The system has more unknowns than equations for a redundant robot; any solution serves,
+//! This is (15) and (16) with physical wrenches as multipliers, without an inverse of J_k, A_p and
+//! B_p. For a redundant robot the system has more unknowns than equations. Any solution suffices,
 //! because Γ¹ = (J_p^inv)ᵀ τ is the same for all of them.
 //!
-//! *Case 1*, the closed form to compare with: Γ¹ = J_tkᵀ J_k^-T τ_t + Dᵀ τ_p (30).
+//! *Platform projection (case 1)*, in closed form for comparison: Γ¹ = J_tkᵀ J_k^-T τ_t + Dᵀ τ_p
+//! (30).
 //!
-//! *Case 2.* The stacked system (31)-(36) in its corrected form, with kept and projected actuators:
-//! rows of -B_pᵀ of the projected ones on top of (16) give λ; then τ_kept = -(B_pᵀ)_kept λ₂.
+//! *Actuator projection (case 2).* The stacked system (31)-(36) in its corrected form, with kept
+//! and projected actuators. Rows of -B_pᵀ of the projected ones on top of (16) give λ; then τ_kept
+//! = -(B_pᵀ)_kept λ₂.
 
 use super::Error;
 use super::closure::State;
@@ -38,20 +40,20 @@ pub struct Dynamics<'a> {
     pub state: &'a State,
     /// Its Jacobians in this state.
     pub jacobians: Jacobians,
-    /// The system of end wrenches and torques with its pseudo-inverse, once something needs it.
+    /// End-wrench system with its pseudo-inverse, computed on demand.
     system: OnceCell<[DMatrix<f64>; 2]>,
 }
 
-/// Case 2: what multiplies the parameters and the projected torques (36).
+/// Actuator projection: matrices of the parameters and of the projected torques (36).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Partition {
-    /// IDM_red of case 2, r x n_st: the inputs of the kept actuators.
+    /// Regressor of the actuator projection, r x n_st.
     pub regressor: DMatrix<f64>,
     /// J_2ᵀ, r x (n - r): τ_kept = Γ² + J_2ᵀ τ_projected.
     pub projection: DMatrix<f64>,
     /// Condition number of the stacked matrix of (33).
     pub condition: f64,
-    /// The actuators that aren't kept, in order.
+    /// The actuators that are not kept, in order.
     pub projected: Vec<usize>,
 }
 
@@ -99,7 +101,7 @@ impl<'a> Dynamics<'a> {
             .into_owned())
     }
 
-    /// IDM_red of case 1, r x n_st, through Lagrange multipliers.
+    /// Regressor of the platform projection, r x n_st, through Lagrange multipliers.
     ///
     /// # Errors
     ///
@@ -109,7 +111,7 @@ impl<'a> Dynamics<'a> {
         Ok(self.jacobians.inverse.transpose() * torques)
     }
 
-    /// IDM_red of case 1 by the closed form (30), for comparison.
+    /// Regressor of the platform projection by the closed form (30), for comparison.
     ///
     /// # Errors
     ///
@@ -125,8 +127,8 @@ impl<'a> Dynamics<'a> {
             + columns.rows(joints, self.mechanism.dof()))
     }
 
-    /// Actuator torques, of some overconstraint, for right-hand sides of (16), by the
-    /// pseudo-inverse of the equations with end wrenches and torques as unknowns.
+    /// Some actuator torques for right-hand sides of (16), by the pseudo-inverse of the equations
+    /// with end wrenches and torques as unknowns.
     fn any_torques(&self, loads: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let [system, inverse] = self.system.get_or_init(|| {
             let system = self.wrenches_and_torques();
@@ -146,7 +148,7 @@ impl<'a> Dynamics<'a> {
     fn wrenches_and_torques(&self) -> DMatrix<f64> {
         let jacobians = &self.jacobians;
         let (wrenches, joints) = jacobians.ends.shape();
-        // Of a platform that moves aside, all six components of its wrench.
+        // With parasitic motion: all six components of the platform's wrench.
         let (dof, actuators) = (jacobians.attachments.ncols(), jacobians.actuated.len());
         let mut system = DMatrix::zeros(joints + dof, wrenches + actuators);
         system
@@ -190,7 +192,7 @@ impl<'a> Dynamics<'a> {
         wide
     }
 
-    /// Case 2 for the kept actuators, counted from 0 (33)-(36).
+    /// Actuator projection for the kept actuators, counted from 0 (33)-(36).
     ///
     /// # Errors
     ///
@@ -232,8 +234,9 @@ impl<'a> Dynamics<'a> {
         })
     }
 
-    /// Case 2 of a platform that moves aside, from any torques of the constrained system: they and those of the
-    /// kept actuators alone do the same work.
+    /// Actuator projection with parasitic motion, from any torques of the constrained system.
+    ///
+    /// These and the torques of the kept actuators alone do the same work.
     fn partition_aside(
         &self,
         kept: &[usize],
@@ -275,7 +278,7 @@ impl<'a> Dynamics<'a> {
         parameters: &DVector<f64>,
     ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
         let dof = self.mechanism.dof();
-        // The configuration is this state's, and with it the system and its inverse.
+        // The configuration is that of this state, so the system and its inverse are the same.
         let inputs = |acceleration: &DVector<f64>| {
             let state = State::with_joints(
                 self.mechanism,

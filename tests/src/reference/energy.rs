@@ -1,8 +1,8 @@
-//! Energy of all bodies, from positions and velocities alone.
+//! Energy of all bodies, from positions and velocities only.
 //!
 //! Kinetic: ½ m v·v + v·(ω x s) + ½ ω·I ω and ½ ia q̇² for every rotor. Potential: -g·(m p + s).
-//! Neither knows of accelerations or of the inverse dynamics, so the power balance
-//! dE/dt = vᵀ Γ¹, without friction, checks these.
+//! Neither uses accelerations or the inverse dynamics. The frictionless power balance dE/dt = vᵀ Γ¹
+//! is therefore an independent check.
 
 use super::closure::State;
 use super::kinematics::BodyMotion;

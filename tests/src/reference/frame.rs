@@ -89,8 +89,8 @@ pub fn exponential(vector: Vector3<f64>) -> Matrix3<f64> {
 
 /// Rotation vector, of length at most π, of a rotation matrix.
 ///
-/// The angle comes from atan2 of its sine and cosine, which keeps full precision near zero.
-/// Near a half turn the axis is lost; Newton's method never asks for one.
+/// The angle comes from atan2 of its sine and cosine, which keeps full precision near zero. Near a
+/// half turn the axis is inaccurate; Newton's method never needs that.
 #[must_use]
 pub fn logarithm(rotation: &Matrix3<f64>) -> Vector3<f64> {
     let skew = 0.5

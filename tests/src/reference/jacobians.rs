@@ -215,14 +215,13 @@ pub fn follow(
     }
 }
 
-/// The independent rows of a leg's end, the same for all poses.
+/// Independent rows of a leg's end, the same for all poses.
 ///
-/// They are looked for at positions away from the start, where a row that is zero by chance of
-/// the home pose isn't.
+/// They are determined at positions away from the start, where rows do not vanish by coincidence.
 ///
 /// # Errors
 ///
-/// If the independent rows aren't as many as the leg's variables.
+/// If there are not as many independent rows as variables of the leg.
 pub fn end_rows(k: usize, leg: &Leg) -> Result<Vec<usize>, Error> {
     let variables = leg.start.len();
     let away = |step: usize| -> Vec<f64> {

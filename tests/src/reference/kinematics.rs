@@ -77,7 +77,7 @@ pub fn leg_motion(leg: &Leg, q: &[f64], qd: &[f64], qdd: &[f64]) -> Vec<BodyMoti
     moving_leg(leg, BodyMotion::at_rest(leg.base), [q, qd, qdd])
 }
 
-/// The same on a base that moves.
+/// The same on a moving base.
 fn moving_leg(leg: &Leg, base: BodyMotion, [q, qd, qdd]: [&[f64]; 3]) -> Vec<BodyMotion> {
     let (values, rates, growth) = (
         leg.joint_values(q),
@@ -87,7 +87,7 @@ fn moving_leg(leg: &Leg, base: BodyMotion, [q, qd, qdd]: [&[f64]; 3]) -> Vec<Bod
     let mut bodies: Vec<BodyMotion> = Vec::with_capacity(leg.joints.len());
     for (j, joint) in leg.joints.iter().enumerate() {
         let before = joint.antecedent.map_or(base, |at| bodies[at]);
-        // Carrying the frame rigidly first leaves only the joint's own motion to be added.
+        // Rigid motion of the carried frame first; then only the joint's own motion is added.
         let mut body = before.carried(joint.placement(values[j]));
         let axis = body.frame.z();
         let (rate, acceleration) = (rates[j] * axis, growth[j] * axis);

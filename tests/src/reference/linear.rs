@@ -1,10 +1,9 @@
-//! Dense linear algebra that the reference needs, by singular value decomposition or by
-//! definition.
+//! Dense linear algebra of the reference, by singular value decomposition or by definition.
 //!
 //! The decomposition is the one-sided Jacobi method: plane rotations V make the columns of A V
 //! orthogonal; their lengths are the singular values. It is slow and accurate to the last digits.
-//! Bidiagonalisation with a deflation threshold, the common way, was seen to reconstruct a
-//! well-conditioned 12 x 21 matrix to no better than 4e-10, which isn't enough for a reference.
+//! Bidiagonalisation with a deflation threshold reconstructed a well-conditioned 12 x 21 matrix to
+//! 4e-10 only, which is not sufficient for a reference.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -40,7 +39,7 @@ pub fn decompose(matrix: &DMatrix<f64>) -> Decomposition {
             .collect()
     };
     let mut right: Vec<Vec<f64>> = (0..columns).map(identity).collect();
-    // Columns as short as this are rounding: their direction means nothing.
+    // Columns this short are rounding errors without a meaningful direction.
     let negligible = (1e-16 * matrix.norm()).powi(2);
     for _ in 0..MAX_SWEEPS {
         let mut turned = false;
@@ -89,7 +88,7 @@ fn turn(columns: &mut [Vec<f64>], p: usize, q: usize, c: f64, s: f64) {
     }
 }
 
-/// The scalar product, in eight sums that the processor can take at once.
+/// Scalar product in eight sums for vectorisation.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, a_rest) = a.as_chunks::<8>();
     let (b, b_rest) = b.as_chunks::<8>();
@@ -107,7 +106,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[must_use]
 pub fn pseudo_inverse(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     if matrix.nrows() < matrix.ncols() {
-        // A tall matrix has no columns that the rotations must first bring to zero.
+        // A tall matrix has no columns that the rotations must reduce to zero.
         return pseudo_inverse(&matrix.transpose()).transpose();
     }
     let Decomposition {
@@ -116,7 +115,7 @@ pub fn pseudo_inverse(matrix: &DMatrix<f64>) -> DMatrix<f64> {
         right,
     } = decompose(matrix);
     let cut = RANK_TOLERANCE * largest(&values);
-    // With U diag(s) at hand, U diag(1/s) takes the square of s.
+    // From U diag(s), U diag(1/s) needs the square of s.
     let inverse = values.map(|s| if s > cut { 1.0 / (s * s) } else { 0.0 });
     right * DMatrix::from_diagonal(&inverse) * scaled_left.transpose()
 }
@@ -129,8 +128,8 @@ pub fn singular_values(matrix: &DMatrix<f64>) -> DVector<f64> {
     } else {
         matrix.clone()
     };
-    // The triangular factor has the same singular values and fewer rows. Its rows are more nearly
-    // orthogonal than its columns where the columns were taken in the order of what they add.
+    // The triangular factor has the same singular values and fewer rows. With column pivoting, its
+    // rows are more nearly orthogonal than its columns.
     let small = if tall.is_empty() {
         tall
     } else {

@@ -26,7 +26,7 @@ pub enum JointKind {
     Fixed,
 }
 
-/// A joint, the frame behind it and the body that the frame belongs to.
+/// A joint with the frame and body that it carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Revolute, prismatic or fixed.
@@ -49,17 +49,18 @@ pub struct Joint {
     pub terms: Vec<(usize, f64)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,
-    /// What its position adds to its torque.
+    /// Spring of the joint, a function of its position.
     pub spring: Option<Spring>,
-    /// The torque of its position that is known.
+    /// Known torque as a function of its position.
     pub known: Option<Spring>,
-    /// The velocity at which friction has fallen to half of what standstill has more, rad/s or m/s.
+    /// Stribeck velocity, at which the excess friction of standstill has fallen to half, rad/s or
+    /// m/s.
     pub stribeck: Option<f64>,
-    /// The load, a part of which is dry friction.
+    /// Load that increases dry friction.
     pub load: Option<Spring>,
 }
 
-/// The torque of a spring per unit of its coefficient, or one that is known, as a function of the sum Σ c_i q_i of its joint.
+/// Torque for a unit coefficient, or known torque, as a function of the joint's sum Σ c_i q_i.
 #[derive(Clone)]
 pub struct Spring(Arc<dyn Fn(f64) -> f64 + Send + Sync>);
 
@@ -83,7 +84,7 @@ impl Debug for Spring {
     }
 }
 
-/// Springs are told apart at a few positions.
+/// Compares springs at a few positions.
 impl PartialEq for Spring {
     fn eq(&self, other: &Self) -> bool {
         [-0.7, 0.0, 0.3, 1.1].map(|q| self.torque(q))
@@ -177,13 +178,13 @@ impl Joint {
 /// How a leg ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
-    /// Nowhere: a branch of a serial or tree robot.
+    /// Free: a branch of a serial or tree robot.
     Free,
     /// A frame of the leg is fixed to the platform.
     Rigid {
         /// Index of the joint whose frame is fixed.
         joint: usize,
-        /// Where that frame sits in the platform frame.
+        /// Pose of that frame in the platform frame.
         attachment: Frame,
     },
     /// The origin of a frame of the leg coincides with a point of the platform.
@@ -202,9 +203,10 @@ pub enum End {
 pub struct Leg {
     /// Placement of the leg's base in the robot's base frame, or in that of its carrier.
     pub base: Frame,
-    /// The body that carries the base, as its leg, one of those before, and its joint; none is the ground.
+    /// Body that carries the base, as (leg, joint) of an earlier leg; `None` for the ground.
     pub carrier: Option<(usize, usize)>,
-    /// The body that the end meets, as its leg, one of those before, and its joint; none is the platform.
+    /// Body that the end is attached to, as (leg, joint) of an earlier leg; `None` for the
+    /// platform.
     pub body: Option<(usize, usize)>,
     /// Joints; every antecedent comes before its successors.
     pub joints: Vec<Joint>,
@@ -267,8 +269,10 @@ impl Mechanism {
         self.legs.iter().enumerate().flat_map(of_leg).collect()
     }
 
-    /// Positions, among the variables, of the actuated ones. Without a platform all are: the
-    /// model of a serial robot gives every joint's torque, eq. (1).
+    /// Positions of the actuated variables.
+    ///
+    /// Without a platform, all are actuated: the model of a serial robot gives every joint's
+    /// torque, eq. (1).
     #[must_use]
     pub fn actuated(&self) -> Vec<usize> {
         let all = self.motion == Motion::None;
@@ -296,8 +300,7 @@ impl Mechanism {
         }
     }
 
-    /// Which of the variables are the independent coordinates where loops close between bodies: those of legs that
-    /// end nowhere.
+    /// Independent variables of a robot with loops between bodies: those of legs with a free end.
     #[must_use]
     pub fn independent(&self) -> Vec<usize> {
         let free = self.legs.iter().zip(self.leg_ranges());

@@ -12,8 +12,8 @@ use nalgebra::{DMatrix, DVector, Quaternion, Rotation3, UnitQuaternion, Vector3,
 pub enum Motion {
     /// No platform: a serial or tree robot. Pose and twist coordinates are the joints'.
     None,
-    /// No platform, but chains between bodies of a tree: so many independent joints, the first ones.
-    /// Pose and twist coordinates are theirs.
+    /// No platform, but chains between bodies of a tree with this number of independent joints,
+    /// which come first. Pose and twist coordinates are theirs.
     Joints(usize),
     /// Translation along a fixed axis. Pose: the distance from a point of it.
     Slide {
@@ -42,13 +42,13 @@ pub enum Motion {
     Spherical,
     /// Any motion. Pose: x, y, z and unit quaternion w, x, y, z.
     Spatial,
-    /// The motion of a free body whose legs leave it fewer motions: which of its six components are
-    /// independent. Pose: as of any motion.
+    /// Motion of a free body that its legs restrict: the independent components among six. Pose: as
+    /// for any motion.
     Aside([bool; 6]),
 }
 
 impl Motion {
-    /// Number of free coordinates; none has 0 of its own.
+    /// Number of free coordinates; 0 without a platform.
     #[must_use]
     pub fn dof(&self) -> usize {
         match self {
@@ -114,7 +114,7 @@ impl Motion {
         let turn_at = match self {
             Self::Spherical => 0,
             Self::Spatial => 3,
-            // Of the independent components, or of all six.
+            // Displacement of the independent components, or of all six.
             Self::Aside(_) if displacement.len() < 6 => {
                 let whole = self.twist_basis() * displacement;
                 return Self::Spatial.displace(pose, &whole);
@@ -141,7 +141,7 @@ impl Motion {
         moved
     }
 
-    /// The independent ones of the six components of a platform that moves aside; none of others.
+    /// Independent components of a platform with parasitic motion; empty for others.
     #[must_use]
     pub fn independent(&self) -> Vec<usize> {
         match self {
@@ -150,8 +150,8 @@ impl Motion {
         }
     }
 
-    /// The components that the platform's wrench is projected on: D of (14), or all six of a platform that moves
-    /// aside.
+    /// Basis for the projection of the platform's wrench: D of (14), or all six components with
+    /// parasitic motion.
     #[must_use]
     pub fn free_basis(&self) -> DMatrix<f64> {
         match self {
@@ -160,8 +160,8 @@ impl Motion {
         }
     }
 
-    /// Displacement, in twist coordinates, from one pose to another; of a platform that moves aside in all six
-    /// components.
+    /// Displacement from one pose to another, in twist coordinates; with parasitic motion in all
+    /// six components.
     #[must_use]
     pub fn displacement(&self, from: &[f64], to: &[f64]) -> DVector<f64> {
         if !self.has_platform() {
@@ -207,7 +207,7 @@ fn quaternion(pose: &[f64]) -> Quaternion<f64> {
     Quaternion::new(pose[0], pose[1], pose[2], pose[3])
 }
 
-/// Rotation of a quaternion as it stands: a pose must already be of unit norm.
+/// Rotation of a unit quaternion, which is not normalised here.
 fn orientation(pose: &[f64]) -> Rotation3<f64> {
     UnitQuaternion::new_unchecked(quaternion(pose)).to_rotation_matrix()
 }

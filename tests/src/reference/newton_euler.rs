@@ -1,13 +1,14 @@
-//! Recursive Newton-Euler on the virtual tree and on the free platform (1), (6).
+//! Recursive Newton-Euler algorithm on the virtual tree and the free platform (1), (6).
 //!
-//! A body of mass m, first moment s and inertia I, all about the origin of its frame, needs
+//! A body has mass m, first moment s and inertia I about the origin of its frame, whose
+//! acceleration is a. It needs
 //!
 //! - the force f = m (a - g) + ω̇ x s + ω x (ω x s),
-//! - the moment n = s x (a - g) + I ω̇ + ω x I ω about the origin,
+//! - the moment n = s x (a - g) + I ω̇ + ω x I ω about the origin.
 //!
-//! a being the acceleration of the origin. From the tips to the base, a joint carries the sum of
-//! the wrenches behind it; its torque is the component along its axis, plus rotor inertia and
-//! friction (5). A dependent joint's torque counts for the variables that move it.
+//! From the tips to the base, a joint carries the sum of the wrenches after it. Its torque is the
+//! component along its axis, plus rotor inertia and friction (5). A dependent joint's torque is
+//! added to the variables that move it.
 //!
 //! Everything is linear in the parameters: a column is the same computation with one parameter
 //! equal to 1 and all others zero.
@@ -42,7 +43,7 @@ pub fn inertia(rotation: &Matrix3<f64>, parameters: &[f64]) -> (f64, Vector3<f64
     )
 }
 
-/// Wrench that moves a body as given against gravity and inertia.
+/// Wrench that causes the motion of a body against gravity and inertia.
 #[must_use]
 pub fn body_wrench(body: &BodyMotion, parameters: &[f64], gravity: &Vector3<f64>) -> Wrench {
     let (mass, moment, inertia) = inertia(&body.frame.rotation, parameters);
@@ -77,8 +78,10 @@ impl Wrench {
     }
 }
 
-/// Torques of a leg's variables, and what its base has to bear, as a wrench about the robot's origin;
-/// `parameters` holds [`BODY`] per joint, `loads` what its bodies bear besides, about the same point.
+/// Torques of a leg's variables, and the reaction at its base as a wrench about the robot's origin.
+///
+/// `parameters` has [`BODY`] values per joint; `loads` are additional wrenches on its bodies about
+/// the same point.
 #[must_use]
 fn leg_torques(
     leg: &Leg,
@@ -143,8 +146,10 @@ fn leg_torques(
     (torques, base)
 }
 
-/// Friction with the coefficients [fv_pos fs_pos fv_neg fs_neg fst]: a law of its own for each direction, their
-/// mean at rest, and what falls from its height at standstill to half of it at the Stribeck velocity.
+/// Friction with the coefficients [fv_pos fs_pos fv_neg fs_neg fst].
+///
+/// Each direction has its own law; at rest their mean applies. The excess `fst` falls from
+/// standstill to half at the Stribeck velocity.
 fn friction(rate: f64, coefficients: &[f64], stribeck: Option<f64>) -> f64 {
     let [viscous_up, dry_up, viscous_down, dry_down, excess] =
         std::array::from_fn(|at| coefficients[at]);
@@ -159,7 +164,7 @@ fn friction(rate: f64, coefficients: &[f64], stribeck: Option<f64>) -> f64 {
     directed + excess * stribeck.map_or(0.0, fallen) * sign(rate)
 }
 
-/// What is known of the torques of a leg's variables, without any parameter.
+/// Known torques of a leg's variables, without parameters.
 fn known_torques(leg: &Leg, q: &[f64]) -> DVector<f64> {
     let owners = leg.variables();
     let mut torques = DVector::zeros(owners.len());
@@ -173,7 +178,7 @@ fn known_torques(leg: &Leg, q: &[f64]) -> DVector<f64> {
     torques
 }
 
-/// Torques τ_t of the virtual tree for all parameters (1), and what is known of them.
+/// Torques τ_t of the virtual tree for all parameters (1), plus known torques.
 #[must_use]
 pub fn tree_torques(
     mechanism: &Mechanism,
@@ -188,7 +193,7 @@ pub fn tree_torques(
         .iter()
         .zip(mechanism.leg_ranges())
         .enumerate();
-    // Chains come before the legs that carry them.
+    // Chains are processed before the legs that carry them.
     for (k, (leg, range)) in legs.rev() {
         let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
         let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
@@ -243,7 +248,7 @@ pub fn projected_platform_wrench(
     mechanism.motion.free_basis().transpose() * platform_wrench(mechanism, state, parameters)
 }
 
-/// Torques of a leg that bears a load and has no parameters of its own, and what its base has to bear.
+/// Torques and base reaction of a leg that carries loads and has no parameters.
 fn carried_torques(
     mechanism: &Mechanism,
     state: &State,

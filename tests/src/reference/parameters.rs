@@ -1,10 +1,10 @@
 //! Layout and names of the standard parameters χ.
 //!
-//! Every body of a leg has 21, in the order of (2) and (5), then the coefficient of its joint's spring and
-//! friction that differs by direction or rises towards standstill or with a load:
-//! [xx xy xz yy yz zz mx my mz m ia fv fs off k fv_pos fs_pos fv_neg fs_neg fst fl]. The platform and then the payload have the first
-//! ten. Inertial ones are taken about the origin of the body's frame, in its axes. Columns run
-//! through the legs, within a leg through the joints, within a joint through the parameters.
+//! A leg body has 21 parameters: those of (2) and (5), the coefficient of its joint's spring, and
+//! friction by direction, at standstill and by load: [xx xy xz yy yz zz mx my mz m ia fv fs off k
+//! fv_pos fs_pos fv_neg fs_neg fst fl]. Platform and payload have the first ten. Inertial
+//! parameters are about the origin of the body's frame, in its axes. Columns are ordered by leg,
+//! joint and parameter.
 
 use super::mechanism::Mechanism;
 

@@ -15,8 +15,9 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Largest condition number of a leg's Jacobian, of J_p^inv and of A_p in a regular state, the latter two in the unit of
-/// length that suits the robot.
+/// Largest condition number of a leg's Jacobian, of J_p^inv and of A_p in a regular state.
+///
+/// The latter two are minimised over the unit of length.
 pub const MAX_CONDITION: f64 = 60.0;
 /// Largest twist coordinate, m/s and rad/s.
 pub const MAX_SPEED: f64 = 1.5;
@@ -73,8 +74,10 @@ pub fn is_regular(mechanism: &Mechanism, state: &State) -> bool {
     })
 }
 
-/// A_p, whose rows are those of the legs' adjugates. Chains of different kinds have determinants of different
-/// dimensions, so that their rows are compared by directions alone.
+/// A_p, whose rows come from the legs' adjugates.
+///
+/// Chains of different types have determinants of different dimensions, so that rows are
+/// normalised.
 fn reduced_closure(mechanism: &Mechanism, a_p: &DMatrix<f64>) -> DMatrix<f64> {
     let mut rows = a_p.clone();
     if matches!(mechanism.motion, Motion::Joints(_)) {
@@ -86,8 +89,9 @@ fn reduced_closure(mechanism: &Mechanism, a_p: &DMatrix<f64>) -> DMatrix<f64> {
     rows
 }
 
-/// Random parameters of bodies that could exist: every mass positive, every central inertia a
-/// sum of point masses; friction and rotor inertia positive.
+/// Random parameters of physically consistent bodies.
+///
+/// Masses, friction and rotor inertias are positive; each central inertia is that of point masses.
 #[must_use]
 pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
     let mut generator = Pcg64::seed_from_u64(seed);
@@ -115,7 +119,7 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
     DVector::from_vec(all)
 }
 
-/// The same parameters without what dissipates: viscous and dry friction and offset zero.
+/// Parameters without dissipation: viscous and dry friction and offset are zero.
 #[must_use]
 pub fn frictionless(mechanism: &Mechanism, parameters: &DVector<f64>) -> DVector<f64> {
     let mut kept = parameters.clone();

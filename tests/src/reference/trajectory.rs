@@ -1,7 +1,7 @@
 //! States along a path through a given state, and derivatives along it by finite differences.
 //!
 //! The path keeps v̇ constant: the displacement at time t is v t + v̇ t²/2. For rotations it is a
-//! rotation vector, exact up to the second derivative at t = 0, which is all that is asked of it.
+//! rotation vector, exact up to the second derivative at t = 0, which is sufficient.
 
 use super::Error;
 use super::aside;
@@ -12,7 +12,7 @@ use nalgebra::DVector;
 
 /// Largest step of the finite differences, s.
 const STEP: f64 = 3e-4;
-/// How far a joint goes in a step at most, rad or m: small robots turn fast where others hardly move.
+/// Largest joint motion in a step, rad or m; joints of small robots move fast.
 const REACH: f64 = 0.003;
 
 /// Step of the finite differences at a state, s.

@@ -1,22 +1,24 @@
-//! How well matrices per twist coordinate are conditioned, whatever unit lengths have.
+//! Condition numbers of matrices by twist coordinate, independent of the unit of length.
 //!
-//! Columns of translations and of rotations have different units, so the ratio of the extreme singular values
-//! depends on the unit of length: in metres a platform of the size of a hand, whose joints stand 3 cm from its
-//! origin, turns far more with its actuators than it shifts, and looks badly conditioned where it is not. Angeles
-//! divides by the characteristic length of a robot, the one for which the ratio is smallest; that ratio is the same
-//! in every unit, infinite where the robot is singular, and of robots that only shift or only turn the usual one.
+//! Columns of translations and rotations have different units, so the ratio of singular values
+//! depends on the unit of length. In metres, a platform of the size of a hand looks badly
+//! conditioned although it is not: it rotates far more than it translates. Angeles divides by the
+//! characteristic length, which minimises the ratio. The minimum is the same in every unit,
+//! infinite at singularities, and the usual ratio for pure translations or rotations.
 
 use super::linear::condition;
 use super::motion::Motion;
 use nalgebra::DMatrix;
 
-/// Logarithms of the shortest and the longest characteristic length that is looked for, m.
+/// Logarithms of the shortest and the longest characteristic length in the search, m.
 const LENGTHS: [f64; 2] = [-7.0, 7.0];
-/// How near to the best logarithm the search ends: the condition number is then at most by so much too large.
+/// Tolerance of the logarithm; the condition number is too large by at most this relative error.
 const NEAR: f64 = 0.01;
 
-/// Smallest condition number that a matrix with a column for each twist coordinate has in any unit of length. Without a
-/// platform the columns are those of joints, and are taken as they are.
+/// Smallest condition number over all units of length, for a matrix with one column per twist
+/// coordinate.
+///
+/// Without a platform the columns belong to joints and are not scaled.
 #[must_use]
 pub fn unitless_condition(motion: &Motion, matrix: &DMatrix<f64>) -> f64 {
     let basis = motion.twist_basis();
@@ -36,9 +38,10 @@ pub fn unitless_condition(motion: &Motion, matrix: &DMatrix<f64>) -> f64 {
     smallest(with_length)
 }
 
-/// Smallest value of a function of the logarithm of a length, by golden section. The condition number falls to its
-/// smallest value and rises from there: it is at most c where P ≤ AᵀA ≤ c² P for a P = a diag(1, length²), and these P
-/// are a convex cone, so that their lengths are an interval.
+/// Minimum of a function of the logarithm of a length, by golden section.
+///
+/// The condition number is unimodal. It is at most c where P ≤ AᵀA ≤ c² P for a P = a diag(1,
+/// length²), and these P form a convex cone, so that their lengths form an interval.
 fn smallest(of: impl Fn(f64) -> f64) -> f64 {
     let part = 0.5 * (5.0_f64.sqrt() - 1.0);
     let [mut low, mut high] = LENGTHS;
@@ -62,7 +65,7 @@ fn smallest(of: impl Fn(f64) -> f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Rows of rods that hold a plane body: x, y, phi.
+    /// Rows of rods that support a planar body: x, y, phi.
     fn rods(length: f64) -> DMatrix<f64> {
         let rod = |x: f64, y: f64, arm: f64| [x, y, arm * length];
         let rows = [

@@ -1,5 +1,7 @@
-//! How many digits a model keeps, and whether rewriting it for fewer operations costs any: evaluations in
-//! double precision against arithmetic of 128 bits, on the way to configurations where a leg is singular.
+//! Accuracy of a model before and after the search for fewer operations.
+//!
+//! Evaluations in double precision are compared with 128-bit arithmetic on the way to
+//! configurations with a singular leg.
 
 use super::precise::{Precise, difference, rounded};
 use super::{Failure, description};
@@ -11,27 +13,27 @@ use overact_codegen::lowering::Program;
 use overact_codegen::mechanism::Mechanism;
 use overact_codegen::{Effort, Request, RobotModel, compile_with};
 
-/// Rays from the home pose on which singular configurations are approached.
+/// Number of rays from home towards singular configurations.
 const RAYS: usize = 24;
 /// Steps along a ray until its end is bracketed.
 const STEPS: usize = 400;
 
-/// The errors of two forms of one function at a distance from singular configurations.
+/// Errors of two forms of one function at a distance from singular configurations.
 #[derive(Debug, Clone)]
 pub struct Errors {
     /// Name of the function.
     pub function: &'static str,
     /// Distance from the end of the ray, as a fraction of its length; `None` for regular states.
     pub distance: Option<f64>,
-    /// How many states.
+    /// Number of states.
     pub states: usize,
-    /// The largest error of the form as derived, relative to the largest entry of its column.
+    /// Largest error of the derived form, relative to the largest entry of its column.
     pub derived: f64,
-    /// The same of the searched form.
+    /// Largest error of the searched form.
     pub searched: f64,
 }
 
-/// A state as the inputs of programs by name.
+/// State as program inputs by name.
 struct State {
     pose: Vec<f64>,
     joints: Vec<f64>,
@@ -39,7 +41,7 @@ struct State {
     acceleration: Vec<f64>,
 }
 
-/// The regressors of a robot, as derived and as searched, from joints and from the pose.
+/// Errors of a robot's regressors, as derived and as searched, from joints and from the pose.
 ///
 /// # Errors
 ///
@@ -128,8 +130,10 @@ fn regular(mechanism: &Mechanism) -> Vec<State> {
     state.collect()
 }
 
-/// States near the ends of rays from home, by their distance from the end. A ray ends where a guard of
-/// the function fails: a leg is stretched, folded or otherwise singular there.
+/// States near the ends of rays from home, by their distance from the end.
+///
+/// A ray ends where a guard of the function fails: a leg is stretched, folded or otherwise
+/// singular.
 fn towards_singular(
     mechanism: &Mechanism,
     guarded: &Program,
@@ -168,7 +172,7 @@ fn towards_singular(
     groups.filter(|(_, states)| !states.is_empty()).collect()
 }
 
-/// Where a ray leaves the states that are possible, to the last bit; `None` if it does not.
+/// Position where a ray leaves the possible states, exact to rounding; `None` if it does not.
 fn end_of_ray(is_possible: &dyn Fn(f64) -> bool) -> Option<f64> {
     let mut inside = 0.0;
     let mut outside = (1..=STEPS)
@@ -201,7 +205,7 @@ fn inputs(program: &Program, state: &State) -> Vec<Vec<f64>> {
     program.inputs.iter().map(|input| of(&input.name)).collect()
 }
 
-/// A program's output in double precision; `None` where a guard fails.
+/// Output of a program in double precision; `None` if a guard fails.
 fn value(program: &Program, inputs: &[Vec<f64>]) -> Option<Vec<f64>> {
     let rows: Vec<Rows<'_>> = inputs
         .iter()
@@ -223,8 +227,8 @@ struct Exact<'e> {
 }
 
 impl Exact<'_> {
-    /// The largest error of a program, relative to the largest entry of its column; nothing where a
-    /// guard refuses the state.
+    /// Largest error of a program relative to the largest entry of its column; zero if a guard
+    /// rejects the state.
     fn error(&self, program: &Program, inputs: &[Vec<f64>]) -> f64 {
         let Some(values) = value(program, inputs) else {
             return 0.0;

@@ -1,18 +1,20 @@
-//! How far two computations of the same matrix are apart, over many states.
+//! Differences between two computations of the same matrix over many states.
 //!
-//! Two measures. `matrix`: the largest difference relative to the largest entry, state by state.
-//! `entry`: the largest difference of one entry over all states relative to the largest magnitude of
-//! that entry over all states, so that a small column cannot hide behind a large one.
+//! There are two measures:
+//!
+//! - `matrix`: the largest difference relative to the largest entry, state by state;
+//! - `entry`: the largest difference of one entry over all states, relative to the largest
+//!   magnitude of that entry over all states. A small column cannot hide behind a large one.
 
 use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use std::fmt;
 
-/// Largest entry of a matrix that is zero but for rounding: inputs of about one, SI units, give no
-/// results as small as this.
+/// Largest entry of a matrix that counts as zero; inputs near one in SI units give no results as
+/// small.
 const ZERO: f64 = 1e-12;
 
-/// The worst differences seen so far.
+/// Worst differences so far.
 #[derive(Clone, Debug, Default)]
 pub struct Agreement {
     matrix: f64,
@@ -22,19 +24,19 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Nothing compared yet.
+    /// No comparisons yet.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Whether nothing was compared.
+    /// Whether there were no comparisons.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.states == 0
     }
 
-    /// Compares what was found with what is expected.
+    /// Compares a result with the expected one.
     pub fn compare(&mut self, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
         self.states += 1;
         if found.shape() != expected.shape() || found.iter().any(|x| !x.is_finite()) {
@@ -54,8 +56,10 @@ impl Agreement {
         self.matrix
     }
 
-    /// Worst relative difference of an entry. An entry that is always zero in one computation has to
-    /// be zero to the rounding of the largest entry in the other.
+    /// Worst relative difference of an entry.
+    ///
+    /// An entry that is always zero in one computation must be zero in the other, up to rounding of
+    /// the largest entry.
     #[must_use]
     pub fn entry(&self) -> f64 {
         let (Some(differences), Some(magnitudes)) = (&self.differences, &self.magnitudes) else {
@@ -75,7 +79,7 @@ impl Agreement {
         all.map(|(d, m)| relative(d, m)).fold(0.0, f64::max)
     }
 
-    /// Whether both measures are within a tolerance, and something was compared.
+    /// Whether both measures are within a tolerance, after at least one comparison.
     #[must_use]
     pub fn within(&self, tolerance: f64) -> bool {
         self.states > 0 && self.matrix < tolerance && self.entry() < tolerance
@@ -94,7 +98,7 @@ impl fmt::Display for Agreement {
     }
 }
 
-/// The angle that differs from `angle` by whole turns and is nearest to another.
+/// The angle shifted by full turns to be nearest to another.
 #[must_use]
 pub fn unwound(angle: f64, near: f64) -> f64 {
     let turn = std::f64::consts::TAU;

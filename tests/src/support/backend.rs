@@ -1,4 +1,4 @@
-//! The two ways to run a robot's functions: evaluation of programs, and compiled Rust.
+//! Backends for a robot's functions: evaluation of programs, and compiled Rust.
 
 use super::{Failure, Sample};
 use nalgebra::DMatrix;
@@ -6,12 +6,12 @@ use overact_codegen::RobotModel;
 use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Program;
 
-/// Something that computes a robot's functions by name.
+/// A backend that computes a robot's functions by name.
 pub trait Backend {
-    /// What to call it in a message.
+    /// Name in messages.
     fn label(&self) -> &'static str;
 
-    /// The function's output at a sample; a vector is a matrix of one column.
+    /// Output of the function at a sample; a vector is a matrix with one column.
     ///
     /// # Errors
     ///
@@ -37,7 +37,7 @@ impl Backend for Evaluated<'_> {
     }
 }
 
-/// A program's output as a matrix; a vector is one of one column.
+/// Output of a program as a matrix; a vector has one column.
 #[must_use]
 pub fn matrix(program: &Program, output: &[f64]) -> DMatrix<f64> {
     match program.output.shape[..] {
@@ -71,7 +71,7 @@ pub fn evaluate<'a>(
     Ok(output)
 }
 
-/// What a compiled function returns, as a matrix.
+/// Result of a compiled function, as a matrix.
 pub trait Outcome {
     /// The matrix.
     ///
@@ -99,7 +99,7 @@ impl<O: Outcome> Outcome for Result<O, overact::Error> {
     }
 }
 
-/// A [`Backend`] of the functions of a compiled robot, each with the names of its arguments.
+/// A [`Backend`] for functions of a compiled robot, with the names of their arguments.
 #[macro_export]
 macro_rules! compiled_backend {
     ($backend:ident, $label:literal, $robot:path,
@@ -131,7 +131,7 @@ macro_rules! compiled_backend {
     };
 }
 
-/// A [`Backend`] of a compiled robot with platform, payload and redundant actuators.
+/// A [`Backend`] for a compiled robot with platform, payload and redundant actuators.
 #[macro_export]
 macro_rules! redundant_backend {
     ($backend:ident, $label:literal, $robot:path) => {

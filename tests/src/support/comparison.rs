@@ -1,4 +1,4 @@
-//! A robot's functions against the numeric reference, one line of result for each.
+//! Compares a robot's functions with the numeric reference, one line of result for each.
 
 use super::agreement::{Agreement, unwound};
 use super::backend::{evaluate, matrix};
@@ -14,8 +14,8 @@ use overact_codegen::internals::{Assembler, Search};
 use overact_codegen::lowering::Program;
 use overact_codegen::{CompiledFunction, RobotModel};
 
-/// Condition number of a partition up to which the plain tolerance holds; beyond, case 2 is compared
-/// with a tolerance of so many roundings times the condition number.
+/// Condition number of a partition above which the tolerance is this number of roundings times the
+/// condition number.
 const PLAIN: f64 = 1e3;
 const ROUNDING: f64 = 1e-12;
 
@@ -25,12 +25,12 @@ pub struct Comparison {
     tolerance: f64,
     /// A line per function.
     pub lines: Vec<String>,
-    /// Those that are out of tolerance.
+    /// Lines of functions that exceed the tolerance.
     pub failures: Vec<String>,
 }
 
 impl Comparison {
-    /// Nothing compared yet.
+    /// No comparisons yet.
     #[must_use]
     pub const fn new(tolerance: f64) -> Self {
         Self {
@@ -47,11 +47,11 @@ impl Comparison {
         self.lines.push(line);
     }
 
-    /// A function by one backend at all samples.
+    /// Compares a function of one backend at all samples.
     ///
     /// # Errors
     ///
-    /// If the reference can't compute it, or the backend has no value.
+    /// If the reference cannot compute it, or the backend has no value.
     pub fn function(
         &mut self,
         function: &CompiledFunction,
@@ -77,12 +77,15 @@ impl Comparison {
         Ok(())
     }
 
-    /// Case 2 of one partition: from the backend's J_p^inv and case 1 by the runtime, and as a program
-    /// of its own if that is asked for.
+    /// Compares the actuator projection of one partition.
+    ///
+    /// It is computed by the runtime from the backend's J_p^inv and Γ¹, and on request by a program
+    /// of its own.
     ///
     /// # Errors
     ///
-    /// If a function has no value, or the partition is regular where the runtime says that it is not.
+    /// If a function has no value, or the partition is regular where the runtime says that it is
+    /// not.
     pub fn partition(
         &mut self,
         (kept, as_program): (&[usize], bool),
@@ -145,7 +148,8 @@ fn own_output(program: &Program, sample: &Sample) -> Result<DMatrix<f64>, Failur
     Ok(matrix(program, &output))
 }
 
-/// The program of case 2 for other kept actuators; none where they are singular at home.
+/// Program of the actuator projection for other kept actuators; `None` if these are singular at
+/// home.
 fn program_of(model: &RobotModel, kept: &[usize]) -> Result<Option<Program>, Failure> {
     let selection = Selection {
         kept_actuators: kept.to_vec(),

@@ -1,12 +1,12 @@
-//! A checked mechanism as the numeric reference's plain data, with nothing derived.
+//! Converts a checked mechanism to the plain data of the numeric reference.
 
 use crate::reference::{End, Frame, Joint, JointKind, Leg, Mechanism, Motion, Spring};
 use nalgebra::{Rotation3, Vector3};
 use overact_codegen::mechanism;
 use overact_codegen::mechanism::{Angle, Number};
 
-/// The reference's data of a mechanism. The workspace, in twist coordinates, is the caller's choice:
-/// descriptions have none.
+/// Reference data of a mechanism; descriptions have no workspace, so the caller gives one in twist
+/// coordinates.
 #[must_use]
 pub fn reference(mechanism: &mechanism::Mechanism, workspace: Vec<f64>) -> Mechanism {
     let first = |leg: usize| mechanism.leg_range(leg);
@@ -118,8 +118,9 @@ fn vector(values: [Number; 3]) -> Vector3<f64> {
     Vector3::from(values.map(Number::value))
 }
 
-/// Largest difference of the numbers of two mechanisms; infinite if they differ in structure. The
-/// legs' starts, which only choose a working mode, and the workspace are left out.
+/// Largest difference of the numbers of two mechanisms; infinite if their structures differ.
+///
+/// The legs' starts, which only choose a working mode, and the workspace are ignored.
 #[must_use]
 pub fn distance(a: &Mechanism, b: &Mechanism) -> f64 {
     let same = a.motion == b.motion

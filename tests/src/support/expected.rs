@@ -1,4 +1,4 @@
-//! What the numeric reference says a function's output is.
+//! Expected outputs of functions, from the numeric reference.
 
 use super::sample::fitted_acceleration;
 use super::{Failure, Parameters, Sample};
@@ -13,29 +13,29 @@ use overact_codegen::RobotModel;
 use overact_codegen::derivation::{BodyParameter, MotionInput};
 use std::cell::OnceCell;
 
-/// The reference of a robot, its columns arranged as the model arranges them.
+/// Reference of a robot with the columns of its model.
 #[derive(Clone, Debug)]
 pub struct Expected {
     /// The robot as plain data.
     pub mechanism: Mechanism,
-    /// The reference's columns of the standard parameters.
+    /// Reference columns of the standard parameters.
     pub standard: Vec<usize>,
-    /// Of the base parameters.
+    /// Reference columns of the base parameters.
     pub base: Vec<usize>,
-    /// What is regrouped into each of them, and how.
+    /// Parameters regrouped into each base parameter, with coefficients.
     pub regrouped: Vec<Vec<(usize, f64)>>,
-    /// Of the payload's parameters.
+    /// Reference columns of the payload's parameters.
     pub payload: Vec<usize>,
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection.
     pub kept: Vec<usize>,
 }
 
 impl Expected {
-    /// The reference for a model.
+    /// Reference for a model.
     ///
     /// # Errors
     ///
-    /// If the reference knows no parameter of a name that the model has.
+    /// If the reference has no parameter with a name of the model.
     pub fn new(model: &RobotModel, mechanism: Mechanism) -> Result<Self, Failure> {
         let known = names(&mechanism);
         let columns = |of: &[BodyParameter]| -> Result<Vec<usize>, Failure> {
@@ -60,7 +60,7 @@ impl Expected {
         })
     }
 
-    /// The reference for a model, its columns found by leg, joint and symbol instead of by name.
+    /// Reference for a model, with columns identified by leg, joint and symbol instead of names.
     #[must_use]
     pub fn by_position(model: &RobotModel, mechanism: Mechanism) -> Self {
         let at = |parameter: &BodyParameter| match *parameter {
@@ -87,7 +87,7 @@ impl Expected {
         }
     }
 
-    /// The parameters that inverse dynamics takes.
+    /// Parameters of inverse dynamics.
     #[must_use]
     pub fn parameters(&self) -> Parameters {
         let alone = |&at: &usize| (at, 1.0);
@@ -103,11 +103,11 @@ impl Expected {
         }
     }
 
-    /// What the reference says at a sample.
+    /// Reference at a sample.
     ///
     /// # Errors
     ///
-    /// If the reference can't compute the Jacobians there.
+    /// If the reference cannot compute the Jacobians there.
     pub fn at<'a>(&'a self, sample: &'a Sample) -> Result<Truth<'a>, Failure> {
         let side = |state| -> Result<Side<'a>, Failure> {
             Ok(Side {
@@ -124,11 +124,11 @@ impl Expected {
         })
     }
 
-    /// The reference's output of a function at a sample.
+    /// Reference output of a function at a sample.
     ///
     /// # Errors
     ///
-    /// If the reference can't compute it.
+    /// If the reference cannot compute it.
     pub fn output(
         &self,
         function: Function,
@@ -145,9 +145,10 @@ impl Expected {
         }
     }
 
-    /// The orthonormal basis that the model chooses of the null space of (J_p^inv)ᵀ: the unit torques
-    /// of the projected actuators, one after the other, without what moves the platform and without
-    /// the part along the vectors before.
+    /// The orthonormal basis of the null space of (J_p^inv)ᵀ that the model chooses.
+    ///
+    /// It orthonormalises the unit torques of the projected actuators in order, without components
+    /// that move the platform.
     fn null_space(&self, dynamics: &Dynamics<'_>) -> DMatrix<f64> {
         let any = dynamics.internal_loads();
         let mut basis = DMatrix::zeros(any.nrows(), 0);
@@ -162,7 +163,7 @@ impl Expected {
     }
 }
 
-/// The reference at one sample; what several functions need is computed once.
+/// Reference at one sample; quantities that several functions need are computed once.
 #[derive(Debug)]
 pub struct Truth<'a> {
     expected: &'a Expected,
@@ -171,11 +172,11 @@ pub struct Truth<'a> {
     fitted: Side<'a>,
 }
 
-/// The reference in the sample's state, or in the one that fits its actuators.
+/// Reference in the sample's state, or in the one fitted to its actuators.
 #[derive(Debug)]
 struct Side<'a> {
     dynamics: Dynamics<'a>,
-    /// IDM_red of case 1, all columns.
+    /// Standard regressor of the platform projection, all columns.
     platform: OnceCell<DMatrix<f64>>,
     /// Right-hand sides of (16), all columns.
     loads: OnceCell<DMatrix<f64>>,
@@ -199,19 +200,19 @@ impl Side<'_> {
 }
 
 impl Truth<'_> {
-    /// The reference in the sample's state.
+    /// Reference dynamics in the sample's state.
     #[must_use]
     pub const fn dynamics(&self) -> &Dynamics<'_> {
         &self.here.dynamics
     }
 
-    /// The reference's columns of the model's standard parameters.
+    /// Reference columns of the model's standard parameters.
     #[must_use]
     pub fn standard(&self) -> &[usize] {
         &self.expected.standard
     }
 
-    /// Case 2 in the sample's state, for any kept actuators, with all columns.
+    /// Actuator projection in the sample's state for any kept actuators, with all columns.
     ///
     /// # Errors
     ///
@@ -264,7 +265,8 @@ impl Truth<'_> {
                 let projected = torques.select_rows(&partition.projected);
                 vector(&(torques.select_rows(&expected.kept) - partition.projection * projected))
             }
-            // Base parameters hold all others, regrouped: the same torques, the same motion.
+            // Base parameters contain all others by regrouping: the torques and the motion are the
+            // same.
             Function::InverseDynamics(_) => vector(&least_norm()?),
             Function::InverseDynamicsPreloaded => {
                 let preload = DVector::from_column_slice(&self.sample.preload);
@@ -285,7 +287,7 @@ impl Truth<'_> {
     }
 }
 
-/// The functions that know of no parameter; none for the others.
+/// Output of functions without parameters; `None` for others.
 fn kinematic(
     dynamics: &Dynamics<'_>,
     function: Function,
@@ -330,11 +332,11 @@ fn kinematic(
     }))
 }
 
-/// A state that differs by whole turns of joints, with the joints that a model gives.
+/// State shifted by full turns to the joints that a model gives.
 ///
 /// # Errors
 ///
-/// If a joint is no whole number of turns away.
+/// If a joint does not differ by full turns.
 pub fn with_joints_of_model(
     mechanism: &Mechanism,
     state: &State,

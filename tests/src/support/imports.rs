@@ -1,4 +1,4 @@
-//! Which modules the files of a crate import from, by their tokens.
+//! Imports between the modules of a crate, from their tokens.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::{
@@ -7,23 +7,23 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A path of modules and a name, from the root of the crate.
+/// Path of modules and a name, from the root of the crate.
 type Names = Vec<String>;
 
-/// A file and what it imports from its own crate.
+/// A file and its imports from its own crate.
 #[derive(Debug)]
 pub struct Module {
-    /// The modules in which it lies: `kinematics`, `forward` for `kinematics/forward.rs`.
+    /// Path of its module: `kinematics`, `forward` for `kinematics/forward.rs`.
     pub path: Names,
-    /// What its paths lead to, through what other modules re-export. What only tests see is left out.
+    /// Targets of its paths, through re-exports; test code is ignored.
     pub imports: BTreeSet<Names>,
 }
 
 impl Module {
-    /// The imports of a file's text.
+    /// Imports of a file's text.
     ///
     /// # Panics
-    /// If the text is no Rust.
+    /// If the text is not Rust.
     #[must_use]
     pub fn of(path: &[&str], text: &str, reexports: &BTreeMap<Names, Names>) -> Self {
         let path: Names = path.iter().map(|&part| part.to_owned()).collect();
@@ -35,10 +35,10 @@ impl Module {
     }
 }
 
-/// All modules of a crate but its root and its tests.
+/// All modules of a crate except its root and its tests.
 ///
 /// # Panics
-/// If the folder can't be read.
+/// If the folder cannot be read.
 #[must_use]
 pub fn modules(source: &Path) -> Vec<Module> {
     let all: Vec<(Names, String)> = files(source)
@@ -64,7 +64,7 @@ pub fn modules(source: &Path) -> Vec<Module> {
         .collect()
 }
 
-/// All files of Rust below a folder, in order.
+/// All Rust files below a folder, sorted.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a folder");
     let mut paths: Vec<PathBuf> = entries
@@ -87,7 +87,7 @@ fn path_of(source: &Path, file: &Path) -> Names {
     parts.filter(|part| part != "mod").collect()
 }
 
-/// Whether the token before a name and the two behind it are those of a path.
+/// Whether the tokens around a name are those of a path.
 fn is_colon(tokens: &[TokenTree], at: usize) -> bool {
     let is = |at: usize| matches!(tokens.get(at), Some(TokenTree::Punct(p)) if p.as_char() == ':');
     is(at) && is(at + 1)
@@ -127,7 +127,7 @@ fn ends_item(token: &TokenTree) -> bool {
     }
 }
 
-/// The paths that begin at a token: one, or several where it ends in a group.
+/// Paths that begin at a token: one, or several if it ends in a group.
 fn tree(tokens: &[TokenTree], mut at: usize, before: &[String], found: &mut Vec<Names>) {
     let mut path = before.to_vec();
     loop {
@@ -152,7 +152,7 @@ fn tree(tokens: &[TokenTree], mut at: usize, before: &[String], found: &mut Vec<
     found.push(path);
 }
 
-/// A path from the root of the crate; none for one that leads above it.
+/// Path from the root of the crate; `None` if it leads above the root.
 fn absolute(module: &[String], names: &[String]) -> Option<Names> {
     let mut whole = match names.first()?.as_str() {
         "crate" => Vec::new(),
@@ -168,7 +168,7 @@ fn absolute(module: &[String], names: &[String]) -> Option<Names> {
     Some(whole)
 }
 
-/// Notes what a module re-exports from its own crate.
+/// Collects the re-exports of a module from its own crate.
 fn reexported(module: &[String], tokens: TokenStream, found: &mut BTreeMap<Names, Names>) {
     let all: Vec<TokenTree> = tokens.into_iter().collect();
     let is_word =
@@ -193,7 +193,7 @@ fn reexported(module: &[String], tokens: TokenStream, found: &mut BTreeMap<Names
     }
 }
 
-/// Where a name comes from, through re-exports.
+/// Origin of a name through re-exports.
 fn origin(mut names: Names, reexports: &BTreeMap<Names, Names>) -> Names {
     for _ in 0..4 {
         let known = (1..=names.len()).rev();

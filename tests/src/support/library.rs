@@ -1,4 +1,4 @@
-//! The robots of `robots/`: one test per robot, compiled and described.
+//! Robots of `robots/`: one test per robot, compiled and described.
 
 use super::conversion::reference;
 use super::expected::Expected;
@@ -9,7 +9,8 @@ use overact_tier::{by_tier, is_full, is_night};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, OnceLock};
 
-/// One test per robot of the library, `check(stem, &Robot)`, and one that none is left out.
+/// Defines one test per robot of the library, `check(stem, &Robot)`, and one that no robot is
+/// missing.
 #[macro_export]
 macro_rules! library {
     ($check:path) => {
@@ -68,8 +69,9 @@ macro_rules! library {
     };
 }
 
-/// Robots that only the tier of the night tests, each with a robot of the default tier that has the same motion. They
-/// take a third of the time of all robots.
+/// Robots of the nightly tier only, each with a robot of the default tier that has the same motion.
+///
+/// They take a third of the time of all robots.
 const NIGHT_ROBOTS: [(&str, &str); 4] = [
     ("delta_4", "delta"),
     ("octopod", "hexapod"),
@@ -77,9 +79,10 @@ const NIGHT_ROBOTS: [(&str, &str); 4] = [
     ("spherical_4rrr", "spherical_3rrr"),
 ];
 
-/// Robots that the default tier leaves to the full tier, each with a robot of the default tier that has the same motion.
-/// They take half the time of the remaining robots. The default tier keeps redundant robots of planar, point,
-/// Schoenflies and one-axis motion, and a platform with parasitic motion.
+/// Robots of the full tier, each with a robot of the default tier that has the same motion.
+///
+/// They take half the time of the remaining robots. The default tier keeps redundant robots of
+/// planar, point, Schoenflies and one-axis motion, and a platform with parasitic motion.
 const FULL_TIER_ROBOTS: [(&str, &str); 7] = [
     ("ankle_offset", "ankle"),
     ("exechon", "spatial_3prs"),
@@ -90,7 +93,7 @@ const FULL_TIER_ROBOTS: [(&str, &str); 7] = [
     ("tricept_4", "tricept"),
 ];
 
-/// Whether the tier that runs tests a robot.
+/// Whether the current tier tests a robot.
 #[must_use]
 pub fn is_of_the_tier(stem: &str) -> bool {
     let has = |robots: &[(&str, &str)]| robots.iter().any(|(name, _)| *name == stem);
@@ -99,11 +102,11 @@ pub fn is_of_the_tier(stem: &str) -> bool {
     !is_left_to_night && !is_left_to_full
 }
 
-/// Names of all descriptions of `robots/`, in order.
+/// Names of all descriptions in `robots/`, sorted.
 ///
 /// # Errors
 ///
-/// If the folder can't be read.
+/// If the folder cannot be read.
 pub fn stems() -> Result<Vec<String>, Failure> {
     let mut stems = Vec::new();
     for entry in std::fs::read_dir(repository("robots"))? {
@@ -120,9 +123,10 @@ pub fn stems() -> Result<Vec<String>, Failure> {
 /// Model and reference of a robot of `robots/`.
 pub type Described = (RobotModel, Expected);
 
-/// Model and reference of a description of `robots/`, derived once for all tests of a binary: as it is
-/// derived in the default tier, with its operations searched in the full one. What the search makes of it is
-/// seen in the compiled robots in either tier.
+/// Model and reference of a description in `robots/`, computed once per test binary.
+///
+/// Operations are searched in the full tier only; the compiled robots test the search in both
+/// tiers.
 ///
 /// # Errors
 ///
@@ -148,12 +152,12 @@ fn derived(stem: &str) -> Result<Described, Failure> {
     Ok((model, expected))
 }
 
-/// Half the ranges of random poses around home, by twist coordinate.
+/// Half ranges of random poses around home, by twist coordinate.
 #[must_use]
 pub fn workspace(model: &RobotModel) -> Vec<f64> {
     let mechanism = &model.mechanism;
     let Some(platform) = &mechanism.platform else {
-        // Of a tree its joints go anywhere, of a skeleton as far as the chains let them.
+        // Joints of a tree are unrestricted; those of a skeleton are limited by the chains.
         let [turn, slide] = match mechanism.skeleton() {
             Some(_) => [0.25, 0.1 * mechanism.length_scale()],
             None => [2.5, 0.3],

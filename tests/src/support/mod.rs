@@ -1,4 +1,4 @@
-//! What the tests share: descriptions, models, samples, backends and expected values.
+//! Shared test support: descriptions, models, samples, backends and expected values.
 
 pub mod accuracy;
 pub mod agreement;
@@ -28,10 +28,10 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::{fs, sync::OnceLock};
 
-/// What a test's helper may fail with.
+/// Any error of a helper.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
-/// A file or folder of the repository, by its path from the repository's root.
+/// Path of a file or folder of the repository, from its path relative to the root.
 #[must_use]
 pub fn repository(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -39,7 +39,7 @@ pub fn repository(path: &str) -> PathBuf {
         .join(path)
 }
 
-/// A description of `robots/`, called as in the headers of `generated/`.
+/// A description in `robots/`, with the name used in the headers of `generated/`.
 ///
 /// # Errors
 ///
@@ -59,7 +59,7 @@ pub fn model_of(source: &Source) -> Result<RobotModel, Failure> {
     model_with(source, &Request::default())
 }
 
-/// What is asked for of a description's model.
+/// Model of a description for a request.
 ///
 /// # Errors
 ///
@@ -71,8 +71,9 @@ pub fn model_with(source: &Source, request: &Request<'_>) -> Result<RobotModel, 
     }
 }
 
-/// The DualV's model, compiled once: as it is derived in the default tier, with all operations searched as in
-/// the module that is checked in in the full one.
+/// Model of the DualV, compiled once.
+///
+/// In the full tier all operations are searched, as in the checked-in module.
 ///
 /// # Errors
 ///

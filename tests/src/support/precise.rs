@@ -1,21 +1,21 @@
-//! Programs in arithmetic of 128 bits: what an evaluation in double precision is measured against.
+//! Evaluates programs in 128-bit arithmetic, to measure errors of double precision.
 
 use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
 use overact_codegen::lowering::{Operand, Operation, Program};
 
-/// Bits of a number's mantissa.
+/// Bits of the mantissa.
 const BITS: usize = 128;
-/// To the nearest, as in hardware.
+/// Round to nearest, as in hardware.
 const ROUNDING: RoundingMode = RoundingMode::ToEven;
 
-/// A machine for arithmetic of 128 bits.
+/// Evaluator with 128-bit arithmetic.
 #[derive(Debug)]
 pub struct Precise {
     constants: Consts,
 }
 
 impl Precise {
-    /// A machine with its constants.
+    /// Evaluator with its constants.
     ///
     /// # Errors
     ///
@@ -25,7 +25,7 @@ impl Precise {
         Ok(Self { constants })
     }
 
-    /// The entries of a program at one sample, whatever its guards say.
+    /// Entries of a program at one sample, ignoring its guards.
     pub fn evaluate(&mut self, program: &Program, inputs: &[Vec<f64>]) -> Vec<BigFloat> {
         let mut steps: Vec<BigFloat> = Vec::with_capacity(program.steps.len());
         for step in &program.steps {
@@ -78,7 +78,7 @@ fn one() -> BigFloat {
     BigFloat::from_f64(1.0, BITS)
 }
 
-/// The first number with the sign of the second, nothing for zero.
+/// First number with the sign of the second; zero if the second is zero.
 fn signed(value: &BigFloat, sign: &BigFloat) -> BigFloat {
     match sign.sign() {
         _ if sign.is_zero() => BigFloat::from_f64(0.0, BITS),
@@ -95,13 +95,13 @@ fn fetch(operand: Operand, inputs: &[Vec<f64>], steps: &[BigFloat]) -> BigFloat 
     }
 }
 
-/// The nearest number of double precision.
+/// Nearest number of double precision.
 #[must_use]
 pub fn rounded(value: &BigFloat) -> f64 {
     let Some((words, _, sign, exponent, _)) = value.as_raw_parts() else {
         return f64::NAN;
     };
-    // The mantissa is a fraction below one; its highest word holds all bits of a double and more.
+    // The mantissa is a fraction below one; its highest word contains all bits of a double.
     let highest = words.last().copied().unwrap_or_default();
     let magnitude = highest as f64 * 2_f64.powi(exponent - 64);
     if sign == Sign::Neg {
@@ -111,7 +111,7 @@ pub fn rounded(value: &BigFloat) -> f64 {
     }
 }
 
-/// An exact number less one of double precision.
+/// Difference of an exact number and one of double precision.
 #[must_use]
 pub fn difference(exact: &BigFloat, value: f64) -> f64 {
     rounded(&exact.sub(&BigFloat::from_f64(value, BITS), BITS, ROUNDING))

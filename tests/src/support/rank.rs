@@ -21,9 +21,9 @@ pub struct Rank {
     pub columns: usize,
     /// Largest singular value.
     pub largest: f64,
-    /// The last one that counts.
+    /// Smallest singular value that counts.
     pub last: f64,
-    /// The next one, which is rounding; zero if all count.
+    /// Next singular value, which is rounding; zero if all count.
     pub next: f64,
 }
 
@@ -44,7 +44,7 @@ impl Rank {
         }
     }
 
-    /// Whether the gap leaves no doubt: four decades at least.
+    /// Whether the gap is at least four decades.
     #[must_use]
     pub fn is_clear(&self) -> bool {
         self.last > 1e4 * self.next
@@ -61,7 +61,7 @@ impl fmt::Display for Rank {
     }
 }
 
-/// The model's standard case-1 regressor, from joints, over samples.
+/// Standard regressor of the platform projection from joints, over samples.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! A state of a robot with everything that its functions take, by the names of their arguments.
+//! A state of a robot with all inputs of its functions, by argument name.
 
 use super::Failure;
 use crate::reference::linear::pseudo_inverse;
@@ -13,23 +13,23 @@ use rand_pcg::Pcg64;
 /// Largest perturbation of actuator velocities, rad/s, and accelerations, rad/s².
 const NOISE: f64 = 0.05;
 
-/// Which of the reference's parameters a model takes.
+/// The model's parameters among those of the reference.
 #[derive(Clone, Debug)]
 pub struct Parameters {
-    /// Its standard parameters, then the payload's.
+    /// Columns of its standard parameters, then the payload's.
     pub columns: Vec<usize>,
-    /// Of each of its base parameters and of the payload's, all that are regrouped into it.
+    /// For each base parameter, also the payload's: all parameters regrouped into it.
     pub base: Vec<Vec<(usize, f64)>>,
 }
 
 impl Parameters {
-    /// The model's among all parameters of the reference.
+    /// Values of the model's parameters.
     #[must_use]
     pub fn values(&self, all: &DVector<f64>) -> Vec<f64> {
         self.columns.iter().map(|&at| all[at]).collect()
     }
 
-    /// The model's base parameters and the payload's.
+    /// Values of the model's base parameters and the payload's.
     #[must_use]
     pub fn regrouped(&self, all: &DVector<f64>) -> Vec<f64> {
         let sum = |terms: &Vec<(usize, f64)>| terms.iter().map(|&(at, c)| c * all[at]).sum();
@@ -45,17 +45,17 @@ impl std::ops::Deref for Parameters {
     }
 }
 
-/// A state and inputs that go with it.
+/// A state with matching inputs.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// The reference's state.
+    /// State of the reference.
     pub state: State,
-    /// Twist that fits `actuator_velocities` best, then the acceleration that fits
-    /// `actuator_accelerations` best at that twist.
+    /// State with twist and acceleration fitted to `actuator_velocities` and
+    /// `actuator_accelerations` by least squares.
     pub fitted: State,
     /// Actuator positions, exact.
     pub actuators: Vec<f64>,
-    /// Actuator positions that the pose misses, as forward kinematics meets them.
+    /// Actuator positions that no pose has exactly, for forward kinematics.
     pub missed: Vec<f64>,
     /// Actuator velocities that no twist gives exactly.
     pub actuator_velocities: Vec<f64>,
@@ -65,13 +65,13 @@ pub struct Sample {
     pub torques: Vec<f64>,
     /// All standard parameters in the reference's order.
     pub all_parameters: DVector<f64>,
-    /// Those of the model: standard, then payload.
+    /// Values of the model's parameters: standard, then payload.
     pub parameters: Vec<f64>,
-    /// Its base parameters, then the payload's.
+    /// Values of its base parameters, then the payload's.
     pub base_parameters: Vec<f64>,
     /// Coordinates of the internal torque.
     pub preload: Vec<f64>,
-    /// A pose near the sample's, to start forward kinematics from.
+    /// A pose near the sample's, as start of forward kinematics.
     pub start: Vec<f64>,
 }
 
@@ -156,7 +156,7 @@ impl Sample {
     }
 }
 
-/// Twist and acceleration of least squares: eq. (21), and eq. (24) in its J_p^inv form.
+/// Least-squares twist and acceleration: eq. (21), and eq. (24) in its J_p^inv form.
 fn fit(
     mechanism: &Mechanism,
     state: &State,
@@ -170,8 +170,9 @@ fn fit(
     Ok(state)
 }
 
-/// The acceleration that fits the actuators' best at a twist: the actuators' accelerations at zero
-/// acceleration of the platform are the term J̇_p^inv v.
+/// Least-squares acceleration for the actuators at a twist.
+///
+/// The actuators' accelerations at zero platform acceleration are the term J̇_p^inv v.
 ///
 /// # Errors
 ///
@@ -188,8 +189,10 @@ pub fn fitted_acceleration(
     Ok(inverse * (measured - bias.qdd.select_rows(&mechanism.actuated())))
 }
 
-/// Random regular samples. With `partitions`, J_p^inv of all actuators but any one is well
-/// conditioned too, so that every partition of case 2 has a meaning.
+/// Random regular samples.
+///
+/// With `partitions`, J_p^inv of all actuators but any one is well conditioned too, so that every
+/// partition is regular.
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
-//! Compiled robots through the trait that identification and simulation see, and case 2 for any kept
-//! actuators by the runtime.
+//! Compiled robots through [`overact::Model`], and the actuator projection for any kept actuators
+//! by the runtime.
 
 use super::{Backend, Failure, Sample};
 use nalgebra::DMatrix;
@@ -22,7 +22,7 @@ impl Served<'_> {
         let inputs = function.inputs().iter();
         let inputs = inputs.map(|input| sample.argument(function, input.name()));
         let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
-        // What a function leaves out is no number.
+        // NaN reveals entries that a function does not write.
         let mut output = vec![f64::NAN; rows * columns];
         self.0.evaluate(function, &inputs, &mut output)?;
         Ok(DMatrix::from_row_slice(rows, columns, &output))
@@ -35,7 +35,7 @@ impl Backend for Served<'_> {
     }
 
     fn call(&self, function: &str, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
-        // A model serves the functions from the pose, and those that only joints have from joints.
+        // A model offers functions from the pose, and those with joint inputs from joints.
         let is_called = |known: &&Function| {
             let from = match known.inputs().contains(&Input::Joints) {
                 true => MotionInput::Joints,
@@ -49,8 +49,9 @@ impl Backend for Served<'_> {
     }
 }
 
-/// Γ² of the kept actuators from J_p^inv and Γ¹ (or the regressors of both), by the runtime, with the
-/// condition number of the partition.
+/// Γ² of the kept actuators from J_p^inv and Γ¹, or the regressors of both, by the runtime.
+///
+/// Also returns the condition number of the partition.
 ///
 /// # Errors
 ///
@@ -97,7 +98,7 @@ pub fn partitions(actuators: usize, dof: usize) -> Vec<Vec<usize>> {
     let mut chosen: Vec<usize> = (0..dof).collect();
     loop {
         all.push(chosen.clone());
-        // The last place that can still move on, and all after it right behind.
+        // Advance the last position that can still move, and place all later ones right after it.
         let Some(at) = (0..dof).rev().find(|&at| chosen[at] < actuators - dof + at) else {
             return all;
         };

@@ -47,8 +47,8 @@ shape = "tree"
 home = { b = "0.3 m", c = "20 deg", e = "-30 deg" }
 "#;
 
-/// A drive between two bodies: two crossing axes, and a third joint, given by the other keys of its table, at a position at
-/// home.
+/// A drive between two bodies: two crossing axes, and a third joint with the given keys and home
+/// position.
 #[must_use]
 pub fn drive(name: &str, [from, to]: [&str; 2], [keys, home]: [&str; 2]) -> String {
     format!(

@@ -1,4 +1,4 @@
-//! A description against the reference in all functions at once.
+//! Compares all functions of a description with the reference.
 
 use super::conversion::reference;
 use super::expected::Expected;
@@ -8,13 +8,14 @@ use super::{Comparison, Evaluated, Failure, model_with};
 use overact::Function;
 use overact_codegen::{Choice, Effort, Request, Source};
 
-/// What all functions of a description miss of the reference in so many states, by more than the tolerance:
-/// the first is that of functions of base parameters, whose regroupings are told from numbers, the second that
-/// of all others.
+/// Differences of all functions of a description from the reference that exceed the tolerances.
+///
+/// The first tolerance is for functions of base parameters, whose regroupings are computed
+/// numerically, the second for all others.
 ///
 /// # Errors
 ///
-/// A description that is wrong, and one without regular states.
+/// An invalid description, or one without regular states.
 pub fn against_reference(
     source: Source,
     states: usize,
@@ -23,11 +24,11 @@ pub fn against_reference(
     of_functions(source, states, tolerances, None)
 }
 
-/// The same of functions that are chosen, where not all are compared.
+/// The same for selected functions.
 ///
 /// # Errors
 ///
-/// A description that is wrong, and one without regular states.
+/// An invalid description, or one without regular states.
 pub fn of_functions(
     source: Source,
     states: usize,
@@ -47,8 +48,8 @@ pub fn of_functions(
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparisons = [of_base, of_others].map(Comparison::new);
     for function in &model.functions {
-        // The closure error is what Newton's method drives to zero, not a quantity of its own, and of rows that
-        // legs block any multiples would serve.
+        // The closure error only has to vanish; rows of blocked directions are unique up to
+        // multiples.
         let is_compared = !matches!(
             function.computes,
             Function::ClosureError | Function::BlockedJacobian

@@ -1,7 +1,7 @@
 //! Every function of the DualV agrees with the numeric reference, evaluated and compiled.
 //!
-//! The reference is exact to rounding times the condition numbers of its states, at most 60; 1e-10
-//! is that with some room.
+//! The reference is exact to rounding times the condition numbers of its states, at most 60; the
+//! tolerance of 1e-10 has a margin.
 
 use overact::Function;
 use overact_codegen::{Effort, Request, model_with};
@@ -37,7 +37,7 @@ fn is_partitioned(function: Function) -> bool {
     )
 }
 
-/// Compares all functions of the families; joints are equal but for whole turns.
+/// Compares all functions of the families; joints may differ by full turns.
 fn agree(
     mechanism: &Mechanism,
     kept: &[usize],
@@ -49,7 +49,7 @@ fn agree(
     robot.kept_actuators = kept.to_vec();
     let request = Request {
         wanted: &|_, function, _| is_chosen(function),
-        // What the search makes of them is seen in the compiled ones.
+        // The compiled robots test the search.
         ..Request::with_effort(by_tier([Effort::None, Effort::Quick]))
     };
     let model = model_with(robot, &request).map_err(|e| format!("{e:?}"))?;

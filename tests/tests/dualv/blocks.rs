@@ -1,4 +1,4 @@
-//! Programs evaluated over blocks of samples, and what they say where they have no value.
+//! Evaluation of programs over blocks of samples, and errors of samples without a value.
 
 use overact::{ActuatorGroup, Columns, Function};
 use overact_codegen::CompiledFunction;
@@ -21,7 +21,7 @@ fn dualv_samples() -> Result<Vec<Sample>, Failure> {
     samples(&robots::dualv(), &expected.parameters(), STATES, 81, true)
 }
 
-/// Evaluates all samples at once; the parameters of the first serve all.
+/// Evaluates all samples at once, with the parameters of the first.
 fn at_once(function: &CompiledFunction, all: &[Sample]) -> Result<Vec<f64>, Failure> {
     let program = &function.program;
     let gather = |name: &str| -> Result<(Vec<f64>, bool), Failure> {
@@ -151,7 +151,7 @@ fn compiled_functions_name_what_is_wrong() {
         matches!(far, Err(Error::NotFinite { input: "actuators" })),
         "{far:?}"
     );
-    // A leg that is stretched: joint 2 at zero.
+    // A stretched leg: joint 2 at zero.
     let mut joints = DualV::HOME_JOINTS;
     joints[1] = 0.0;
     let stretched = DualV::inverse_jacobian_from_joints(&DualV::HOME_POSE, &joints);
@@ -164,7 +164,7 @@ fn compiled_functions_name_what_is_wrong() {
 #[test]
 fn a_singular_partition_is_an_error_and_case_1_is_not() {
     use overact::Error;
-    // The robot is regular here, the first three actuators alone are not; six digits meet the
+    // The robot is regular here, but the first three actuators alone are not; six digits give the
     // singularity to nine.
     let (mut low, mut high) = (-0.105_793, -0.105_791);
     let still = [0.0; 3];

@@ -1,4 +1,4 @@
-//! The description of the DualV says what the hand-written reference robot says.
+//! The description of the DualV equals the hand-written reference robot.
 
 use overact_tests::reference::closure::joint_positions;
 use overact_tests::reference::robots;

@@ -1,4 +1,4 @@
-//! Functions that write into a matrix which is handed in.
+//! Functions that write into a caller's matrix.
 
 use overact::block::array;
 use overact_compiled::DualV;
@@ -7,10 +7,11 @@ use overact_tests::support::expected::Expected;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Failure, dualv};
 
-/// States that the two are compared at.
+/// States of the comparison.
 const STATES: usize = 20;
 
-/// What a function gives back is what the other one writes, and that writes all numbers.
+/// A function returns the numbers that its `into` variant writes, and the latter writes all of
+/// them.
 macro_rules! the_same {
     ($sample:ident: $($function:ident, $into:ident($($argument:ident),*);)*) => {$(
         let given = DualV::$function($(array($sample.input(stringify!($argument))?)?),*)?;

@@ -1,6 +1,7 @@
-//! The DualV, the paper's robot, in every way that there is to have it: against the numeric reference,
-//! against motion, in blocks, its base parameters, its four partitions; and what each stage of the
-//! generator hands to the next.
+//! Tests of the DualV, the paper's robot.
+//!
+//! They compare it with the numeric reference and with its motion, and test blocks, base
+//! parameters, all four partitions and the generator's stages.
 
 mod agreement;
 mod blocks;

@@ -1,4 +1,5 @@
-//! The DualV's compiled functions against motion: finite differences, power balance, least squares.
+//! The DualV's compiled functions compared with motion: finite differences, power balance, least
+//! squares.
 //!
 //! None of these tests needs the reference's dynamics: derivatives come from positions, and energy
 //! from positions and velocities.
@@ -51,7 +52,7 @@ fn rates_are_derivatives_of_joints() -> Result<(), Failure> {
     let (mechanism, _, all) = dualv_samples(51)?;
     let mut worst = [0.0_f64; 2];
     for sample in &all {
-        // Unwound around the sample's joints, which the path never leaves by half a turn.
+        // Unwound around the sample's joints, from which the path stays within half a turn.
         let near = vector("joints", sample)?;
         let joints = |state: &State| {
             let pose = array(&state.pose).and_then(|pose| Ok(DualV::joints(pose)?));
@@ -68,8 +69,8 @@ fn rates_are_derivatives_of_joints() -> Result<(), Failure> {
         "velocities {:.1e}, accelerations {:.1e}",
         worst[0], worst[1]
     );
-    // Rounding of the joints over the step, and over its square: 1e-15 / 3e-4 and 1e-15 / 9e-8,
-    // and an error of order six in the step.
+    // Rounding of the joints over the step and its square, 1e-15 / 3e-4 and 1e-15 / 9e-8, plus an
+    // error of order six.
     assert!(worst[0] < 1e-9, "velocities {:e}", worst[0]);
     assert!(worst[1] < 1e-7, "accelerations {:e}", worst[1]);
     Ok(())
@@ -167,7 +168,7 @@ fn forward_kinematics_returns_to_the_pose() -> Result<(), Failure> {
     let mut worst = 0.0_f64;
     for sample in &all {
         let exact = DualV::actuator_positions(array(&sample.state.pose)?)?;
-        // Whole turns of an encoder must not matter.
+        // Full turns of an encoder must not matter.
         for turn in [0.0, std::f64::consts::TAU] {
             let found =
                 DualV::pose_from_actuators(&exact.map(|q| q + turn), array(&sample.start)?)?;
@@ -199,8 +200,8 @@ fn noisy_actuators_give_the_least_squares_pose() -> Result<(), Failure> {
             residual.amax() > 0.0,
             "four noisy angles fit no pose exactly"
         );
-        // The gradient Jᵀ r vanishes where the next step of Gauss-Newton, J^+ r, does. The iteration
-        // ends with a step below its tolerance, and every step is far smaller than the one before.
+        // The gradient Jᵀ r vanishes where the next Gauss-Newton step J^+ r does. The iteration
+        // ends with a step below its tolerance, and steps shrink fast.
         let step = pseudo_inverse(&jacobian) * &residual;
         worst = worst.max(step.amax());
     }

@@ -1,8 +1,14 @@
-//! Number of base parameters of the DualV, and what the others are regrouped into.
+//! Number of base parameters of the DualV, and their regroupings.
 //!
-//! The ranks are those of the numeric reference: 57 with everything, 49 without the rotors of passive
-//! joints, 16 of inertial parameters alone. The regrouping relations are exact constants of the
-//! geometry.
+//! The ranks are those of the numeric reference:
+//!
+//! | parameters | rank |
+//! |---|---|
+//! | all | 57 |
+//! | without rotors of passive joints | 49 |
+//! | inertial parameters only | 16 |
+//!
+//! The regrouping relations are exact constants of the geometry.
 
 use overact::{Columns, Function};
 use overact_codegen::derivation::{BodyParameter, MotionInput};
@@ -17,11 +23,10 @@ use overact_tests::support::{Failure, dualv, model_with};
 use overact_tier::by_tier;
 
 const FULL: &str = include_str!("../../fixtures/dualv_full.toml");
-/// States in the default tier and in the full one, with four rows each: more than the 88 columns of all
-/// parameters.
+/// States in the default and full tier; with four rows each, more than the 88 columns.
 const STATES: [usize; 2] = [50, 120];
 
-/// The full fixture with other parameters on the three links.
+/// The full fixture with other parameters of the three links.
 fn variant(parameters: [&str; 3]) -> Result<RobotModel, Failure> {
     let mut pieces = FULL.split("parameters = [\"all\"]");
     let mut text = pieces.next().unwrap_or_default().to_owned();
@@ -29,11 +34,11 @@ fn variant(parameters: [&str; 3]) -> Result<RobotModel, Failure> {
         text += &format!("parameters = {own}{rest}");
     }
     let source = Source::new("fixtures/dualv_full.toml", text);
-    // Only the regressor from joints is derived: its rank is what the tests look at.
+    // Only the regressor from joints is derived, whose rank is tested.
     let is_regressor = |_: &Mechanism, function: Function, from: MotionInput| {
         function == Function::IdmRedPlatform(Columns::Standard) && from == MotionInput::Joints
     };
-    // Ranks do not depend on how operations are searched.
+    // Ranks do not depend on the search for operations.
     let request = Request {
         wanted: &is_regressor,
         ..Request::with_effort(by_tier([Effort::None, Effort::Quick]))
@@ -41,7 +46,7 @@ fn variant(parameters: [&str; 3]) -> Result<RobotModel, Failure> {
     model_with(&source, &request)
 }
 
-/// The rank of a model's regressor has a clear gap, and the model has as many base parameters.
+/// Checks that the rank has a clear gap and equals the model's number of base parameters.
 fn check(what: &str, model: &RobotModel, expected: usize) -> Result<(), Failure> {
     let mechanism = robots::dualv();
     let columns = Expected::new(model, mechanism.clone())?.parameters();
@@ -57,8 +62,8 @@ fn check(what: &str, model: &RobotModel, expected: usize) -> Result<(), Failure>
 #[test]
 fn all_parameters_have_rank_57() -> Result<(), Failure> {
     let model = variant(["[\"all\"]"; 3])?;
-    // Of a body's ten inertial parameters, four have columns in the plane and the first body's only
-    // one; with rotor and friction 5 + 8 + 8 a leg, and the platform's four.
+    // Ten inertial parameters of a body have four columns in the plane, those of the first body
+    // one. With rotor and friction there are 5 + 8 + 8 for a leg, and the platform's four.
     assert_eq!(model.selection.standard.len(), 4 * (5 + 8 + 8) + 4);
     check("all parameters", &model, 57)
 }
@@ -81,7 +86,7 @@ fn inertial_parameters_have_rank_16() -> Result<(), Failure> {
     check("inertia and motors", &rotors, 16)
 }
 
-/// The coefficient with which a parameter enters a base parameter; zero if it does not.
+/// Coefficient of a parameter in a base parameter; zero if it is not part of it.
 fn coefficient(model: &RobotModel, base: &str, regrouped: &str) -> f64 {
     let found = model
         .base
@@ -97,7 +102,7 @@ fn coefficient(model: &RobotModel, base: &str, regrouped: &str) -> f64 {
 #[test]
 fn regroupings_are_the_constants_of_the_geometry() -> Result<(), Failure> {
     let model = dualv()?;
-    // r_p^2/d3 is recognised as 121/2800, and correctly rounded as such.
+    // r_p^2/d3 is recognised as 121/2800 and correctly rounded.
     let squared = 121.0 / 2800.0;
     assert!((squared - RP * RP / D).abs() < 1e-16);
     for leg in 1..=4 {
@@ -118,7 +123,7 @@ fn regroupings_are_the_constants_of_the_geometry() -> Result<(), Failure> {
             assert_eq!(found, expected, "{regrouped} in {base}");
         }
     }
-    // Side by side with the geometry: r_p/d3, 1/d3, d2^2/d3 with d2 = d3, and d2^2.
+    // Constants and geometry: r_p/d3, 1/d3, d2^2/d3 with d2 = d3, and d2^2.
     for (constant, geometry) in [
         (11.0 / 28.0, RP / D),
         (25.0 / 7.0, 1.0 / D),
@@ -142,7 +147,7 @@ fn kept_and_regrouped_parameters_are_all_parameters() -> Result<(), Failure> {
     let mut all = model.selection.standard.clone();
     all.sort();
     assert_eq!(accounted, all);
-    // What is dropped of a leg is what (43) puts last.
+    // Parameters of a leg that are dropped are those that (43) puts last.
     let is_dropped = |p: &BodyParameter| !model.selection.base.contains(p);
     let dropped: Vec<String> = all
         .iter()

@@ -1,4 +1,4 @@
-//! One snapshot per stage of the generator for the DualV: what each hands to the next.
+//! Snapshots of each stage of the generator for the DualV.
 //!
 //! The cost table pins the operation counts of all functions.
 
@@ -15,7 +15,7 @@ use overact_tests::support::{Failure, dualv};
 use overact_tier::is_full;
 use std::fmt::Write;
 
-/// The model with some functions only, their operations searched as in the module that is checked in.
+/// Model with some functions only, searched as in the checked-in module.
 fn searched(
     is_wanted: impl Fn(Function, MotionInput) -> bool + Sync,
 ) -> Result<RobotModel, Failure> {
@@ -141,7 +141,7 @@ fn lowering_of_the_inverse_jacobian() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A program, one step a line.
+/// A program, one step per line.
 fn listing(program: &Program) -> Result<String, Failure> {
     let mut text = String::new();
     for input in &program.inputs {
@@ -193,7 +193,7 @@ const fn operation(operation: &Operation) -> &'static str {
     }
 }
 
-/// In the full tier, whose model is searched. In the default one the text of the module is compared.
+/// Full tier, with the searched model; the default tier compares the text of the module.
 #[test]
 fn cost_of_all_functions() -> Result<(), Failure> {
     if !is_full() {
@@ -237,7 +237,7 @@ fn cost_of_all_functions() -> Result<(), Failure> {
     Ok(())
 }
 
-/// In the full tier, as the cost of all functions.
+/// Full tier, like the cost of all functions.
 #[test]
 fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
     if !is_full() {
@@ -251,7 +251,7 @@ fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The operations that the standard regressor takes today. The number may shrink only.
+/// Operation count of the standard regressor; it may only decrease.
 const OPERATIONS: usize = 404;
 
 #[test]
@@ -302,7 +302,7 @@ fn evaluation_of_the_regressor() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Twelve significant digits; what is zero but for rounding is zero.
+/// Twelve significant digits; rounding errors become zero.
 fn digits(value: f64) -> String {
     if value.abs() < 1e-14 {
         "0".to_owned()

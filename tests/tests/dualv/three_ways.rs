@@ -1,6 +1,6 @@
 //! Macro, build script, `overact generate` and `generated/` give the same robot.
 //!
-//! The command line writes what `emission::file` returns; that it does so is tested beside it.
+//! The command line writes the text of `emission::file`, as its own tests check.
 
 use overact::{Columns, Function, Model, redundant_robot};
 use overact_codegen::{Effort, Request, compile_with, emission};
@@ -19,8 +19,8 @@ redundant_backend!(ByMacro, "macro", DualV);
 redundant_backend!(ByBuildScript, "build script", partitions::kept_123::DualV);
 redundant_backend!(Generated, "generated", overact_compiled::DualV);
 
-/// Tokens as text, without what only the printer of files adds: commas before a closing delimiter or angle bracket,
-/// and braces around the one expression of a match arm.
+/// Tokens as text, without commas before closing delimiters and braces around single match
+/// expressions, which only the file printer adds.
 fn normalised(tokens: TokenStream) -> String {
     let is = |token: &TokenTree, c: char| matches!(token, TokenTree::Punct(p) if p.as_char() == c);
     let mut texts: Vec<String> = Vec::new();
@@ -56,7 +56,7 @@ fn parsed(text: &str) -> Result<String, Failure> {
     Ok(normalised(tokens))
 }
 
-/// The first place where two texts differ, with what is around it.
+/// First difference of two texts, with its context.
 fn first_difference(a: &str, b: &str) -> Option<String> {
     let at = a.bytes().zip(b.bytes()).position(|(a, b)| a != b);
     let at = at.or_else(|| (a.len() != b.len()).then(|| a.len().min(b.len())))?;
@@ -67,7 +67,7 @@ fn first_difference(a: &str, b: &str) -> Option<String> {
     Some(format!("...{}...\n...{}...", around(a), around(b)))
 }
 
-/// The emission itself takes the time of a thorough search, which the build script has taken before.
+/// Uses the emission of the build script, because a thorough search takes long.
 #[test]
 fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<(), Failure> {
     let built = parsed(partitions::KEPT_123)?;
@@ -89,7 +89,7 @@ fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<
 
 #[test]
 fn macro_items_are_those_of_the_module() -> Result<(), Failure> {
-    // The macro puts these items behind the user's struct, whose name they take.
+    // The macro adds these items to the user's struct, whose name they have.
     let items = normalised(emission::items(
         dualv()?,
         &Ident::new("DualV", Span::call_site()),
@@ -184,7 +184,7 @@ fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The small modules; that all are fresh is what `cargo xtask freshness` is for.
+/// Small modules only; `cargo xtask freshness` checks all.
 #[test]
 fn small_generated_modules_are_fresh() -> Result<(), Failure> {
     for stem in ["emps", "five_bar"] {

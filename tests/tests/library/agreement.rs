@@ -1,9 +1,11 @@
-//! Every robot of `robots/` agrees with the numeric reference at random regular states, compiled (the
-//! modules of `generated/`) and evaluated: joints, rates, Jacobians, both identification models, case 2
-//! for every choice of kept actuators, inverse dynamics, mass matrix, internal torques.
+//! Every robot of `robots/` agrees with the numeric reference at random regular states.
 //!
-//! 1e-9 of each entry is the rounding of states whose legs and inverse Jacobian have condition numbers
-//! of up to 60, with room for squared ones: pseudo-inverses come from normal equations.
+//! Robots are compiled and evaluated. Tests cover joints, rates, Jacobians, both projections, every
+//! partition, inverse dynamics, mass matrix and internal torques.
+//!
+//! The tolerance of 1e-9 for each entry corresponds to condition numbers up to 60 of legs and
+//! inverse Jacobian. It has a margin for squared ones, because pseudo-inverses use normal
+//! equations.
 
 use overact::Function;
 use overact::Model;
@@ -27,8 +29,8 @@ fn compare(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparison = Comparison::new(TOLERANCE);
-    // The closure error is what Newton's method drives to zero, not a quantity of its own; of rows that legs block
-    // any multiples and sums would serve, and `parasitic` looks at what they mean.
+    // The closure error only has to vanish; rows of blocked directions are unique up to
+    // combinations, and `parasitic` tests them.
     let is_compared =
         |f: &Function| !matches!(f, Function::ClosureError | Function::BlockedJacobian);
     let evaluated = Evaluated(model);

@@ -1,9 +1,8 @@
-//! Every backend of [`overact::Model`] answers alike: the functions of the table, and every kind of wrong
-//! input to them.
+//! Every backend of [`overact::Model`] gives equal answers, for all functions and all kinds of
+//! invalid input.
 //!
-//! A backend is one line in [`backends`]. The compiled robot comes first; what the others answer is
-//! compared with its answers, values to 1e-12 of the largest number of the output. That the values are
-//! right is the matter of other tests.
+//! A backend is one line in [`backends`]. Answers are compared with those of the compiled robot,
+//! relative to the largest number of the output. Other tests check that the values are right.
 
 use overact::{Condition, Error, Function, Input, Model, SampleError, Sizes};
 use overact_codegen::RobotModel;
@@ -15,15 +14,18 @@ use overact_tests::support::{Failure, Sample};
 /// Samples in a block.
 const SAMPLES: usize = 3;
 
-/// Largest difference of two backends, relative to the largest number of the output. They need not have
-/// searched alike, and some of the poses here are far out, where condition numbers are large.
+/// Largest difference of two backends, relative to the largest number of the output.
+///
+/// Their search may differ, and some poses are far out, where condition numbers are large.
 const TOLERANCE: f64 = 1e-10;
 
-/// Far from the workspace legs are nearly parallel: the torques of a square system that is too large for cofactors
-/// come from its normal equations, which square the condition of J_p^inv.
+/// Tolerance far from the workspace, where legs are nearly parallel.
+///
+/// Torques of a square system too large for cofactors come from normal equations, which square the
+/// condition number of J_p^inv.
 const FAR_TOLERANCE: f64 = 1e-7;
 
-/// By how much a pose is far from the workspace, m.
+/// Distance of a pose far from the workspace, m.
 const FAR: f64 = 10.0;
 
 overact_tests::library!(check);
@@ -74,16 +76,16 @@ fn is_offered(model: &RobotModel, function: Function) -> bool {
         Condition::NumericJoints => model.selection.joints == JointsBy::Newton,
         Condition::Parasitic => mechanism.is_parasitic(),
         Condition::JointsByRule => !mechanism.is_tree() && model.selection.joints == JointsBy::Rule,
-        // Whether there is a closed form is the generator's knowledge alone.
+        // Only the generator knows whether there is a closed form.
         Condition::ClosedForm => model.served(function).is_some(),
         _ => true,
     }
 }
 
-/// What a backend answers: the output, or why there is none.
+/// Answer of a backend: the output, or an error.
 type Answer = Result<Vec<f64>, SampleError>;
 
-/// The backends of a robot, to be asked the same.
+/// Backends of a robot that must agree.
 struct Contract<'a> {
     stem: &'a str,
     sizes: Sizes,
@@ -92,7 +94,7 @@ struct Contract<'a> {
 }
 
 impl Contract<'_> {
-    /// Every backend says the same about its robot.
+    /// Checks that all backends give the same information.
     fn check_info(&self) {
         let mut said = self
             .backends
@@ -109,7 +111,7 @@ impl Contract<'_> {
         }
     }
 
-    /// Everything about one function.
+    /// Checks everything about one function.
     fn check(&self, function: Function, is_offered: bool, all: &[Sample]) -> Result<(), Failure> {
         let (rows, columns) = function.shape(&self.sizes);
         let width = rows * columns;
@@ -141,7 +143,7 @@ impl Contract<'_> {
         self.check_poses(function, &inputs, width, &ask)
     }
 
-    /// Other numbers of inputs, inputs and outputs of other lengths, and no samples at all.
+    /// Checks wrong numbers of inputs, wrong lengths of inputs and outputs, and zero samples.
     fn check_lengths(
         &self,
         function: Function,
@@ -167,7 +169,7 @@ impl Contract<'_> {
             for wrong in [0, inputs[at].len() - 1, inputs[at].len() + 1, 2 * row] {
                 let mut inputs = inputs.to_vec();
                 inputs[at].resize(wrong, 0.5);
-                // Of a row of one number, two less are a row that serves all.
+                // A row of one number minus two would be a row for all samples.
                 if wrong == row {
                     continue;
                 }
@@ -217,7 +219,8 @@ impl Contract<'_> {
         Ok(())
     }
 
-    /// NaN and infinities in each input, alone and behind a sample that fails for another reason.
+    /// Checks NaN and infinities in each input, alone and after a sample that fails for another
+    /// reason.
     fn check_numbers(
         &self,
         function: Function,
@@ -253,7 +256,7 @@ impl Contract<'_> {
         }
     }
 
-    /// Bodies without mass are refused where masses are divided by.
+    /// Checks that massless bodies are rejected where a function divides by masses.
     fn check_masses(
         &self,
         function: Function,
@@ -278,7 +281,7 @@ impl Contract<'_> {
         assert_eq!(answer, error, "{}", self.stem);
     }
 
-    /// Poses out of reach, singular ones, and quaternions of any length.
+    /// Checks unreachable and singular poses, and quaternions of any length.
     fn check_poses(
         &self,
         function: Function,
@@ -294,7 +297,7 @@ impl Contract<'_> {
             let mut inputs = inputs.to_vec();
             inputs[at][size] += far;
             let _ = ask(&inputs, width * SAMPLES, &format!("a pose off by {far}"));
-            // The first sample that fails is told, whatever comes behind it.
+            // The first failing sample is reported, whatever follows.
             inputs[at][2 * size] = f64::NAN;
             let _ = ask(
                 &inputs,
@@ -332,7 +335,7 @@ impl Contract<'_> {
         Ok(())
     }
 
-    /// Forward kinematics, started from home.
+    /// Checks forward kinematics from home.
     fn check_forward_kinematics(&self, all: &[Sample]) -> Result<(), Failure> {
         let Some((_, first)) = self.backends.first() else {
             return Ok(());
@@ -392,7 +395,7 @@ impl Contract<'_> {
         Ok(())
     }
 
-    /// Where squares of what the actuators read overflow, no pose is found that is none.
+    /// Checks that no invalid pose results if squares of actuator positions overflow.
     fn check_huge_actuators(&self, actuators: &[f64], start: &[f64]) {
         for (size, (name, model)) in [1e70, 1e120, 1e150]
             .into_iter()
@@ -411,7 +414,7 @@ impl Contract<'_> {
         }
     }
 
-    /// The answer of the first backend, which must be that of all.
+    /// Answer of the first backend, which must equal that of all.
     fn agree(&self, case: &str, ask: impl Fn(&dyn Model) -> Answer) -> Answer {
         let mut answers = self
             .backends
@@ -452,7 +455,7 @@ fn is_length(answer: &Answer) -> bool {
     matches!(answer, Err(error) if matches!(error.error, Error::Length { .. }) && error.sample == 0)
 }
 
-/// Whether two errors say the same, of the same leg; by how much a condition fails may differ by rounding.
+/// Whether two errors are equal except for rounding of a condition.
 pub(super) fn is_alike(one: &SampleError, other: &SampleError) -> bool {
     let error = match (one.error, other.error) {
         (Error::OutOfReach { leg }, Error::OutOfReach { leg: other })
@@ -466,10 +469,11 @@ pub(super) fn is_alike(one: &SampleError, other: &SampleError) -> bool {
     error && one.sample == other.sample
 }
 
-/// The largest difference, relative to the largest number.
+/// Largest difference, relative to the largest number.
 fn difference(found: &[f64], wanted: &[f64]) -> f64 {
     assert_eq!(found.len(), wanted.len());
-    // What is zero but for rounding, as by how much a pose misses the closures, is not compared digit by digit.
+    // Values that are zero up to rounding, such as closure residuals, are not compared digit by
+    // digit.
     let largest = wanted.iter().fold(1e-6, |m: f64, x| m.max(x.abs()));
     let differences = found
         .iter()

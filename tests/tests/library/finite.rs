@@ -1,9 +1,8 @@
-//! Where a function has a value, the value is a number: every function of every robot, at configurations in
-//! which something is exactly zero.
+//! Values are finite: every function of every robot, at configurations with exact zeros.
 //!
-//! Random states never meet them. Here coordinates are zero, at home or at each other's mirror image, turns
-//! are right angles, platform points lie on the legs' bases, and joints are at zero and at right angles. A
-//! function may refuse any of these, as singular or out of reach; what it may not do is answer with 0/0.
+//! Random states never have these. Here coordinates are zero, at home or mirrored, rotations are
+//! right angles, platform points are on the legs' bases, and joints are at zero or right angles. A
+//! function may reject these as singular or unreachable but must not return 0/0.
 
 use overact::Model;
 use overact_codegen::RobotModel;
@@ -48,7 +47,7 @@ fn check(stem: &str, _: &dyn Model) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether the function has a value; an error if that is no number.
+/// Whether the function has a value; an error if that is not finite.
 fn is_finite(program: &Program, state: &Sample) -> Result<bool, Failure> {
     let Ok(output) = backend::evaluate(program, &|name| state.input(name).ok()) else {
         return Ok(false);
@@ -71,11 +70,12 @@ fn with(sample: &Sample, change: impl FnOnce(&mut Sample)) -> Sample {
     sample
 }
 
-/// Every choice of one of some values for each coordinate, in an order in which the first of them all stand
-/// at the front and neighbours differ in many coordinates.
+/// All combinations of values for each coordinate.
+///
+/// The combination of all first values comes first, and neighbours differ in many coordinates.
 fn choices(values: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let count: usize = values.iter().map(Vec::len).product::<usize>().min(4096);
-    // A step that has no divisor in common with the count meets every number below it once.
+    // A step that is coprime to the count visits every number below it once.
     let step = (count / 3..)
         .find(|step| common(*step, count) == 1)
         .unwrap_or(1);
@@ -96,7 +96,7 @@ const fn common(a: usize, b: usize) -> usize {
     if b == 0 { a } else { common(b, a % b) }
 }
 
-/// Poses on axes, at home, and with platform points on the bases of legs.
+/// Poses on axes, at home, and with platform points on leg bases.
 fn poses(model: &RobotModel) -> Vec<Vec<f64>> {
     let mechanism = &model.mechanism;
     let home = &mechanism.home.pose;
@@ -130,7 +130,7 @@ fn poses(model: &RobotModel) -> Vec<Vec<f64>> {
     turns.iter().flat_map(turned).collect()
 }
 
-/// Unit quaternions of turns by right angles about the axes, the straight one first.
+/// Unit quaternions of right-angle rotations about the axes, the identity first.
 fn quaternions() -> Vec<Vec<f64>> {
     let mut all = vec![vec![1.0, 0.0, 0.0, 0.0]];
     for axis in 1..4 {

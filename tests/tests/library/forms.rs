@@ -1,6 +1,8 @@
-//! All forms of a function give the same numbers: those which a robot's functions are not written in, because
-//! another needs fewer operations, are seen nowhere else. They are the two forms of the forces of given parameters,
-//! and the formulations among which the generator chooses.
+//! All forms of a function give the same numbers.
+//!
+//! Forms that a robot's functions do not use, because another needs fewer operations, are tested
+//! only here. They are the two forms of the forces of given parameters, and the alternative
+//! formulations of the generator.
 
 use overact::{Columns, Function, Model};
 use overact_codegen::RobotModel;
@@ -14,7 +16,7 @@ use overact_tests::support::{Agreement, Failure};
 const TOLERANCE: f64 = 1e-10;
 const STATES: usize = 10;
 
-/// Of so many formulations of a robot one is tried; all of robots with few.
+/// One in this many formulations of a robot is tested; all for robots with few.
 const PART: usize = 12;
 
 overact_tests::library!(check);
@@ -70,7 +72,7 @@ fn check(stem: &str, _: &dyn Model) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A function in other formulations than the robot's.
+/// Function in other formulations than the robot's.
 fn formulated(
     stem: &str,
     model: &RobotModel,
@@ -95,9 +97,9 @@ fn formulated(
     let wanted = program(own).map_err(|error| format!("{stem}: {error:?}"))?;
     let others = formulations(&model.mechanism, function, own);
     let step = others.len().div_ceil(PART).max(1);
-    // The last ones have the most changes, and are all tried.
+    // The last ones have the most changes.
     for formulation in others.iter().rev().step_by(step) {
-        // A form in which a leg cannot be written is none to choose.
+        // A formulation that is impossible for a leg is not a candidate.
         let Ok(found) = program(formulation) else {
             continue;
         };

@@ -1,5 +1,6 @@
-//! With known parameters the dynamics have them as constants, and the base parameters alone: the same
-//! numbers as from parameters that are given, in fewer operations.
+//! With known parameters, the dynamics have base parameters as constants.
+//!
+//! They give the same numbers as with parameters as inputs, in fewer operations.
 
 use overact::{Columns, Function};
 use overact_codegen::{Effort, Request, compile_with};
@@ -21,7 +22,7 @@ const DYNAMICS: [Function; 4] = [
     Function::ForwardDynamics(Columns::Standard),
 ];
 
-/// Robots of the default tier and of the full one.
+/// Robots of the default and full tier.
 const ROBOTS: [&[&str]; 2] = [
     &["dualv", "emps", "rx90"],
     &[

@@ -1,9 +1,10 @@
-//! Every robot of `robots/`, compiled and evaluated: against the numeric reference, against the energy,
-//! against the recursive Newton-Euler algorithm, at singularities and where something is exactly zero, platforms that move aside, the
-//! ranks of its regressor, and backend against backend for every kind of input,
-//! and with known parameters.
+//! Tests of every robot of `robots/`, compiled and evaluated.
 //!
-//! One binary, so that each robot is derived once for all of these.
+//! They compare with the numeric reference, the energy and the recursive Newton-Euler algorithm.
+//! They also cover singularities, exact zeros, parasitic motion, ranks of the regressor, agreement
+//! of backends for every kind of input, and known parameters.
+//!
+//! One binary, so that each robot is derived once for all tests.
 
 mod agreement;
 mod contract;

@@ -1,8 +1,8 @@
 //! Serial and tree robots agree with the recursive Newton-Euler algorithm, compiled and evaluated.
 //!
-//! The reference's recursion runs over all bodies in the base frame and knows of no closure, no
-//! projection and no base parameters. Beside torques and regressor, the base parameters' regroupings are
-//! checked: the columns of the independent parameters times the regrouped values are the same torques.
+//! The reference's recursion uses the base frame for all bodies and has no closure, projection or
+//! base parameters. Regroupings are checked as well: columns of the base parameters times their
+//! regrouped values give the same torques.
 
 use nalgebra::{DMatrix, DVector};
 use overact::{Columns, Function};
@@ -70,7 +70,7 @@ fn branched_arm() -> Result<(), Failure> {
     agree(&model, &expected, &BranchedArm)
 }
 
-/// What is compared, by name.
+/// Names of the compared quantities.
 const QUANTITIES: [&str; 6] = [
     "torques",
     "standard regressor",
@@ -90,7 +90,7 @@ fn agree(model: &RobotModel, expected: &Expected, compiled: &dyn Model) -> Resul
             let found = found(model, backend, sample)?;
             let wanted = wanted(expected, sample)?;
             for ((agreement, found), wanted) in agreements.iter_mut().zip(&found).zip(&wanted) {
-                // The trait of compiled robots serves the standard columns only.
+                // The trait of compiled robots offers the standard columns only.
                 if let Some(found) = found {
                     agreement.compare(found, wanted);
                 }
@@ -107,7 +107,7 @@ fn agree(model: &RobotModel, expected: &Expected, compiled: &dyn Model) -> Resul
     Ok(())
 }
 
-/// The robot's functions in the order of [`QUANTITIES`].
+/// The robot's results in the order of [`QUANTITIES`].
 fn found(
     model: &RobotModel,
     backend: &dyn Backend,
@@ -132,7 +132,7 @@ fn found(
     ])
 }
 
-/// Values of the base parameters: their own and what is regrouped into them.
+/// Values of the base parameters, including regrouped ones.
 fn base_values(model: &RobotModel, sample: &Sample) -> DMatrix<f64> {
     let value = |parameter| {
         let at = model

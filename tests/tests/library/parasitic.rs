@@ -1,4 +1,5 @@
-//! Platforms that move aside: what their legs block, poses off the closures, and the way back onto them.
+//! Platforms with parasitic motion: blocked directions, poses off the closures, and the return to
+//! them.
 
 use nalgebra::DMatrix;
 use overact::{Error, Function, Model};
@@ -50,7 +51,7 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A pose that is moved aside by itself is refused, and the leg named.
+/// A pose with a changed dependent coordinate is rejected with the name of the leg.
 fn refused(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
     let independent = robot.info().coordinates;
     let names = ["x", "y", "z", "rx", "ry", "rz"];
@@ -75,7 +76,7 @@ fn refused(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// From a pose that is near and off the closures, forward kinematics finds the one of the actuators.
+/// From a near pose off the closures, forward kinematics finds that of the actuators.
 fn brought_back(
     stem: &str,
     robot: &dyn Model,

@@ -1,5 +1,6 @@
-//! The step of forward kinematics is (J_p^inv)⁺ times what the actuators miss, for any difference and not only for
-//! those of poses that exist, and whole turns of an angle are none.
+//! A step of forward kinematics is (J_p^inv)⁺ times the actuators' residual, for any residual.
+//!
+//! Full turns of an angle do not count.
 
 use nalgebra::{DMatrix, DVector};
 use overact::{Function, Model, SampleError, math::wrap_angle};
@@ -55,7 +56,7 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Of actuators that no pose may have, forward kinematics finds a pose that has them, or none.
+/// For unreachable actuator positions, forward kinematics finds a pose that has them, or an error.
 fn fits_or_refuses(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
     let info = robot.info();
     let mut home = vec![0.0; info.sizes.actuators];
@@ -88,8 +89,10 @@ fn fits_or_refuses(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Poses at which two actuators' rows are parallel in the first two coordinates, which may be those that the step
-/// divides by, while J_p^inv is regular: forward kinematics finds them all the same.
+/// Forward kinematics succeeds at poses where a 2 × 2 block of J_p^inv is singular.
+///
+/// Two actuators' rows are parallel in the first two coordinates, by which the step may divide,
+/// while J_p^inv is regular.
 fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
     let sizes = robot.info().sizes;
     let home = robot.info().home_pose.to_vec();
@@ -146,7 +149,7 @@ fn is_reached(robot: &dyn Model, pose: &[f64]) -> bool {
     done.is_ok()
 }
 
-/// The step is right or refused, so that forward kinematics goes on by normal equations.
+/// The step is right or an error, after which forward kinematics uses normal equations.
 fn steps_or_refuses(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
     let (n, r) = (robot.info().sizes.actuators, robot.info().sizes.dof);
     let (mut actuators, mut rows) = (vec![0.0; n], vec![0.0; n * r]);
@@ -171,7 +174,7 @@ fn steps_or_refuses(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), F
     Ok(())
 }
 
-/// Forward kinematics from beside a pose finds it.
+/// Forward kinematics from near a pose finds it.
 fn returns(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
     let mut actuators = vec![0.0; robot.info().sizes.actuators];
     let done = robot.evaluate(Function::ActuatorPositions, &[pose], &mut actuators);

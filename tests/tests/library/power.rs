@@ -1,9 +1,9 @@
-//! The power of the motors is the change of the energy, for every robot of `robots/`.
+//! The power of the motors is the rate of change of the energy, for every robot of `robots/`.
 //!
-//! Energy comes from positions and velocities alone and is differentiated along a path through the
-//! state; torques and actuator velocities come from the compiled functions and from evaluation, with
-//! parameters without friction. Seven-point differences over 0.3 ms, less where joints are fast, leave
-//! about 1e-11 of the largest power.
+//! Energy comes from positions and velocities and is differentiated along a path through the state.
+//! Torques and actuator velocities come from the compiled functions and from evaluation, without
+//! friction. Seven-point differences over 0.3 ms, less for fast joints, leave about 1e-11 of the
+//! largest power.
 
 use nalgebra::{DMatrix, DVector};
 use overact::Model;
@@ -17,7 +17,7 @@ use overact_tests::support::{Backend, Evaluated, Failure, Sample, Served};
 use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-9;
-/// What rounding of the energy may add to its differences, in units of the last place of the energy.
+/// Rounding of the energy in its differences, in units of the last place.
 const ROUNDING: f64 = 16.0;
 /// States of each robot in the default tier and in the full one.
 const STATES: [usize; 2] = [6, 200];
@@ -35,7 +35,7 @@ fn balance(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
         let energy =
             |state: &_| DVector::from_element(1, total_energy(&expected.mechanism, state, &chi));
         let (change, _) = trajectory::derivatives(&expected.mechanism, &sample.state, energy)?;
-        // Near standstill the power is smaller than what rounding makes of the difference of energies.
+        // Near standstill the power is smaller than the rounding of energy differences.
         let step = trajectory::step(&sample.state);
         let rounding = ROUNDING * f64::EPSILON * energy(&sample.state)[0].abs() / step;
         for (worst, backend) in worst.iter_mut().zip(&backends) {

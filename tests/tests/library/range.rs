@@ -1,5 +1,6 @@
-//! Finite inputs of any size: a function gives finite numbers or an error, and compiled and interpreted robots give the
-//! same error.
+//! For finite inputs of any size, functions give finite numbers or an error.
+//!
+//! Compiled and interpreted robots give the same error.
 
 use super::contract::is_alike;
 use overact::{Error, Function, Model, SampleError};
@@ -38,7 +39,7 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
                     assert!(numbers.all(|x| x.is_finite()), "{case}: {one:?}, {other:?}");
                     answered += 1;
                 }
-                // Both round differently, so that a guard at its limit may hold for one alone.
+                // Rounding differs, so a guard at its limit may hold for one only.
                 (Ok(numbers), Err(error)) | (Err(error), Ok(numbers))
                     if is_at_limit(&error.error) =>
                 {
@@ -72,8 +73,8 @@ fn ask(
     Ok(output)
 }
 
-/// Inputs of a function at a regular state, one of which has another size; in every third case all are random numbers of
-/// any size.
+/// Inputs of a function at a regular state with one of another size; in every third case all are
+/// random numbers of any size.
 fn inputs(
     function: Function,
     sample: &Sample,
@@ -142,7 +143,7 @@ fn forward_kinematics(
     Ok(())
 }
 
-/// Whether the error is that of a guard on a determinant or radicand, whose limit depends on rounding.
+/// Whether the error is that of a guard whose limit depends on rounding.
 fn is_at_limit(error: &Error) -> bool {
     matches!(
         error,
@@ -156,7 +157,7 @@ fn is_extreme(number: &f64) -> bool {
     magnitude > 1e20 || (magnitude > 0.0 && magnitude < 1e-20)
 }
 
-/// Random numbers that are alike whenever they are drawn.
+/// Reproducible random numbers.
 struct Dice(u64);
 
 impl Dice {
@@ -170,7 +171,7 @@ impl Dice {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Of a magnitude between 1e-300 and 1e308, of either sign; every other one below 1e20.
+    /// Magnitude between 1e-300 and 1e308, either sign; every other one below 1e20.
     fn number(&mut self) -> f64 {
         let largest = if self.fraction() < 0.5 { 20.0 } else { 308.0 };
         let magnitude = 10.0_f64.powf(-300.0 + (300.0 + largest) * self.fraction());

@@ -1,12 +1,14 @@
-//! Number of base parameters of ten structures: ranks of the standard case-1 regressor over random
-//! states.
+//! Number of base parameters of ten structures: ranks of the standard regressor over random states.
 //!
-//! Each structure is a robot of `robots/` with three lists of parameters: all 14 of every joint and the
-//! platform's 10; the same without the inertia of massless bodies and the rotors of passive joints; and
-//! those without friction and offsets. The reference's regressor, which comes from Lagrange multipliers,
-//! and the generated one have the rank that is expected, and as many base parameters are chosen. Columns
-//! are scaled to unit length; the singular value after the last that counts is four decades smaller at
-//! least.
+//! Each structure is a robot of `robots/` with three lists of parameters:
+//!
+//! - all 14 of every joint and the platform's 10;
+//! - those without the inertia of massless bodies and the rotors of passive joints;
+//! - those without friction and offsets.
+//!
+//! The reference's regressor, from Lagrange multipliers, and the generated one must have the
+//! expected rank, which is the number of base parameters. Columns are scaled to unit length. The
+//! singular value after the last that counts must be at least four decades smaller.
 
 use nalgebra::DMatrix;
 use overact::{Columns, Function};
@@ -24,12 +26,12 @@ use overact_tests::support::sample::samples;
 use overact_tests::support::{Failure, Sample};
 use overact_tier::is_full;
 
-/// Rows per column: enough that chance leaves no singular value small.
+/// Rows per column; enough to avoid small singular values by chance.
 const ROWS: usize = 3;
-/// Base parameters of a robot whose ranks take seconds.
+/// Number of base parameters from which ranks take seconds.
 const LONG: usize = 60;
 
-/// Which parameters there are.
+/// Parameter lists.
 #[derive(Clone, Copy, Debug)]
 enum Lists {
     /// All of every joint and of the platform.
@@ -50,7 +52,7 @@ fn with_lists(stem: &str, lists: Lists) -> Result<Mechanism, Failure> {
     for joint in joints {
         let is_massless = joint.parameters.iter().all(|p| !p.is_inertial());
         let has = |p: StandardParameter| match lists {
-            // A frame that is fixed on a body is no body of its own.
+            // A frame fixed to a body is not a body of its own.
             _ if joint.kind == JointKind::Fixed => false,
             Lists::All => true,
             _ if p.is_inertial() => !is_massless,
@@ -71,8 +73,7 @@ fn with_lists(stem: &str, lists: Lists) -> Result<Mechanism, Failure> {
     Ok(mechanism)
 }
 
-/// Compares the ranks with all three lists; where they are long, with that of the real parameters alone in the
-/// default tier.
+/// Compares the ranks for all three lists; large ones only for real parameters in the default tier.
 fn check(stem: &str, expected: [usize; 3]) -> Result<(), Failure> {
     if !is_of_the_tier(stem) {
         return Ok(());
@@ -124,7 +125,7 @@ fn ranks(stem: &str, lists: Lists) -> Result<[Rank; 3], Failure> {
     Ok([Rank::of(&observed), generated, chosen])
 }
 
-/// The reference's regressor over all samples: all columns of the parameters that there are.
+/// Reference regressor over all samples with all available parameters.
 fn observation(expected: &Expected, all: &[Sample]) -> Result<DMatrix<f64>, Failure> {
     let rows = expected.mechanism.dof();
     let mut matrix = DMatrix::zeros(rows * all.len(), expected.standard.len());

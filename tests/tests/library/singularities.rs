@@ -1,10 +1,11 @@
-//! Near singular configurations the robots say so, compiled and evaluated: which leg, or which actuators,
-//! and by how much.
+//! Near singular configurations, compiled and evaluated robots report the leg or actuators, and the
+//! condition.
 //!
-//! Legs are led to their singularity by their joints: a stretched arm, a rod that lies along the first
-//! axis of its universal joint. Partitions are led there by the pose: along a path the determinant of the
-//! kept actuators' rows of J_p^inv changes its sign, and bisection meets the place to rounding. There
-//! case 2 has no value and says so; case 1, which needs no partition, has one.
+//! Legs are moved to their singularity by their joints: a stretched arm, or a rod along the first
+//! axis of its universal joint. Partitions are moved there by the pose: along a path, the
+//! determinant of the kept actuators' rows of J_p^inv changes its sign, and bisection finds the
+//! place. There the actuator projection has no value; the platform projection, which needs no
+//! partition, has one.
 
 use nalgebra::DMatrix;
 use overact::Error;
@@ -19,7 +20,7 @@ use overact_tests::support::sample::samples;
 use overact_tests::support::served::project;
 use overact_tests::support::{Backend, Failure, Sample, conversion, description};
 
-/// The functions that are called; the others need not be generated.
+/// Functions that are called; others are not generated.
 const FUNCTIONS: [&str; 6] = [
     "inverse_jacobian",
     "inverse_jacobian_from_joints",
@@ -52,16 +53,16 @@ backends! {
     Kept234: partitions::kept_234::DualV,
 }
 
-/// Why a function has no value.
+/// Error of a function without a value.
 #[derive(Clone, Debug, PartialEq)]
 struct Refusal {
-    /// The leg, or which actuators.
+    /// Leg, or actuators.
     what: String,
-    /// How many times smaller a determinant is than at home; 0 where a leg does not reach.
+    /// Ratio of the determinant at home to that here; 0 if a leg does not reach.
     condition: f64,
 }
 
-/// A robot in both forms and a sample to be moved.
+/// A robot in both forms, and a sample to be moved.
 struct Robot<'a> {
     compiled: &'a dyn Backend,
     model: RobotModel,
@@ -109,7 +110,7 @@ impl<'a> Robot<'a> {
         sample
     }
 
-    /// What compiled code and evaluation give.
+    /// Values of compiled code and evaluation.
     fn call(
         &self,
         function: &str,
@@ -174,7 +175,7 @@ impl<'a> Robot<'a> {
         })
     }
 
-    /// Both forms refuse, and for the same reason; the condition is at least this.
+    /// Asserts that both forms fail for the same reason with at least this condition.
     fn assert_refused(
         &self,
         function: &str,
@@ -246,9 +247,10 @@ fn compiled_refusal(failure: Failure) -> Result<Refusal, Failure> {
     Ok(Refusal { what, condition })
 }
 
-/// A leg's joint goes to where the leg is singular: within 1e-10 rad that is an error with the leg's
-/// name, at 1e-4 rad there is a value. The leg's determinant goes with the sine of the distance, so the
-/// condition number is that of home over that.
+/// Moves a leg's joint to the leg's singularity.
+///
+/// Within 1e-10 rad the error names the leg; at 1e-4 rad there is a value. The leg's determinant is
+/// proportional to the sine of the distance, which determines the condition number.
 fn check_leg(
     robot: &Robot<'_>,
     functions: &[&str],
@@ -285,7 +287,7 @@ fn a_stretched_arm_of_the_five_bar_is_named() -> Result<(), Failure> {
     let robot = Robot::new("five_bar", &FiveBar)?;
     check_leg(&robot, &BOTH, 1, 0.0, "left")?;
     check_leg(&robot, &BOTH, 3, 0.0, "right")?;
-    // From the pose, what lies beyond the stretched arm is out of its reach: 0.45 m from the motor.
+    // From the pose, positions beyond the stretched arm are out of reach: 0.45 m from the motor.
     for (x, leg) in [(-0.1 + 0.451, "left"), (0.1 - 0.451, "right")] {
         let sample = robot.at(&[x, 0.0]);
         robot.assert_refused("idm_red_platform", &sample, leg, 0.0)?;
@@ -302,7 +304,7 @@ fn a_stretched_leg_of_the_3rrr_is_named() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The drive's rate is the velocity along the rod even there; what is lost is the cross's.
+/// The drive's rate is the velocity along the rod even there; the cross joint's rate is lost.
 #[test]
 fn a_rod_of_the_hexapod_along_the_first_axis_of_its_joint_is_named() -> Result<(), Failure> {
     let robot = Robot::new("hexapod", &Hexapod)?;
@@ -317,8 +319,8 @@ fn a_rod_of_the_hexapod_along_the_first_axis_of_its_joint_is_named() -> Result<(
     Ok(())
 }
 
-/// Where the kept actuators become singular on the path, case 2 says so and case 1 has a value; beside
-/// that place both have.
+/// Where the kept actuators become singular on the path, only the platform projection has a value;
+/// nearby both have.
 fn check_partition(
     robot: &Robot<'_>,
     path: impl Fn(f64) -> Vec<f64>,
@@ -343,7 +345,7 @@ fn check_partition(
     Ok(sample)
 }
 
-/// The condition number of a partition by the runtime.
+/// Condition number of a partition by the runtime.
 fn by_runtime(robot: &Robot<'_>, sample: &Sample, kept: &[usize]) -> Result<f64, Error> {
     let jacobian = robot.compiled.call("inverse_jacobian", sample);
     let jacobian = jacobian.map_err(|_| Error::Overflow)?;
@@ -352,7 +354,7 @@ fn by_runtime(robot: &Robot<'_>, sample: &Sample, kept: &[usize]) -> Result<f64,
     Ok(condition)
 }
 
-/// Without redundancy the partition is the robot: inverse dynamics has no value either.
+/// Without redundancy the only partition is the robot, so inverse dynamics has no value either.
 fn check_robot(
     robot: &Robot<'_>,
     path: impl Fn(f64) -> Vec<f64>,
@@ -366,7 +368,7 @@ fn check_robot(
 #[test]
 fn five_bar_with_distal_links_in_line() -> Result<(), Failure> {
     let robot = Robot::new("five_bar", &FiveBar)?;
-    // The elbows are half a metre apart where the point is at the height of both.
+    // The elbows are half a metre apart if the point is at the height of both.
     let path = |y: f64| vec![0.0, y];
     let bracket = [0.12, 0.15];
     check_robot(&robot, path, bracket)?;
@@ -393,7 +395,7 @@ fn hexapod_turned_by_a_right_angle() -> Result<(), Failure> {
     check_robot(&robot, turned, [0.2, 2.2])
 }
 
-/// Each partition of the DualV has singular places of its own, where the others are regular.
+/// Each partition of the DualV has its own singular places, where the others are regular.
 #[test]
 fn every_partition_of_the_dualv_is_singular_elsewhere() -> Result<(), Failure> {
     let source = description("dualv")?;
@@ -435,7 +437,8 @@ fn octopod_tilted_until_its_kept_legs_are_singular() -> Result<(), Failure> {
         vec![0.02, -0.01, 0.5, cosine, x, y, 0.0]
     };
     let sample = check_partition(&robot, tilted, [-1.65, -1.5])?;
-    // The robot is far from a singularity: all eight legs hold the platform, and so do other six.
+    // The robot is far from a singularity: all eight legs support the platform, and so do other
+    // six.
     robot.assert_regular("inverse_dynamics", &sample)?;
     let kept = &robot.model.selection.kept_actuators;
     let mut partitions = 0;

@@ -100,11 +100,11 @@ fn tree_torques_are_the_corrected_ones() -> Result<(), Error> {
     for (seed, state) in random_states(&robot, 50, 13)?.iter().enumerate() {
         let mut chi = random_parameters(&robot, seed as u64);
         for leg in 0..4 {
-            // The third body is massless in (51); passive rotors and offsets are left out.
+            // The third body is massless in (51); passive rotors and offsets are omitted.
             let start = BODY * 3 * leg;
             chi.rows_mut(start + 2 * BODY, INERTIAL).fill(0.0);
             for body in 0..3 {
-                // Friction of other kinds is not in (51) either.
+                // Other kinds of friction are not in (51) either.
                 chi.rows_mut(start + BODY * body + 13, BODY - 13).fill(0.0);
                 if body > 0 {
                     chi[start + BODY * body + 10] = 0.0;
@@ -181,7 +181,7 @@ fn partition_is_singular_where_the_robot_is_regular() -> Result<(), Error> {
     let jacobians = &dynamics.jacobians;
     let kept = jacobians.inverse.rows(0, 3).into_owned();
     let partition = condition(&dynamics.partition_matrix(&[3]));
-    // Lengths and angles are comparable once the rotation column is divided by r_p.
+    // Lengths and angles are comparable after dividing the rotation column by r_p.
     let mut scaled = jacobians.a_p.clone();
     scaled.column_mut(2).scale_mut(1.0 / RP);
     let (a_p, b_p) = (condition(&scaled), condition(&jacobians.b_p));
@@ -189,7 +189,7 @@ fn partition_is_singular_where_the_robot_is_regular() -> Result<(), Error> {
         "A_p {a_p:.3}, B_p {b_p:.3}, kept {:.1e}, (33) {partition:.1e}",
         condition(&kept)
     );
-    // The pose has six digits, which meets the singularity to nine.
+    // The pose has six digits, which gives the singularity to nine.
     assert!(condition(&kept) > 1e8);
     assert!(partition > 1e8);
     assert!(a_p < 2.2 && b_p < 1.7);

@@ -1,8 +1,13 @@
-//! The numeric reference's dynamics, its parts against each other.
+//! Consistency of the numeric reference's dynamics.
 //!
-//! Two derivations of one quantity agree to the conditioning of the state, at most about 1e3
-//! roundings: 1e-12, and 1e-11 for partitions up to condition 1e4. Power comes from differentiated
-//! energies: 1e-9.
+//! Two derivations of one quantity agree up to conditioning, at most about 1e3 roundings.
+//! Tolerances:
+//!
+//! | quantity | tolerance |
+//! |---|---|
+//! | usual | 1e-12 |
+//! | partitions up to condition 1e4 | 1e-11 |
+//! | power from differentiated energies | 1e-9 |
 
 use nalgebra::DVector;
 use overact_tests::reference::linear::{null_space, relative_difference};
@@ -62,7 +67,7 @@ fn case_2_recovers_the_kept_torques_of_every_partition() -> Result<(), Error> {
         for (seed, state) in random_states(&robot, 4, 23)?.iter().enumerate() {
             let chi = random_parameters(&robot, seed as u64);
             let dynamics = Dynamics::new(&robot, state)?;
-            // Any admissible torques will do: least norm and some internal load.
+            // Any admissible torques suffice: least norm plus some internal torques.
             let basis = dynamics.internal_loads();
             let preload = &basis * DVector::from_element(actuators - dof, 3.0);
             let torques = dynamics.least_norm_torques(&chi)? + preload;

@@ -1,4 +1,4 @@
-//! The numeric reference says what is wrong instead of giving wrong numbers.
+//! The numeric reference reports errors instead of wrong numbers.
 
 use nalgebra::DVector;
 use overact_tests::reference::{Dynamics, Error, Motion, State, robots};
@@ -29,7 +29,7 @@ fn planar_legs_can_not_follow_a_spatial_platform() {
 #[test]
 fn free_links_are_not_determined() {
     let mut robot = robots::five_bar();
-    // A platform point on the middle of the chain leaves the rest of the leg free.
+    // A platform point in the middle of the chain leaves the rest of the leg free.
     robot.legs[0].end = overact_tests::reference::End::Point {
         joint: 0,
         along: [true; 3],

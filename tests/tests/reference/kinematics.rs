@@ -1,7 +1,7 @@
-//! The numeric reference's kinematics against finite differences of positions.
+//! The numeric reference's kinematics compared with finite differences of positions.
 //!
-//! Seven-point differences with a step of 0.3 ms: rounding of positions (1e-15) leaves about 1e-11 in
-//! velocities and 1e-8 in accelerations; the tolerances stand a decade or two above.
+//! Seven-point differences with a step of 0.3 ms: rounding of positions (1e-15) leaves about 1e-11
+//! in velocities and 1e-8 in accelerations. The tolerances have a margin of one or two decades.
 
 use nalgebra::DVector;
 use overact_tests::reference::kinematics::BodyMotion;
@@ -119,7 +119,7 @@ fn reduced_closure_and_inverse_jacobian_agree() -> Result<(), Error> {
     for (name, robot) in robots::all() {
         for state in random_states(&robot, 5, 4)? {
             let jacobians = state.jacobians(&robot)?;
-            // a_p v + b_p q̇ = 0 whatever v, so A_p + B_p J_p^inv vanishes (11), (20).
+            // a_p v + b_p q̇ = 0 for any v, so A_p + B_p J_p^inv vanishes (11), (20).
             let sum = &jacobians.a_p + &jacobians.b_p * &jacobians.inverse;
             assert!(
                 sum.amax() < 1e-12 * jacobians.a_p.amax().max(1.0),

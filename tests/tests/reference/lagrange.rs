@@ -1,8 +1,8 @@
-//! The numeric reference against Lagrange's equations, all components at once.
+//! The numeric reference compared with Lagrange's equations, all components at once.
 //!
-//! Γ¹ = d/dt ∂T/∂ẋ - ∂(T - V)/∂x holds where the twist coordinates are derivatives of the pose's,
-//! that is for all motions but the free rotations. T is quadratic in ẋ, so its derivative by ẋ is
-//! exact; the others are seven-point differences, good to 1e-9 here.
+//! Γ¹ = d/dt ∂T/∂ẋ - ∂(T - V)/∂x holds if the twist coordinates are derivatives of the pose's, that
+//! is for all motions except free rotations. T is quadratic in ẋ, so its derivative by ẋ is exact.
+//! The others are seven-point differences with errors of about 1e-9.
 
 use nalgebra::{DVector, Vector3};
 use overact_tests::reference::states::{frictionless, random_parameters, random_states};
@@ -56,7 +56,7 @@ fn platform_inputs_satisfy_lagrange() -> Result<(), Error> {
             let (mut expected, _) =
                 trajectory::derivatives(&robot, state, |s| momentum(&robot, s, &chi))?;
             for at in 0..dof {
-                // A path along one pose coordinate, the twist within T held as it is.
+                // A path along one pose coordinate with a fixed twist in T.
                 let along = State {
                     twist: unit(dof, at),
                     acceleration: DVector::zeros(dof),

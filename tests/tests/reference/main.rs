@@ -1,4 +1,5 @@
-//! The numeric reference itself, against the paper's formulas, finite differences and Lagrange's equations.
+//! Tests of the numeric reference: the paper's formulas, finite differences and Lagrange's
+//! equations.
 
 mod dualv;
 mod dynamics;

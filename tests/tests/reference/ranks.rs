@@ -1,9 +1,9 @@
-//! Number of base parameters of the DualV: ranks of the case-1 regressor over random states.
+//! Number of base parameters of the DualV: ranks of the regressor over random states.
 //!
-//! Of the friction columns, twelve viscous and twelve dry ones are independent, but only nine
-//! offsets: the sum of a leg's three offsets is a moment on the platform, the same for all legs.
-//! With sixteen inertial ones the robot has 12 + 12 + 9 + 16 = 49, and the eight rotors of passive
-//! joints bring 57. Singular values of columns scaled to unit length show a gap of many decades.
+//! Twelve viscous and twelve dry friction columns are independent, but only nine offsets: the sum
+//! of a leg's three offsets is a moment on the platform, the same for all legs. With sixteen
+//! inertial parameters these are 49. The eight rotors of passive joints increase the rank to 57.
+//! Singular values of columns scaled to unit length show a gap of many decades.
 
 use nalgebra::DMatrix;
 use overact_tests::reference::linear::{normalized_singular_values, rank};
@@ -12,12 +12,12 @@ use overact_tests::reference::robots::dualv;
 use overact_tests::reference::states::random_states;
 use overact_tests::reference::{Dynamics, Error};
 
-/// Parameters of (2) and (5); those behind them are a spring and friction of other kinds.
+/// Parameters of (2) and (5); a spring and other kinds of friction follow.
 const USUAL: usize = 14;
 
 const TOLERANCE: f64 = 1e-9;
 
-/// Case-1 regressor over random states, without the payload's columns.
+/// Platform-projection regressor over random states, without the payload's columns.
 fn observation(states: usize) -> Result<DMatrix<f64>, Error> {
     let robot = dualv();
     let columns = platform_start(&robot) + INERTIAL;

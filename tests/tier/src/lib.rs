@@ -1,14 +1,13 @@
-//! Which tier of the tests runs.
+//! Tier of the tests.
 //!
-//! `cargo test --workspace` runs the default tier: every test, over few states, mechanisms and seeds.
-//! `OVERACT_TESTS=full cargo test --workspace` runs the full tier: the same tests over many, and
-//! `OVERACT_TESTS=night` what takes minutes of compiling besides. A test asks here how much it has to do;
-//! nothing else reads the variables.
+//! `cargo test --workspace` runs the default tier: every test, with few states, mechanisms and
+//! seeds. `OVERACT_TESTS=full` runs the full tier: the same tests with many. `OVERACT_TESTS=night`
+//! also runs tests that take minutes of compilation. Only this crate reads the variables.
 
-/// The environment variable that chooses how many robots, or draws of noise, are taken at random.
+/// Environment variable for the number of random robots or draws of noise.
 pub const COUNT: &str = "OVERACT_RANDOM_COUNT";
 
-/// The environment variable that chooses the tier.
+/// Environment variable for the tier.
 pub const VARIABLE: &str = "OVERACT_TESTS";
 
 /// The tiers, the smallest first.
@@ -19,11 +18,11 @@ enum Tier {
     Night,
 }
 
-/// The tier that runs.
+/// The current tier.
 ///
 /// # Panics
 ///
-/// If the variable has a value that names no tier: a misspelled one would run too little unnoticed.
+/// If the variable has an unknown value, which would otherwise run too little unnoticed.
 fn tier() -> Tier {
     let Some(value) = std::env::var_os(VARIABLE) else {
         return Tier::Default;
@@ -39,26 +38,28 @@ fn tier() -> Tier {
     }
 }
 
-/// Whether the full tier runs, or that of the night.
+/// Whether the full or nightly tier runs.
 #[must_use]
 pub fn is_full() -> bool {
     tier() >= Tier::Full
 }
 
-/// Whether the tier of the night runs, which leaves out nothing.
+/// Whether the nightly tier runs, which omits nothing.
 #[must_use]
 pub fn is_night() -> bool {
     tier() == Tier::Night
 }
 
-/// How much the tier that runs has to do, of `[default, full]`.
+/// Value for the current tier, from `[default, full]`.
 #[must_use]
 pub fn by_tier<T>([default, full]: [T; 2]) -> T {
     if is_full() { full } else { default }
 }
 
-/// Those of many robots of which the tier takes its part: all at night, every second one in the full tier, none in the
-/// default one, whose tests have a few of their own.
+/// Subset of many robots for the current tier.
+///
+/// All in the nightly tier, every second one in the full tier. The default tier has none, since its
+/// tests have a few of their own.
 #[must_use]
 pub fn of_many<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
     match tier() {
@@ -68,11 +69,11 @@ pub fn of_many<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
     }
 }
 
-/// How many robots, or draws of noise, are taken at random: as many as is asked for, or as the tier has.
+/// Number of random robots or draws of noise: from the environment, or that of the tier.
 ///
 /// # Panics
 ///
-/// If what is asked for is no number.
+/// If the variable is not a number.
 #[must_use]
 pub fn drawn(by_tier: [u64; 2]) -> u64 {
     let Some(count) = std::env::var_os(COUNT) else {

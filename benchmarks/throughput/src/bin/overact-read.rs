@@ -1,4 +1,4 @@
-//! A log read and checked, timed: `overact-read DESCRIPTION LOG` prints the seconds of the processor.
+//! Times reading and checking a log: `overact-read DESCRIPTION LOG` prints processor seconds.
 
 use overact_codegen::{Source, compile};
 use overact_identification::{Mapping, data::read};
@@ -9,10 +9,10 @@ use overact::Model;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Time of the processor that this process has taken so far, s.
+/// Processor time of this process so far, s.
 fn processor_time() -> Result<f64, Failure> {
     let mut nanoseconds = 0.0;
-    // Each thread has an account of its own.
+    // Each thread is accounted separately.
     for task in fs::read_dir("/proc/self/task")? {
         let text = fs::read_to_string(task?.path().join("schedstat"))?;
         nanoseconds += text

@@ -1,5 +1,5 @@
-//! `traps ROBOTS…`: what identifications say of data with one known fault each, and how often they
-//! accuse faultless data.
+//! `traps ROBOTS…`: results of identifications with one known fault each, and false alarms on
+//! faultless data.
 
 use clap::Parser;
 use overact_identification::Grade;
@@ -39,7 +39,7 @@ struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// The outcomes of all traps of a robot.
+/// Outcomes of all traps of a robot.
 fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> {
     let mut subject = Subject::load(path)?;
     subject.shorten(arguments.part);
@@ -71,7 +71,7 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
     all.par_iter().map(one).collect()
 }
 
-/// Most characters of the first words.
+/// Largest number of characters of a message.
 const WORDS: usize = 200;
 
 /// One row for each trap of a robot.
@@ -119,7 +119,7 @@ fn table(outcomes: &[Outcome]) -> String {
     text
 }
 
-/// How often faultless draws of a robot are accused, and by which checks.
+/// False alarms on faultless draws of a robot, by check.
 fn accused(arguments: &Arguments, path: &Path, draws: u64) -> Result<String, Failure> {
     let mut subject = Subject::load(path)?;
     subject.shorten(arguments.part);

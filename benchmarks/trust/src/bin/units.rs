@@ -1,4 +1,5 @@
-//! `units ROBOTS…`: what identifications report of logs whose time, positions or torques are in another unit.
+//! `units ROBOTS…`: results of identifications of logs with time, positions or torques in another
+//! unit.
 
 use clap::Parser;
 use overact_identification::Grade;
@@ -25,7 +26,7 @@ struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// The cells of a row of the table.
+/// Counts of a table row.
 #[derive(Default)]
 struct Row {
     cells: usize,
@@ -49,7 +50,7 @@ impl Row {
     }
 }
 
-/// The row that a cell belongs to.
+/// Row that a cell belongs to.
 fn title(slip: Option<&Slip>) -> String {
     slip.map_or_else(
         || String::from("none"),
@@ -60,7 +61,7 @@ fn title(slip: Option<&Slip>) -> String {
     )
 }
 
-/// One row for each slip.
+/// One row for each unit error.
 fn table(cells: &[Cell]) -> String {
     let mut rows: BTreeMap<String, Row> = BTreeMap::new();
     for cell in cells {

@@ -1,8 +1,8 @@
-//! Faults made of faultless records.
+//! Applies faults to faultless records.
 
 use overact_simulation::Record;
 
-/// Shifts the torques so that they come late by so many seconds; early for a negative delay.
+/// Delays the torques by some seconds; negative values advance them.
 pub(super) fn late(record: &mut Record, seconds: f64) {
     let n = record.actuators.len();
     let shift = (seconds.abs() * record.sampling_hz).round() as usize;
@@ -11,7 +11,7 @@ pub(super) fn late(record: &mut Record, seconds: f64) {
     } else {
         (&mut record.positions, &mut record.torques)
     };
-    // The first samples of the one have no partner among the other's.
+    // The first samples of one have no counterpart in the other.
     moved.truncate(moved.len() - shift * n);
     still.drain(..shift * n);
     record.time.truncate(record.time.len() - shift);
@@ -30,7 +30,7 @@ pub(super) fn lag(record: &mut Record, seconds: f64) {
     }
 }
 
-/// Puts means over so many seconds around them in the place of the torques.
+/// Replaces the torques by moving averages over some seconds.
 pub(super) fn smooth(record: &mut Record, seconds: f64) {
     let n = record.actuators.len();
     let reach = (0.5 * seconds * record.sampling_hz).round() as usize;
@@ -45,7 +45,7 @@ pub(super) fn smooth(record: &mut Record, seconds: f64) {
     }
 }
 
-/// Keeps torques so many seconds apart, and interpolates linearly between them.
+/// Keeps torques at intervals of some seconds, and interpolates linearly in between.
 pub(super) fn interpolate(record: &mut Record, seconds: f64) {
     let n = record.actuators.len();
     let step = ((seconds * record.sampling_hz).round() as usize).max(1);
@@ -62,11 +62,11 @@ pub(super) fn interpolate(record: &mut Record, seconds: f64) {
     }
 }
 
-/// Drops a part of the samples, evenly scattered, as if the rest had been sampled uniformly.
+/// Drops a fraction of the samples, evenly scattered, without adapting the time.
 pub(super) fn drop_samples(record: &mut Record, part: f64) {
     let n = record.actuators.len();
     let kept = |sample: usize| {
-        // Low-discrepancy: the golden ratio's multiples.
+        // Low-discrepancy sequence: multiples of the golden ratio.
         let place = (sample as f64 * 0.618_033_988_749_895).fract();
         place >= part
     };
@@ -79,8 +79,7 @@ pub(super) fn drop_samples(record: &mut Record, part: f64) {
     record.time.truncate(samples);
 }
 
-/// Shifts the torque of one actuator alone so that it comes late by so many seconds; it begins with what it was
-/// first.
+/// Delays the torque of one actuator by some seconds; it starts with its first value.
 pub(super) fn late_drive(record: &mut Record, actuator: usize, seconds: f64) {
     let n = record.actuators.len();
     let shift = (seconds * record.sampling_hz).round() as usize;
@@ -95,7 +94,7 @@ pub(super) fn late_drive(record: &mut Record, actuator: usize, seconds: f64) {
     }
 }
 
-/// Changes the torque of an actuator by the part of the run's time that has passed.
+/// Changes the torque of an actuator as a function of the elapsed fraction of the run.
 pub(super) fn torque_in_time(
     record: &mut Record,
     actuator: usize,
@@ -123,7 +122,7 @@ pub(super) fn position(record: &mut Record, actuator: usize, change: impl Fn(f64
     own.for_each(|q| *q = change(*q));
 }
 
-/// Cuts the torque of an actuator at a part of its largest magnitude.
+/// Saturates the torque of an actuator at a fraction of its peak.
 pub(super) fn saturate(record: &mut Record, actuator: usize, part: f64) {
     let limit = part * peak(record, actuator);
     torque(record, actuator, |torque| torque.clamp(-limit, limit));
@@ -135,7 +134,7 @@ fn peak(record: &Record, actuator: usize) -> f64 {
     own.fold(0.0, |peak, torque| peak.max(torque.abs()))
 }
 
-/// An encoder behind play: it moves only when the motor has crossed it.
+/// Adds backlash to an encoder: it moves only after the motor has crossed it.
 pub(super) fn backlash(record: &mut Record, actuator: usize, width: f64) {
     let n = record.actuators.len();
     let mut seen = record.positions[actuator];
@@ -145,7 +144,7 @@ pub(super) fn backlash(record: &mut Record, actuator: usize, width: f64) {
     }
 }
 
-/// Holds the first positions and torques but for noise of their last digits.
+/// Holds the first positions and torques, with noise of their last digits.
 pub(super) fn stand_still(record: &mut Record) {
     let n = record.actuators.len();
     let step = 1e-5;
@@ -160,15 +159,14 @@ pub(super) fn stand_still(record: &mut Record) {
     }
 }
 
-/// The motion of an actuator at a sample.
+/// Motion of an actuator at a sample.
 pub(super) struct Moment {
     pub(super) position: f64,
     pub(super) velocity: f64,
     pub(super) time: f64,
 }
 
-/// Adds a torque that depends on the motion, of so large a part of the actuator's root mean square torque
-/// in all records.
+/// Adds a motion-dependent torque, scaled to a fraction of the actuator's root mean square torque.
 pub(super) fn add(
     records: &mut [Record],
     actuator: usize,
@@ -197,12 +195,12 @@ pub(super) fn add(
     }
 }
 
-/// A shape at all samples of a record.
+/// Shape at all samples of a record.
 fn shaped(record: &Record, actuator: usize, shape: &impl Fn(&Moment) -> f64) -> Vec<f64> {
     let n = record.actuators.len();
     let own = record.positions[actuator..].iter().step_by(n);
     let positions: Vec<f64> = own.copied().collect();
-    // Over a few milliseconds, so that the resolution of the encoder does not count.
+    // Over a few milliseconds, so that the encoder resolution does not matter.
     let reach = ((2e-3 * record.sampling_hz) as usize).max(1);
     let last = positions.len() - 1;
     (0..positions.len())

@@ -1,25 +1,24 @@
-//! The faults.
+//! List of the faults.
 
 use super::alter;
 use overact_identification::CheckKind;
 use overact_simulation::Record;
 
-/// What is done to records.
+/// Change of records.
 pub type Change = dyn Fn(&mut Vec<Record>) + Sync;
 
 /// A fault.
 pub struct Trap {
-    /// What is wrong, in words.
+    /// Name of the fault.
     pub name: String,
-    /// Replacements in the description of the robot that makes the records; none where only records are
-    /// altered.
+    /// Replacements in the description of the recorded robot; empty if only records are changed.
     pub plant: Vec<(String, String)>,
-    /// What is done to the records.
+    /// Change of the records.
     pub alter: Box<Change>,
-    /// Why no data can show it, where none can.
+    /// Why no data can reveal it, if so.
     pub assumed: Option<&'static str>,
-    /// Its size, where it is one that every report looks for: the check, the name of the actuator or the
-    /// length with the unit of what is wrong of it, and the size.
+    /// Size, if every report searches for it: check, name of the actuator or length with unit, and
+    /// size.
     pub size: Option<(CheckKind, (&'static str, &'static str), f64)>,
 }
 
@@ -40,12 +39,12 @@ impl Trap {
         Self::new("none", |_| ())
     }
 
-    /// A fault of every record by itself.
+    /// Fault of every record separately.
     fn each(name: &str, alter: impl Fn(&mut Record) + Sync + 'static) -> Self {
         Self::new(name, move |records| records.iter_mut().for_each(&alter))
     }
 
-    /// A robot that is not the one of the description.
+    /// Robot that differs from the description.
     fn plant(name: &str, from: &str, to: &str) -> Self {
         Self {
             plant: vec![(from.to_owned(), to.to_owned())],
@@ -68,7 +67,7 @@ impl Trap {
     }
 }
 
-/// The traps of a robot.
+/// Traps for a robot.
 #[must_use]
 pub fn traps(robot: &str) -> Vec<Trap> {
     let mut all = timing();
@@ -179,7 +178,7 @@ fn drives() -> Vec<Trap> {
     ]
 }
 
-/// What the first actuator of a robot is called, of those whose reports tell offsets of encoders.
+/// Name of a robot's first actuator, for robots whose reports contain encoder offsets.
 fn first_actuator(robot: &str) -> &'static str {
     match robot {
         "FiveBar" => "left",

@@ -1,8 +1,8 @@
-//! Traps: data with one known fault each, and what an identification says of them.
+//! Traps: data with one known fault each, and the results of identifications.
 //!
-//! - `list`: the faults;
-//! - `alter`: how they are made of faultless records;
-//! - `outcome`: how wrong the parameters get, and what the verdict says.
+//! - `list`: faults;
+//! - `alter`: application to faultless records;
+//! - `outcome`: parameter errors and verdicts.
 
 mod alter;
 mod list;

@@ -1,4 +1,4 @@
-//! How wrong the parameters of an identification get, and what its verdict says.
+//! Parameter errors of an identification, and its verdict.
 
 use super::Trap;
 use crate::{Failure, Subject};
@@ -9,68 +9,74 @@ use overact_identification::{
 use overact_simulation::{Experiment, Record, simulate};
 use serde::Serialize;
 
-/// By how much the half width of a 95 % interval exceeds a deviation.
+/// Half width of a 95 % interval in standard deviations.
 const HALF_WIDTH: f64 = 1.96;
 
-/// Errors beyond so many deviations are to be told.
+/// Errors above this number of standard deviations must be reported.
 const LARGEST_ERROR: f64 = 3.0;
 
-/// The level of a test of its own family: a hundredth of the reports may have a false alarm, and ten
-/// families share it (`identification/src/assessment/checks/level.rs`).
+/// Level of a test family: a false alarm rate of a hundredth per report, shared by ten families
+/// (`identification/src/assessment/checks/level.rs`).
 const LEVEL: f64 = 0.01 / 10.0;
 
-/// A fault that a test sees less often than this is invisible.
+/// Detection rate below which a fault counts as invisible.
 const INVISIBLE: f64 = 0.1;
 
-/// What an identification of data with a known fault says.
+/// Result of an identification of data with a known fault.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
-    /// The robot.
+    /// Robot.
     pub robot: String,
-    /// The fault.
+    /// Fault.
     pub trap: String,
-    /// The largest error of a recommended parameter of the first model by its deviation, and the
-    /// parameter; none where there is no estimate.
+    /// Largest error of a recommended parameter of the first model, in standard deviations, and its
+    /// name; `None` without an estimate.
     pub worst: Option<(f64, String)>,
-    /// The largest error of those parameters that the verdict allows to use.
+    /// Largest error among the parameters that the verdict permits to use.
     pub worst_listed: Option<(f64, String)>,
-    /// By how many deviations a test would see the fault that knew it beforehand: the root of what it adds
-    /// to the squared residual, by the deviation of the residual; none for the faultless data themselves.
+    /// Size of the fault for a test that knows it, in standard deviations.
+    ///
+    /// It is the square root of the increase of the squared residual relative to the residual's
+    /// standard deviation; `None` for faultless data.
     pub oracle: Option<f64>,
-    /// The size of the fault by its deviation in faultless data, where every report looks for such faults.
+    /// Size of the fault in standard deviations of faultless data, if every report searches for it.
     pub honest: Option<f64>,
-    /// How often a test at the level of the report would see it: by the deviation in faultless data where
-    /// there is one, else by white noise and all else known.
+    /// Detection rate of a test at the report's level.
+    ///
+    /// It uses the standard deviation in faultless data if known, else white noise with everything
+    /// else known.
     pub power: Option<f64>,
-    /// The grade; none where the data are refused with an error.
+    /// Grade; `None` if the data are rejected with an error.
     pub grade: Option<Grade>,
-    /// The checks that found something.
+    /// Failed checks.
     pub found: Vec<String>,
-    /// The first reason, or the error.
+    /// First reason, or the error.
     pub words: String,
-    /// Whether an assumption of every report says that no data can show it, or this report that so much may be hidden.
+    /// Whether the report states as an assumption that such a fault may be hidden.
     pub assumed: bool,
 }
 
-/// How an outcome stands to what is asked of a verdict: no parameter that may be used is wrong by more than
-/// three deviations unless the fault is named or can't be seen.
+/// Assessment of an outcome.
+///
+/// Parameters that may be used must be correct within three standard deviations, unless the fault
+/// is named or invisible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Standing {
-    /// No parameter that may be used is wrong by more than three deviations.
+    /// All usable parameters are within three standard deviations.
     Right,
-    /// One is, and a check that found something says why.
+    /// A usable parameter is wrong, and a failed check explains it.
     Named,
-    /// One is, and no test of these data could know.
+    /// A usable parameter is wrong, and no test of these data could detect it.
     Invisible,
-    /// One is, and an assumption of the report says why.
+    /// A usable parameter is wrong, and an assumption of the report covers it.
     Assumed,
-    /// One is, and nothing tells.
+    /// A usable parameter is wrong without any explanation.
     Missed,
 }
 
 impl Outcome {
-    /// How it stands.
+    /// Assessment of the outcome.
     #[must_use]
     pub fn standing(&self) -> Standing {
         match &self.worst_listed {
@@ -90,7 +96,7 @@ impl Outcome {
 }
 
 impl Standing {
-    /// In a word.
+    /// Name of the assessment.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -103,13 +109,13 @@ impl Standing {
     }
 }
 
-/// The chance that a test of two sides with a threshold in deviations sees what lies so many of them from zero.
+/// Power of a two-sided test with a threshold in standard deviations.
 fn power(deviations: f64, threshold: f64) -> f64 {
     let tail = |at: f64| 0.5 * libm::erfc(at / std::f64::consts::SQRT_2);
     tail(threshold - deviations) + tail(threshold + deviations)
 }
 
-/// How many deviations white noise exceeds as often as a level: no test of a family does better.
+/// Two-sided normal quantile of a level, a lower bound for tests of a family.
 fn quantile(level: f64) -> f64 {
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..60 {
@@ -120,15 +126,15 @@ fn quantile(level: f64) -> f64 {
     low
 }
 
-/// The records of a subject's experiment, which makes all traps.
+/// Records of a subject's experiment, the input of all traps.
 ///
 /// # Errors
-/// A run that can't be made.
+/// A run that fails.
 pub fn prepared(subject: &Subject, experiment: &Experiment) -> Result<Vec<Record>, Failure> {
     Ok(simulate(subject.model(), experiment, &|_, _| ()).map_err(|error| error.to_string())?)
 }
 
-/// What the identification of records says in which a trap was set, beside what it says of `faultless` ones.
+/// Outcome of a trap, given the identifications of its records and of `faultless` ones.
 #[must_use]
 pub fn outcome(
     subject: &Subject,
@@ -170,10 +176,10 @@ pub fn outcome(
     }
 }
 
-/// The checks of an identification of faultless records that found something.
+/// Failed checks of an identification of faultless records.
 ///
 /// # Errors
-/// Records that can't be identified from.
+/// Records that cannot be identified.
 pub fn clean(subject: &Subject, records: Vec<Record>) -> Result<(Grade, Vec<Check>), Failure> {
     let result = identified(subject, records)?;
     let grade = result.grade();
@@ -187,7 +193,7 @@ pub fn clean(subject: &Subject, records: Vec<Record>) -> Result<(Grade, Vec<Chec
     ))
 }
 
-/// What a fault adds to the squared residual of the base parameters, in deviations.
+/// Increase of the squared residual of the base parameters due to a fault, in standard deviations.
 fn oracle(result: &Identification, faultless: &Identification) -> Option<f64> {
     let [with, without] = [result, faultless].map(|one| one.estimates.first());
     let (with, without) = (with?, without?);
@@ -201,7 +207,7 @@ fn oracle(result: &Identification, faultless: &Identification) -> Option<f64> {
     Some(added.max(0.0).sqrt() / without.residual_deviation)
 }
 
-/// The check of an identification that looks for faults of a kind and a name, and how well it tells them.
+/// Check of an identification for faults of a kind and a name, with its detection limit.
 fn looked_for<'a>(
     result: &'a Identification,
     (kind, (name, unit)): (CheckKind, (&str, &str)),
@@ -211,7 +217,7 @@ fn looked_for<'a>(
     all.find(|(_, one)| one.name == name && one.unit == unit)
 }
 
-/// The size of a fault by its deviation in faultless data, and the threshold of the check that looks for it.
+/// Size of a fault in standard deviations of faultless data, and the threshold of its check.
 fn honest(
     faultless: &Identification,
     (kind, name, size): (CheckKind, (&str, &str), f64),
@@ -220,7 +226,7 @@ fn honest(
     Some((size.abs() / found.deviation, check.threshold))
 }
 
-/// Whether the report says itself that a fault of this size may be hidden in the data and spoil parameters.
+/// Whether the report states that a fault of this size may be hidden and bias parameters.
 fn is_stated(result: &Identification, (kind, name, size): (CheckKind, (&str, &str), f64)) -> bool {
     let found = looked_for(result, (kind, name));
     found.is_some_and(|(check, one)| {
@@ -231,7 +237,7 @@ fn is_stated(result: &Identification, (kind, name, size): (CheckKind, (&str, &st
 /// Identifies from records.
 ///
 /// # Errors
-/// Records that can't be identified from.
+/// Records that cannot be identified.
 pub fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identification, Failure> {
     let log = |record: Record| {
         let n = record.actuators.len();
@@ -301,7 +307,7 @@ fn told(result: &Identification, start: Outcome) -> Outcome {
     }
 }
 
-/// Errors of the parameters by their deviations.
+/// Errors of the parameters in standard deviations.
 fn errors(estimate: &Estimate) -> Vec<(f64, String)> {
     let parameters = estimate.parameters.iter();
     let error = parameters.filter_map(|one| {

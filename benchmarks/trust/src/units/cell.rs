@@ -1,4 +1,4 @@
-//! What an identification reports of a log with a slip.
+//! Result of an identification of a log with a unit error.
 
 use super::slip::{Drives, Signal, Slip, slips};
 use crate::{Failure, Subject};
@@ -7,27 +7,27 @@ use overact_identification::{
 };
 use overact_simulation::{Record, simulate};
 
-/// A named factor is right within this one.
+/// Tolerance factor of a reported factor.
 const ALIKE: f64 = 1.5;
 
-/// A cell of the matrix: a robot, a slip, and whether the description gives `filter_cutoff`.
+/// Cell of the matrix: a robot, a unit error, and whether the description has `filter_cutoff`.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Cell {
     /// Name of the robot.
     pub robot: String,
-    /// The slip; none for the log as it is.
+    /// Unit error; `None` for the unchanged log.
     pub slip: Option<Slip>,
     /// Whether `filter_cutoff` is given.
     pub with_cutoff: bool,
-    /// What is reported.
+    /// Verdict.
     pub verdict: Verdict,
-    /// Whether the signal and the factor are named.
+    /// Whether the signal and the factor are reported.
     pub named: bool,
-    /// The first words.
+    /// First words of the report.
     pub words: String,
 }
 
-/// What is reported of a log.
+/// Verdict on a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
@@ -37,10 +37,10 @@ pub enum Verdict {
     Graded(Grade),
 }
 
-/// All cells of a robot, first those without a slip.
+/// All cells of a robot, first those without a unit error.
 ///
 /// # Errors
-/// An experiment that can't be made.
+/// An experiment that fails.
 pub fn cells(subject: &Subject, only: &str) -> Result<Vec<Cell>, Failure> {
     let records = simulate(subject.model(), &subject.experiment, &|_, _| ());
     let records = records.map_err(|error| error.to_string())?;
@@ -92,7 +92,7 @@ fn cell(subject: &Subject, slip: Option<Slip>, records: Vec<Record>, with_cutoff
     }
 }
 
-/// Whether a check names a slip: signal and factor, or the gain of the one drive whose torque it is.
+/// Whether a check reports a unit error: signal and factor, or the gain of the only affected drive.
 fn names(check: &Check, slip: &Slip) -> bool {
     if slip.signal == Signal::Torques
         && slip.drives == Drives::One
@@ -107,7 +107,7 @@ fn names(check: &Check, slip: &Slip) -> bool {
     check.signal == Some(slip.signal.name()) && (1.0 / ALIKE..ALIKE).contains(&ratio)
 }
 
-/// What an error asks that names a slip.
+/// Question in an error message that identifies a unit error.
 fn question(slip: &Slip) -> &'static str {
     match slip.unit {
         "ms" => "in milliseconds?",
@@ -153,7 +153,7 @@ fn identified(
     Ok(identify(subject.model(), &dataset, &settings, &|_| {})?)
 }
 
-/// The settings of a description with or without `filter_cutoff`, for runs of this sampling frequency (Hz).
+/// Settings of a description with or without `filter_cutoff`, for a sampling frequency (Hz).
 fn settings(subject: &Subject, frequency: f64, with_cutoff: bool) -> Settings {
     let described = subject.settings_at(frequency);
     let usual = Settings::for_sampling_frequency(frequency, &subject.info());

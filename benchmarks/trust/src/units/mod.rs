@@ -1,5 +1,5 @@
-//! Logs whose time, positions or torques are in another unit than the description says, and what identifications
-//! report of them.
+//! Logs with time, positions or torques in another unit than described, and the results of
+//! identifications.
 
 mod cell;
 mod slip;

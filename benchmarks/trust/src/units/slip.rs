@@ -1,25 +1,25 @@
-//! Slips of units.
+//! Unit errors.
 
 use overact::Info;
 use overact_simulation::Record;
 use std::f64::consts::{PI, TAU};
 
-/// The signal that is in another unit.
+/// Signal in another unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Signal {
     /// Time.
     Time,
-    /// Angles of drives that turn.
+    /// Positions of revolute drives.
     Angles,
-    /// Positions of drives that slide.
+    /// Positions of prismatic drives.
     Lengths,
     /// Torques and forces.
     Torques,
 }
 
 impl Signal {
-    /// As checks call it: `time`, `positions` or `torques`.
+    /// Name in checks: `time`, `positions` or `torques`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -30,30 +30,30 @@ impl Signal {
     }
 }
 
-/// The drives whose signal is in another unit.
+/// Drives with the unit error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Drives {
-    /// All that have the signal.
+    /// All drives with the signal.
     All,
-    /// The first one that has it.
+    /// The first drive with the signal.
     One,
 }
 
-/// A signal in another unit.
+/// A unit error.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Slip {
     /// The signal.
     pub signal: Signal,
     /// The unit.
     pub unit: &'static str,
-    /// Numbers in this unit by those in that of SI.
+    /// Numbers in this unit relative to SI units.
     pub factor: f64,
     /// The drives.
     pub drives: Drives,
 }
 
-/// The slips that logs of a robot can have.
+/// Possible unit errors of a robot's logs.
 #[must_use]
 pub fn slips(info: &Info<'_>) -> Vec<Slip> {
     let units = [
@@ -94,7 +94,7 @@ pub fn slips(info: &Info<'_>) -> Vec<Slip> {
 }
 
 impl Slip {
-    /// Puts the signal of a record into the unit.
+    /// Converts the signal of a record to the unit.
     pub fn apply(&self, info: &Info<'_>, record: &mut Record) {
         let n = record.actuators.len();
         let has = |turns: bool| -> Vec<usize> {

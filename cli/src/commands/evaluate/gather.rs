@@ -1,5 +1,7 @@
-//! The inputs of a function from states that may hold other quantities than it takes: a pose from
-//! actuators or joints by forward kinematics, joints from a pose by inverse kinematics.
+//! Computes the inputs of a function from states with other quantities.
+//!
+//! Poses are computed from actuators or joints by forward kinematics, joints from a pose by inverse
+//! kinematics.
 
 use super::GivenParameters;
 use crate::{
@@ -13,10 +15,10 @@ use overact_codegen::{
 };
 use overact_robot::InterpretedRobot;
 
-/// Most quantities of a state that a message names.
+/// Largest number of quantities listed in a message.
 const MOST_NAMED: usize = 12;
 
-/// A problem of a state, or the names of quantities that it lacks.
+/// A problem of a state, or its missing quantities.
 enum Lack {
     Missing(Vec<String>),
     Problem(Problem),
@@ -28,10 +30,10 @@ impl std::convert::From<Problem> for Lack {
     }
 }
 
-/// For each input of the program its rows at all states.
+/// Rows of each input of the program for all states.
 ///
 /// # Errors
-/// The first state that lacks something, with all that it lacks, or where kinematics has no solution.
+/// The first state with missing quantities, or without a kinematic solution.
 pub(super) fn inputs(
     robot: &InterpretedRobot,
     program: &Program,
@@ -63,7 +65,7 @@ pub(super) fn inputs(
     Ok(inputs)
 }
 
-/// A state without some of what a function takes.
+/// Problem of a state with missing quantities.
 fn lacking(at: usize, missing: &[String], states: &States, takes: &[String]) -> Problem {
     let quoted = |names: &mut dyn Iterator<Item = &str>| {
         let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
@@ -91,14 +93,14 @@ struct Gatherer<'a> {
     robot: &'a InterpretedRobot,
     states: &'a States,
     from: MotionInput,
-    /// Parameters that hold for all states.
+    /// Parameters of all states.
     parameters: GivenParameters,
-    /// The pose from which forward kinematics starts.
+    /// Start pose of forward kinematics.
     previous: Vec<f64>,
 }
 
 impl Gatherer<'_> {
-    /// The inputs as the states are to hold them: from actuators, the pose is found and not given.
+    /// Names of the required quantities; for actuators, the pose is computed.
     fn takes(&self, program: &Program) -> Vec<String> {
         let form = |array: &Array| match array.name.as_str() {
             "pose" if self.from == MotionInput::Actuators => self
@@ -118,7 +120,7 @@ impl Gatherer<'_> {
             "pose" => self.pose(at),
             "joints" if !is_tree => self.joints(at, array.len()),
             name => {
-                // A tree's joints are its pose and its actuators, too.
+                // The joints of a serial robot are also its pose and its actuators.
                 let names: &[&str] = match name {
                     "joints" => &["joints", "pose", "actuators"],
                     "joint_velocities" => &["joint_velocities", "twist", "actuator_velocities"],
@@ -134,7 +136,7 @@ impl Gatherer<'_> {
         }
     }
 
-    /// The first of several names that the state holds.
+    /// First of several names that the state contains.
     fn first(&self, at: usize, names: &[&str], length: usize) -> Result<Vec<f64>, Lack> {
         for name in names {
             if let Some(values) = self.states.get(at, name, length)? {
@@ -145,7 +147,7 @@ impl Gatherer<'_> {
         Err(Lack::Missing(vec![first.to_owned()]))
     }
 
-    /// The pose: given, or by forward kinematics from the actuators or the actuated joints.
+    /// Pose: given, or by forward kinematics from the actuators or actuated joints.
     fn pose(&mut self, at: usize) -> Result<Vec<f64>, Lack> {
         let sizes = self.robot.info().sizes;
         if self.from != MotionInput::Actuators
@@ -174,7 +176,7 @@ impl Gatherer<'_> {
         self.forward(at, &actuators)
     }
 
-    /// Forward kinematics from the state's `start`, from the previous pose, or from home.
+    /// Forward kinematics from the state's `start`, the previous pose, or home.
     fn forward(&mut self, at: usize, actuators: &[f64]) -> Result<Vec<f64>, Lack> {
         let info = self.robot.info();
         let given = self
@@ -200,12 +202,12 @@ impl Gatherer<'_> {
         Err(self.states.problem(at, &message).help(help).into())
     }
 
-    /// The joints: given, or by inverse kinematics from the pose.
+    /// Joints: given, or by inverse kinematics from the pose.
     fn joints(&mut self, at: usize, length: usize) -> Result<Vec<f64>, Lack> {
         if let Some(joints) = self.states.get(at, "joints", length)? {
             return Ok(joints.to_vec());
         }
-        // Without a pose, too, the joints are what is missing.
+        // Without a pose, report the joints as missing.
         let Some(pose) = self.states.get(at, "pose", self.robot.info().sizes.pose)? else {
             return Err(Lack::Missing(vec!["joints".to_owned()]));
         };

@@ -1,4 +1,4 @@
-//! Which function is meant.
+//! Resolves the function that the arguments name.
 
 use super::Arguments;
 use crate::{
@@ -14,11 +14,10 @@ use overact_codegen::{
     diagnostic::did_you_mean,
 };
 
-/// The function that the arguments name: by the function with what it is evaluated from, or by the full
-/// name of the Rust function.
+/// Function with a name and an input form, or with the full name of a Rust function.
 ///
 /// # Errors
-/// A name that no function has, or a function that is not offered in the wanted form.
+/// An unknown name, or a function that does not exist in the requested form.
 pub(super) fn function<'m>(
     model: &'m RobotModel,
     arguments: &Arguments,
@@ -46,7 +45,7 @@ pub(super) fn function<'m>(
         return Err(Problem::new(Code::FUNCTION_VARIANT, message).into());
     }
     let from = |from: MotionInput| offered.iter().find(|f| f.from == from).copied();
-    // The state of a tree are its joints, whatever they are called.
+    // The joints are the state of a serial robot, whatever their name in the file.
     let tree = model.is_tree().then(|| from(MotionInput::Joints)).flatten();
     if let Some(function) = tree {
         return Ok(function);
@@ -75,7 +74,7 @@ pub(super) fn function<'m>(
         MotionInput::Joints,
         MotionInput::Actuators,
     ];
-    // There is one, since `offered` is not empty.
+    // Exists because `offered` is not empty.
     order
         .into_iter()
         .find_map(from)
@@ -86,7 +85,7 @@ fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m CompiledFun
     if let Some(function) = model.functions.iter().find(|f| f.name == name) {
         return Ok(function);
     }
-    // The model has the wanted functions only; all that there are may be meant.
+    // The model only has the requested functions; suggest from all that exist.
     let all = inventory(&model.mechanism, model.selection.joints);
     let mut names: Vec<&str> = all.iter().map(|form| form.function.name()).collect();
     names.dedup();

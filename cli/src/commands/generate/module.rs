@@ -1,4 +1,4 @@
-//! What is written of a robot: the files of its module in a language, and what they are called.
+//! Generated files of a robot in one language, and their names.
 
 use super::{Arguments, Language};
 use crate::failure::{Failure, Problem};
@@ -12,12 +12,12 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-/// A robot's module.
+/// Module of a robot.
 #[derive(Debug)]
 pub(super) struct Module {
     robot: String,
     description: String,
-    /// What stands behind `overact generate`.
+    /// Arguments of `overact generate`.
     arguments: String,
     language: Language,
     pub(super) parts: Vec<Part>,
@@ -26,15 +26,15 @@ pub(super) struct Module {
 /// A file of a module.
 #[derive(Debug)]
 pub(super) struct Part {
-    /// Its name in the folder of the output.
+    /// Name in the output folder.
     name: String,
-    /// Where it goes, if it goes to a file.
+    /// Path, if it is written to a file.
     pub(super) file: Option<PathBuf>,
     pub(super) code: String,
 }
 
 impl Module {
-    /// The module of a robot whose description is at `path`.
+    /// Module of a robot whose description is at `path`.
     pub(super) fn new(robot: &CompiledFile, path: &Path, arguments: &Arguments) -> Self {
         let mut own = robot.file.clone();
         let mut labels = label(path);
@@ -76,7 +76,7 @@ impl Module {
         }
     }
 
-    /// The module as a part of a document, with its text where it goes to no file.
+    /// Module as a JSON document, with its text if it is not written to a file.
     pub(super) fn document(&self) -> Value {
         let mut document = json!({ "robot": self.robot, "description": self.description });
         let texts = |part: &Part| {
@@ -107,13 +107,13 @@ impl Module {
         document
     }
 
-    /// Its text, one file behind the other.
+    /// Text of all files in sequence.
     pub(super) fn text(&self) -> String {
         self.parts.iter().map(|part| part.code.as_str()).collect()
     }
 }
 
-/// The file of a description's Rust module, where there is one.
+/// Path of a description's Rust module, if it is written to a file.
 pub(super) fn rust_file(description: &Path, arguments: &Arguments) -> Option<PathBuf> {
     let output = arguments.output()?;
     Some(match arguments.is_folder(output) {
@@ -122,7 +122,7 @@ pub(super) fn rust_file(description: &Path, arguments: &Arguments) -> Option<Pat
     })
 }
 
-/// The description's name as a module: `DualV.toml` is `dual_v`.
+/// Module name of a description: `DualV.toml` becomes `dual_v`.
 fn module_name(path: &Path) -> String {
     let stem = path
         .file_stem()
@@ -143,8 +143,7 @@ fn module_name(path: &Path) -> String {
     name
 }
 
-/// How generated code calls its description: never by an absolute path, and alike from whichever
-/// folder the program is run.
+/// Path of the description in generated code: relative, and independent of the working folder.
 fn label(path: &Path) -> String {
     let here = std::env::current_dir().unwrap_or_default();
     let relative = match path.strip_prefix(&here) {
@@ -159,7 +158,7 @@ fn label(path: &Path) -> String {
     parts.collect::<Vec<_>>().join("/")
 }
 
-/// Two robots of one name, or two modules in one file, can't stand side by side.
+/// Checks that robot names and output files are distinct.
 pub(super) fn distinct(modules: &[Module]) -> Result<(), Failure> {
     let mut problems = Vec::new();
     let mut robots: BTreeMap<&str, &Module> = BTreeMap::new();
@@ -180,7 +179,7 @@ pub(super) fn distinct(modules: &[Module]) -> Result<(), Failure> {
             let file = part.file.as_deref()?;
             Some((file, files.insert(file, module)?))
         });
-        // Two robots of one name have the same files in C: that is said already.
+        // Robots of one name share their C files; that was already reported.
         let shared: Vec<(&Path, &Module)> = shared.collect();
         if let (Some((file, other)), true) = (
             shared.first(),
@@ -205,7 +204,7 @@ pub(super) fn distinct(modules: &[Module]) -> Result<(), Failure> {
     }
 }
 
-/// Fails if a file is not what would be written.
+/// Fails if a file differs from what would be written.
 pub(super) fn compare(modules: &[Module]) -> Result<(), Failure> {
     let mut problems = Vec::new();
     for module in modules {

@@ -1,4 +1,4 @@
-//! What `inspect` tells, for people.
+//! Text output of `inspect`.
 
 use crate::output::counted;
 use overact_identification::significant;
@@ -13,7 +13,7 @@ pub(super) fn text(document: &Inspection) -> String {
     let mut text = heading(document);
     text += "\nBodies\n";
     text += &bodies(document);
-    // The payload's parameters are told from the platform's by runs with and without it.
+    // Runs with and without payload distinguish its parameters from the platform's.
     let standard = document.parameters.len() - document.payload_parameters.len();
     let _ = writeln!(
         text,
@@ -157,7 +157,7 @@ fn functions(document: &Inspection) -> String {
         + &side_by_side(document)
 }
 
-/// What functions take in Rust where legs run side by side.
+/// Cost of functions in Rust in which legs run in SIMD lanes.
 fn side_by_side(document: &Inspection) -> String {
     let told = document.functions.iter().filter_map(|function| {
         let cost = function.cost.side_by_side?;
@@ -179,7 +179,7 @@ fn side_by_side(document: &Inspection) -> String {
     format!("\n{}", columns(&[head, told].concat(), &[true]))
 }
 
-/// What a function that calls an iteration takes for each of its steps.
+/// Cost per step of functions that iterate.
 fn iterations(function: &inspection::Function) -> String {
     let told = function.cost.iterations.iter().map(|one| {
         let runs = match (one.within, one.runs) {

@@ -1,8 +1,9 @@
-//! `overact simulate --fleet`: the logs, or the factors, of many virtual robots over many days.
+//! `overact simulate --fleet`: writes logs or factors of many virtual robots over many days.
 //!
-//! Logs go to `serial=…/day=…/RUN.parquet`, factors of up to a thousand robots to `day=…/robots-….parquet`, as
-//! databases find the columns `serial` and `day` in such names. `truth.csv` and `parameters.csv` say what the
-//! robots are, `left_out.csv` what could not be factored. They are written last: where they are, all is.
+//! Logs are written to `serial=…/day=…/RUN.parquet`, factors of up to a thousand robots to
+//! `day=…/robots-….parquet`. Databases derive the columns `serial` and `day` from such names.
+//! `truth.csv` and `parameters.csv` describe the robots, `left_out.csv` lists runs without factors.
+//! These three are written last, so their presence means that the output is complete.
 
 use crate::{
     commands::dates::{date, instant},
@@ -17,10 +18,10 @@ use overact_robot::{Error, Robot, VirtualExperiment};
 use overact_simulation::{Fault, Fleet, Member, Record};
 use std::path::{Path, PathBuf};
 
-/// Robots whose factors share a file.
+/// Number of robots whose factors share a file.
 const ROBOTS_OF_A_FILE: usize = 1000;
 
-/// Microseconds of a day, and of the morning at which runs begin.
+/// Microseconds of a day, and time of day at which runs begin.
 const DAY: i64 = 86_400_000_000;
 const MORNING: i64 = DAY / 3;
 
@@ -76,18 +77,18 @@ pub(super) struct Arguments {
     moment_drift: f64,
 }
 
-/// What is made.
+/// Task of simulating a fleet.
 struct Work<'a> {
     robot: &'a Robot,
     experiment: &'a VirtualExperiment<'a>,
     fleet: Fleet,
     members: Vec<Member>,
     folder: &'a Path,
-    /// Of the first day, µs since 1970.
+    /// First day, µs since 1970.
     begin: i64,
 }
 
-/// What has been made.
+/// Result of the simulation.
 #[derive(Default)]
 struct Made {
     runs: usize,
@@ -96,10 +97,10 @@ struct Made {
     left_out: Vec<[String; 3]>,
 }
 
-/// Makes the runs.
+/// Simulates the runs.
 ///
 /// # Errors
-/// A folder that is not empty, numbers out of range, runs that can't be made.
+/// A folder that is not empty, numbers out of range, or runs that fail.
 pub(super) fn run(
     arguments: &Arguments,
     (robot, experiment): (&Robot, &VirtualExperiment<'_>),
@@ -181,7 +182,7 @@ fn check(arguments: &Arguments, robots: usize) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes the folder; one that holds something is left alone.
+/// Creates the folder; fails if it is not empty.
 fn new_folder(folder: &Path) -> Result<(), Failure> {
     let refuse = |message: String| {
         let problem = Problem::new(Code::OUTPUT, message).file(folder.display().to_string());
@@ -197,7 +198,7 @@ fn new_folder(folder: &Path) -> Result<(), Failure> {
     }
 }
 
-/// The serial number of a robot.
+/// Serial number of a robot.
 fn serial(member: &Member) -> String {
     format!("R{:05}", member.number)
 }
@@ -207,7 +208,7 @@ impl Work<'_> {
         date(self.begin + day as i64 * DAY)
     }
 
-    /// When a robot begins its run of a day: one minute after the other.
+    /// Start of a robot's run on a day; robots start at intervals of a minute.
     fn time(&self, member: &Member, day: usize) -> i64 {
         let minute = (member.number % 480) as i64;
         self.begin + day as i64 * DAY + MORNING + minute * 60_000_000
@@ -240,7 +241,7 @@ impl Work<'_> {
         let one = |member: &Member, record: Record| -> Result<_, Error> {
             let log = self.experiment.log_of(record)?;
             let time = Some(self.time(member, day));
-            // What is wrong with a log of one robot is no reason to leave out those of the others.
+            // An invalid log of one robot must not stop those of the others.
             Ok(factory.run(&log, &serial(member), time))
         };
         let mut runs = Vec::new();
@@ -264,7 +265,7 @@ impl Work<'_> {
         )
     }
 
-    /// What the robots are, and what was left out.
+    /// Writes the files on the robots and on omitted runs.
     fn tell(&self, made: &Made) -> Result<(), Failure> {
         let info = self.experiment.robot().model().info();
         let names: Vec<&str> = { info.parameters.iter().chain(info.payload_parameters) }
@@ -309,7 +310,7 @@ impl Work<'_> {
     }
 }
 
-/// The columns of a log: time, positions and torques.
+/// Columns of a log: time, positions and torques.
 fn columns(record: &Record) -> Vec<(String, Vec<f64>)> {
     let count = record.actuators.len();
     let of = |prefix: &str, all: &[f64]| -> Vec<(String, Vec<f64>)> {

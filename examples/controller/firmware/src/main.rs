@@ -1,10 +1,10 @@
 //! The DualV's controller at 5 kHz on a Cortex-M7.
 //!
-//! The system timer ticks 5000 times in a second; each tick reads the encoders, computes the torques and hands
-//! them to the drives. Encoders and drives are four numbers each, behind which a board's timers and converters
-//! stand; nothing else here depends on the board but its clock and `memory.x`.
+//! The system timer ticks 5000 times per second. Each tick reads the encoders, computes the torques
+//! and sends them to the drives. Encoders and drives are four numbers each, in place of a board's
+//! timers and converters. Nothing else depends on the board except its clock and `memory.x`.
 //!
-//! There is no panic in this program: `panic-never` refuses to link one.
+//! This program cannot panic: `panic-never` makes the linker fail if a panic is reachable.
 #![no_std]
 #![no_main]
 
@@ -15,11 +15,11 @@ use overact::math::sin_cos;
 use overact_controller::{ACTUATORS, Controller, Load, Motion, SAMPLING_HZ};
 use panic_never as _;
 
-/// Frequency of the core, Hz.
+/// Core frequency, Hz.
 const CORE_HZ: u32 = 400_000_000;
-/// Counts of an encoder in a turn: 1e-5 rad each, as in the description.
+/// Encoder resolution, rad, as in the description.
 const COUNT: f64 = 1e-5;
-/// Torque of the smallest step of a drive's command, N m.
+/// Resolution of a drive's torque command, N m.
 const STEP: f64 = 1e-3;
 /// Frequency of the desired motion, Hz.
 const MOTION_HZ: f64 = 1.0;
@@ -32,7 +32,7 @@ static ENCODERS: [AtomicI32; ACTUATORS] = [const { AtomicI32::new(0) }; ACTUATOR
 static TORQUES: [AtomicI32; ACTUATORS] = [const { AtomicI32::new(0) }; ACTUATORS];
 /// Whether a sample is due.
 static DUE: AtomicBool = AtomicBool::new(false);
-/// Whether the motors stand still because the controller had no answer.
+/// Whether the motors are held because the controller returned an error.
 static HELD: AtomicBool = AtomicBool::new(false);
 
 #[exception]
@@ -65,7 +65,7 @@ fn main() -> ! {
 /// Samples in a period of the desired motion.
 const PERIOD: u32 = (SAMPLING_HZ / MOTION_HZ) as u32;
 
-/// One period of the controller: encoders in, torques out. Without an answer the motors get none.
+/// One period of the controller: encoders in, torques out. After an error the torques are zero.
 fn period(controller: &mut Controller, motion: &Motion) {
     let mut measured = [0.0; ACTUATORS];
     for (angle, count) in measured.iter_mut().zip(&ENCODERS) {
@@ -79,7 +79,7 @@ fn period(controller: &mut Controller, motion: &Motion) {
     }
 }
 
-/// A motion around the home pose: each coordinate goes to and fro.
+/// A motion about home in which each coordinate oscillates.
 fn desired(sample: u32) -> Motion {
     let rate = core::f64::consts::TAU * MOTION_HZ;
     let (sine, cosine) = sin_cos(rate * f64::from(sample) / SAMPLING_HZ);

@@ -1,4 +1,4 @@
-//! The plot of all intervals, relative to the true value or to the first estimate.
+//! Plot of all intervals, relative to the true value or to the first estimate.
 
 use std::fmt::Write;
 
@@ -14,17 +14,17 @@ use crate::{
 };
 use overact_identification::{Estimate, Identification, ParameterEstimate, Stage};
 
-/// Intervals that reach further than this (percent) are told of and not drawn: they would hide all
+/// Reach (percent) above which intervals are listed instead of drawn, because they would hide the
 /// others.
 const LONGEST_BAR: f64 = 100.0;
 
-/// Parameters that are known so many times better than the worst one have a plot of their own.
+/// Ratio of the reaches above which well-known parameters get a plot of their own.
 const SCALES_APART: f64 = 5.0;
 
 /// A parameter and its intervals.
 type Row = (String, Vec<Bar>);
 
-/// The figure; nothing where no parameter can be drawn.
+/// Figure; empty if no parameter can be drawn.
 pub(super) fn figure(identification: &Identification, estimates: &[&Estimate]) -> String {
     let mut rows = Vec::new();
     let mut left_out = Vec::new();
@@ -92,8 +92,7 @@ pub(super) fn figure(identification: &Identification, estimates: &[&Estimate]) -
     )
 }
 
-/// Rows that reach far and those that do not, apart from each other where one scale would hide the
-/// latter.
+/// Splits rows by reach if one scale would hide the short intervals.
 fn by_reach(rows: Vec<Row>) -> Vec<Vec<Row>> {
     let reach = |row: &Row| row.1.iter().map(Bar::reach).fold(0.0, f64::max);
     let farthest = rows.iter().map(reach).fold(0.0, f64::max);
@@ -104,7 +103,7 @@ fn by_reach(rows: Vec<Row>) -> Vec<Vec<Row>> {
     parts.filter(|rows| !rows.is_empty()).collect()
 }
 
-/// The interval of a parameter, relative to a reference, with the estimate that the rule of r_σ leaves.
+/// Interval of a parameter relative to a reference, with the essential estimate.
 fn bar(
     estimate: &Estimate,
     one: &ParameterEstimate,
@@ -128,7 +127,7 @@ fn bar(
     }
 }
 
-/// What the intervals mean, and which parameters have none.
+/// Caption: meaning of the intervals, and parameters without one.
 fn caption(to_truth: bool, moved: bool, left_out: &[&str]) -> String {
     let mut caption = String::from("Dots are the estimates, lines their 95 % intervals. ");
     caption.push_str(if to_truth {

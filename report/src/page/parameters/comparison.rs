@@ -1,4 +1,4 @@
-//! Own parameters beside published ones: Table 2 of the paper.
+//! Comparison of own and published parameters (Table 2 of the paper).
 
 use super::{Contents, find, names};
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
 };
 use overact_identification::{Estimate, Stage};
 
-/// The table; nothing where nothing is published.
+/// Table; empty without published results.
 pub(super) fn table(contents: &Contents<'_>) -> String {
     let Some(published) = contents.published else {
         return String::new();
@@ -56,7 +56,7 @@ pub(super) fn table(contents: &Contents<'_>) -> String {
     table.html() + &note(&explanation(published))
 }
 
-/// The own estimate of a parameter, the published one, and their difference.
+/// Own estimate, published estimate, and their difference.
 fn cells((own, other): (&Estimate, &PublishedEstimate), name: &str) -> Vec<Cell> {
     let own = find(own, name);
     let other = other.parameters.get(name);
@@ -75,7 +75,7 @@ fn cells((own, other): (&Estimate, &PublishedEstimate), name: &str) -> Vec<Cell>
     ]
 }
 
-/// Where the numbers come from, and what the deviations are.
+/// Source of the numbers, and meaning of the standard deviations.
 fn explanation(published: &Published) -> String {
     let note = published.note.as_deref();
     let note = note.map_or_else(String::new, |note| format!(" {note}"));

@@ -1,8 +1,8 @@
-//! The parameters with the intervals of their true values: the recommended ones first, those that the
-//! rule of r_σ leaves, beside published ones, all base parameters, and what is regrouped into each.
+//! Section on the parameters with their intervals.
 //!
-//! `bars` draws the intervals, `comparison` is the table beside published results, `regroupings` tells
-//! which sums the base parameters are.
+//! The order is: recommended parameters, essential parameters, published ones, all base parameters
+//! with their regroupings. `bars` draws the intervals, `comparison` compares with published
+//! results, `regroupings` lists the sums that the base parameters are.
 
 mod bars;
 mod comparison;
@@ -19,10 +19,10 @@ use crate::{
 };
 use overact_identification::{Estimate, Identification, ParameterEstimate, Stage, significant};
 
-/// Half an interval's width beyond so many percent of its parameter says no more than that the parameter is not known.
+/// Half width in percent above which a parameter counts as unknown.
 const LARGEST_PERCENT: f64 = 1000.0;
 
-/// The section.
+/// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
     let answers = answers(identification);
@@ -48,7 +48,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// What the first table shows.
+/// Introduction to the first table.
 const fn introduction(stage: Stage, is_held_out: bool) -> &'static str {
     match stage {
         Stage::Recommended if is_held_out => {
@@ -65,10 +65,10 @@ const fn introduction(stage: Stage, is_held_out: bool) -> &'static str {
     }
 }
 
-/// What the intervals are.
+/// Explanation of the intervals.
 const INTERVALS: &str = "The interval holds the true value in 95 of 100 experiments like this one. It is that of the model with all base parameters at every stage: a smaller model would have shorter ones only if what it cancels were exactly zero, which nobody knows. Residuals that are correlated over time are allowed for.";
 
-/// Names of all parameters in any of the estimates, in the order of the base parameters.
+/// Names of the parameters in any of the estimates, in the order of the base parameters.
 fn names<'a>(identification: &Identification, estimates: &[&'a Estimate]) -> Vec<&'a str> {
     let mut names: Vec<&str> = Vec::new();
     for parameter in estimates.iter().flat_map(|one| &one.parameters) {
@@ -85,7 +85,7 @@ fn find<'a>(estimate: &'a Estimate, name: &str) -> Option<&'a ParameterEstimate>
     estimate.parameters.iter().find(|one| one.name == name)
 }
 
-/// Estimates of one stage side by side, with their intervals and notes.
+/// Estimates of one stage in adjacent columns, with intervals and notes.
 fn table(identification: &Identification, estimates: &[&Estimate]) -> String {
     let parameters = || estimates.iter().flat_map(|one| &one.parameters);
     let truth = parameters().any(|one| one.true_value.is_some());
@@ -123,7 +123,7 @@ fn table(identification: &Identification, estimates: &[&Estimate]) -> String {
     html
 }
 
-/// The two rows of the head.
+/// Two header rows.
 fn header(estimates: &[&Estimate], truth: bool) -> Vec<Vec<Cell>> {
     let mut groups = vec![Cell::text("").over(if truth { 3 } else { 2 })];
     let mut columns = vec![Cell::text("parameter"), Cell::text("unit")];
@@ -140,7 +140,7 @@ fn header(estimates: &[&Estimate], truth: bool) -> Vec<Vec<Cell>> {
     vec![groups, columns]
 }
 
-/// The cells of one estimate.
+/// Cells of one estimate.
 fn estimated(parameter: Option<&ParameterEstimate>, truth: bool) -> Vec<Cell> {
     let Some(one) = parameter else {
         return vec![Cell::nothing(); 3];
@@ -172,7 +172,7 @@ fn estimated(parameter: Option<&ParameterEstimate>, truth: bool) -> Vec<Cell> {
     ]
 }
 
-/// What the rule of r_σ leaves, beside the answers.
+/// Essential parameters, if they differ from the results.
 fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
     let essential = of_stage(identification, Stage::Essential);
     let same = |one: &&Estimate| {

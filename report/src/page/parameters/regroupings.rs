@@ -1,4 +1,4 @@
-//! What is regrouped into each base parameter.
+//! Regroupings of the base parameters.
 
 use crate::{
     page::{
@@ -9,7 +9,7 @@ use crate::{
 };
 use overact_identification::Identification;
 
-/// The sums that the base parameters are, on demand.
+/// Collapsed table of the sums that the base parameters are.
 pub(super) fn regroupings(identification: &Identification) -> String {
     let (alone, regrouped): (Vec<_>, Vec<_>) = identification
         .base_parameters

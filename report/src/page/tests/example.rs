@@ -1,4 +1,4 @@
-//! A made-up identification whose names are as hostile as names can be.
+//! Artificial identification with hostile names.
 
 use crate::{
     Published, Units,
@@ -14,13 +14,13 @@ use overact_identification::{
     Thresholds, TorqueComparison, TrackingError, Verdict,
 };
 
-/// A name that breaks whatever does not escape it.
+/// Name that breaks unescaped output.
 pub(super) const HOSTILE: &str = "a<b>&\"'\u{1}</table><script>x</script>\u{1b}[31m\n\u{202e}`";
 
 pub(super) fn series(name: &str) -> Series {
     let time: Vec<f64> = (0..400).map(|index| f64::from(index) * 0.01).collect();
     let measured: Vec<f64> = time.iter().map(|t| (6.0 * t).sin()).collect();
-    // The worst miss is at 3 s.
+    // The largest residual is at 3 s.
     let predicted = time
         .iter()
         .map(|t| (6.0 * t).sin() - if (t - 3.0).abs() < 0.005 { 0.5 } else { 0.01 });
@@ -80,7 +80,7 @@ fn estimate(model: ModelKind, stage: Stage) -> Estimate {
         estimator: Estimator::LeastSquares,
         weighted: true,
         parameters: if stage == Stage::Essential {
-            // Cancelling has moved it out of its interval.
+            // Elimination has moved it out of its interval.
             vec![ParameterEstimate {
                 value: -2.2,
                 ..parameter("m_platformR", -1.92)
@@ -338,7 +338,7 @@ fn verdict(model: ModelKind, grade: Grade, listed: &[&str]) -> Verdict {
     }
 }
 
-/// One check of each outcome: found in the data of case 2, found for one parameter, nothing found.
+/// One check of each outcome: failed for case 2, failed for one parameter, passed.
 fn checks() -> Vec<Check> {
     let curve = |name: &str| Curve::new(name, &[0.0, 1.0, 2.0], &[0.1, f64::NAN, 0.3]);
     let evidence = Evidence {

@@ -1,4 +1,4 @@
-//! What stands in words above and below the tables.
+//! Tests of the text around the tables.
 
 use super::{element, full, identification, parsed, text};
 

@@ -45,7 +45,7 @@ pub fn serial_3r() -> Mechanism {
     }
 }
 
-/// A tree: a turning column that carries a two-joint arm and, beside it, a slide with a fixed bracket.
+/// A tree: a rotating column with a two-joint arm, and a slide with a fixed bracket.
 #[must_use]
 pub fn branched_arm() -> Mechanism {
     let bracket = Joint {

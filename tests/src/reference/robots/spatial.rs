@@ -32,7 +32,7 @@ pub fn spherical_4ups() -> Mechanism {
     let platform = [65.0, 150.0, 240.0, 340.0];
     let mut robot = ups_robot(Motion::Spherical, &base, &platform, 0.0);
     for leg in &mut robot.legs {
-        // The centre is the base origin; the legs stand below it.
+        // The centre is the base origin; the legs start below it.
         leg.base.position.z = -0.5;
         if let End::Point { attachment, .. } = &mut leg.end {
             attachment.z = 0.1;
@@ -89,8 +89,8 @@ fn ups_leg(base_deg: f64, platform_deg: f64) -> Leg {
     let (base, platform) = (base_deg.to_radians(), platform_deg.to_radians());
     let radial = Vector3::new(base.cos(), base.sin(), 0.0);
     let tangential = Vector3::new(-base.sin(), base.cos(), 0.0);
-    // The first axis is tangential and x points up: upright, the leg is far from the universal
-    // joint's singularity.
+    // With a tangential first axis and x upwards, an upright leg is far from the universal joint's
+    // singularity.
     let up = Vector3::z();
     let rotation = Matrix3::from_columns(&[up, tangential.cross(&up), tangential]);
     Leg {

@@ -45,10 +45,10 @@ pub fn delta() -> Mechanism {
     }
 }
 
-/// The Tripteron: three PRRR legs, the axes of a leg all parallel, the legs' axes orthogonal.
+/// The Tripteron: three PRRR legs with parallel axes in each leg and orthogonal axes between legs.
 ///
-/// The whole robot is tilted, so that the one angular equation of a leg fills three rows that
-/// depend on each other: legs whose independent rows have to be looked for.
+/// The robot is tilted, so that the one angular equation of a leg fills three dependent rows. Its
+/// legs' independent rows therefore have to be searched.
 #[must_use]
 pub fn tilted_tripteron() -> Mechanism {
     let tilt = exponential(Vector3::new(0.2, -0.3, 0.25));

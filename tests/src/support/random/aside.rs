@@ -1,16 +1,15 @@
-//! Random robots whose platform moves aside: legs that keep a ball on the platform in a plane or on another
-//! surface, and drives that hold nothing.
+//! Random robots with parasitic motion: legs that block directions, and drives that block none.
 //!
-//! One to three legs of two joints and a ball block a direction each, and drives of three joints and a ball are added
-//! until as many motors as motions are there, or one more: a universal joint and a slide, a crank or a slide with a
-//! rod behind it. Legs stand around the platform, at random places and tilted, and start near a pose that they
-//! allow.
+//! One to three legs with two joints and a ball joint each block a direction. Drives with three
+//! joints and a ball joint are added until there are as many motors as degrees of freedom, or one
+//! more. A drive is a universal joint with a slide, a crank with a rod, or a slide with a rod. Legs
+//! are placed randomly around the platform, tilted, and start near a feasible pose.
 
 use super::Dice;
 use super::skeleton::write;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// The description of a seed, with independent coordinates that may not be the best ones.
+/// Description of a seed, with independent coordinates that may not be the best ones.
 #[must_use]
 pub fn aside(seed: u64) -> String {
     let mut dice = Dice::new(seed);
@@ -54,21 +53,21 @@ pub fn aside(seed: u64) -> String {
     text + &places
 }
 
-/// Where a leg stands.
+/// Placement of a leg.
 struct Place {
     name: String,
-    /// Around the vertical, rad.
+    /// Azimuth, rad.
     angle: f64,
     /// Distance of its base from the middle, m.
     base: f64,
-    /// That of its ball on the platform.
+    /// Distance of its ball joint on the platform from the middle, m.
     end: f64,
-    /// Of the platform above the base.
+    /// Height of the platform above the base, m.
     height: f64,
 }
 
 impl Place {
-    /// The leg's base.
+    /// Writes the leg's base.
     fn write(&self, dice: &mut Dice, text: &mut String, blocks: bool) {
         let (x, y) = (self.base * self.angle.cos(), self.base * self.angle.sin());
         let tilt = if blocks { 0.15 } else { 0.4 };
@@ -83,7 +82,7 @@ impl Place {
         );
     }
 
-    /// The leg's joints, and where they start.
+    /// Writes the leg's joints; returns their start positions.
     fn home(&self, dice: &mut Dice, text: &mut String, blocks: bool) -> String {
         let inward = self.base - self.end;
         let long = inward.hypot(self.height);
@@ -101,7 +100,7 @@ impl Place {
             ));
             return format!("c = {long:?}");
         }
-        // A rod that swings out of the leg's plane, too, holds nothing.
+        // A rod that can also swing out of the leg's plane blocks nothing.
         let swing = |joint: &mut dyn FnMut(String)| {
             if !blocks {
                 joint("name = \"c\"\ntype = \"revolute\"\nalpha = \"90 deg\"\n".to_owned());
@@ -148,7 +147,7 @@ impl Place {
         }
     }
 
-    /// The ball on the platform.
+    /// Position of the ball joint on the platform.
     fn end_point(&self, dice: &mut Dice) -> [f64; 3] {
         let (x, y) = (self.end * self.angle.cos(), self.end * self.angle.sin());
         [x, y, dice.length(0.05)]

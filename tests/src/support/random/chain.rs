@@ -1,4 +1,4 @@
-//! Chains of random joints, built from the base on.
+//! Random chains of joints, built from the base outwards.
 
 use super::{Dice, Member, draw_parameters};
 use crate::reference::{Joint, JointKind};
@@ -11,7 +11,7 @@ const FACTORS: [f64; 6] = [-1.0, -1.0, 1.0, 0.5, -2.0, 0.3];
 pub(super) struct Chain<'d> {
     pub(super) dice: &'d mut Dice,
     pub(super) members: Vec<Member>,
-    /// The joint that the chain goes on from.
+    /// Joint at which the chain continues.
     tip: Option<usize>,
 }
 
@@ -24,7 +24,7 @@ impl<'d> Chain<'d> {
         }
     }
 
-    /// A joint after the tip with its own variable, geometry all zero.
+    /// Joint after the tip with its own variable; geometry all zero.
     pub(super) fn next(&self, kind: JointKind) -> Joint {
         Joint {
             antecedent: self.tip,
@@ -32,7 +32,7 @@ impl<'d> Chain<'d> {
         }
     }
 
-    /// Puts a joint at the end of the chain.
+    /// Appends a joint to the chain.
     pub(super) fn push(&mut self, joint: Joint) {
         self.put(joint);
         self.tip = Some(self.members.len() - 1);
@@ -47,13 +47,13 @@ impl<'d> Chain<'d> {
         });
     }
 
-    /// Goes on from any joint, or from the base.
+    /// Continues at any joint, or at the base.
     pub(super) fn jump(&mut self) {
         let at = self.dice.below(self.members.len() + 1);
         self.tip = at.checked_sub(1);
     }
 
-    /// A revolute or, less often, prismatic joint.
+    /// Draws a revolute or, less often, prismatic joint.
     pub(super) fn draw_kind(&mut self) -> JointKind {
         if self.dice.chance(0.3) {
             JointKind::Prismatic
@@ -62,7 +62,7 @@ impl<'d> Chain<'d> {
         }
     }
 
-    /// A joint anywhere.
+    /// Draws a joint with any placement.
     pub(super) fn draw_joint(&mut self, kind: JointKind) -> Joint {
         let gamma_and_b = self.dice.chance(0.3);
         let dice = &mut *self.dice;
@@ -83,10 +83,10 @@ impl<'d> Chain<'d> {
         (0..self.members.len()).filter(own).collect()
     }
 
-    /// A joint that follows one or two others, or a fixed one where there is none to follow.
+    /// Draws a joint coupled to one or two others, or a fixed one if there are none.
     pub(super) fn draw_follower(&mut self) -> Joint {
         let kind = self.draw_kind();
-        // A position in metres that follows an angle is a screw; factors are per radian then.
+        // A position in metres that depends on an angle is a screw; factors are then per radian.
         let owners = self.owners();
         let mut terms: Vec<(usize, f64)> = Vec::new();
         for _ in 0..self.dice.pick(&[1, 1, 2]) {
@@ -105,7 +105,7 @@ impl<'d> Chain<'d> {
         self.draw_joint(kind).dependent(&terms)
     }
 
-    /// Sometimes a body beside the chain: fixed on it, or following it.
+    /// Sometimes adds a branch body: fixed, or coupled to the chain.
     pub(super) fn maybe_branch(&mut self) {
         if self.dice.chance(0.1) {
             let branch = self.draw_follower();
@@ -113,7 +113,7 @@ impl<'d> Chain<'d> {
         }
     }
 
-    /// Sometimes a body in the chain: fixed, or following joints before it.
+    /// Sometimes adds a body in the chain: fixed, or coupled to earlier joints.
     pub(super) fn maybe_follow(&mut self) {
         if self.dice.chance(0.1) {
             let link = self.draw_follower();

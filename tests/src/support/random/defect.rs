@@ -1,31 +1,31 @@
-//! Damages to a sound mechanism, each of which the generator has to find.
+//! Defects of mechanisms, each of which the generator must detect.
 
 use super::{Attachment, Dice, Member, Shape, Sketch};
 use crate::reference::linear::condition;
 use crate::reference::{Joint, JointKind, Motion, State};
 use nalgebra::DVector;
 
-/// What is wrong with a mechanism.
+/// A defect of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Defect {
-    /// A leg's base is farther away than the leg is long.
+    /// The base of a leg is too far away.
     OutOfReach,
     /// Fewer actuators than degrees of freedom.
     ActuatorMissing,
     /// A leg has a joint that the platform's motion does not determine.
     JointTooMany,
-    /// A leg has one joint less than it needs to follow the platform.
+    /// A leg has one joint too few to follow the platform.
     JointMissing,
     /// Two axes of a leg coincide.
     AxesCoincide,
-    /// A joint follows itself.
+    /// A joint is coupled to itself.
     Cycle,
     /// As many actuators as degrees of freedom, but they do not determine the motion.
     ActuatorsDependent,
 }
 
 impl Defect {
-    /// All of them.
+    /// All defects.
     pub const ALL: [Self; 7] = [
         Self::OutOfReach,
         Self::ActuatorMissing,
@@ -36,12 +36,12 @@ impl Defect {
         Self::ActuatorsDependent,
     ];
 
-    /// Damages a mechanism; none if the damage does not apply to it.
+    /// Applies the defect; `None` if it does not apply to the mechanism.
     #[must_use]
     pub fn apply(self, sketch: &Sketch) -> Option<Sketch> {
         let mut dice = Dice::new(sketch.seed ^ 0xdefec7);
         let mut sketch = sketch.clone();
-        // Names of kept actuators are no longer right.
+        // Names of kept actuators are no longer valid.
         sketch.kept = None;
         if sketch.motion == Motion::None {
             return None;
@@ -57,7 +57,7 @@ impl Defect {
             Self::Cycle => shape.close_cycle(),
             Self::ActuatorsDependent => sketch.actuate_dependently(&mut dice),
         }?;
-        // A leg that can do more than the platform asks for may do without a joint.
+        // A leg with more mobility than the platform requires may lose a joint.
         let is_sound = self == Self::JointMissing && sketch.moves();
         (!is_sound).then_some(sketch)
     }
@@ -76,7 +76,7 @@ impl Shape {
         is_short.then_some(())
     }
 
-    /// A joint whose axis goes through the leg's end turns freely there.
+    /// Adds a joint whose axis passes through the leg's end and which therefore rotates freely.
     fn add_joint(&mut self) -> Option<()> {
         if !matches!(self.places[0].end, Attachment::Point(..)) {
             return None;
@@ -95,7 +95,7 @@ impl Shape {
         Some(())
     }
 
-    /// The first joint stays where it is at home.
+    /// Fixes the first joint at home.
     fn fix_joint(&mut self) -> Option<()> {
         let own = self.independent();
         let first = *own.first()?;
@@ -124,7 +124,7 @@ impl Shape {
         let (first, second) = (*own.first()?, *own.get(1)?);
         let turns = |j: usize| self.members[j].joint.kind == JointKind::Revolute;
         let is_pair = second == first + 1 && turns(first) && turns(second);
-        // What follows one of them could tell them apart.
+        // A coupled joint could distinguish them.
         let alone = |(at, m): (usize, &Member)| m.joint.terms.iter().all(|t| t.0 == at);
         let has_no_follower = self.members.iter().enumerate().all(alone);
         let joint = &mut self.members[second].joint;
@@ -148,7 +148,7 @@ impl Shape {
 }
 
 impl Sketch {
-    /// Whether every leg follows the platform at home.
+    /// Whether every leg can follow the platform at home.
     fn moves(&self) -> bool {
         let mechanism = self.mechanism();
         let still = DVector::zeros(mechanism.dof());
@@ -165,7 +165,7 @@ impl Sketch {
         Some(())
     }
 
-    /// Puts r motors where they do not determine the platform's motion, if there are such joints.
+    /// Places r motors such that they do not determine the platform's motion, if possible.
     fn actuate_dependently(&mut self, dice: &mut Dice) -> Option<()> {
         let dof = self.motion.dof();
         let mechanism = self.mechanism();

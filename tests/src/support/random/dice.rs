@@ -3,7 +3,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// A stream of choices, the same for the same seed on any machine.
+/// Stream of random choices, reproducible on any machine.
 #[derive(Clone, Debug)]
 pub struct Dice(Pcg64);
 
@@ -19,17 +19,17 @@ impl Dice {
         self.0.random_range(0..bound)
     }
 
-    /// True in so many cases of one.
+    /// True with the given probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.0.random_range(0.0..1.0) < probability
     }
 
-    /// One of several.
+    /// One of several items.
     pub fn pick<T: Copy>(&mut self, of: &[T]) -> T {
         of[self.below(of.len())]
     }
 
-    /// About half of several, in order.
+    /// About half of several items, in order.
     pub fn some<T: Copy>(&mut self, of: &[T]) -> Vec<T> {
         of.iter().copied().filter(|_| self.chance(0.5)).collect()
     }
@@ -41,7 +41,7 @@ impl Dice {
         }
     }
 
-    /// A length of full millimetres within a bound on either side, m; sometimes zero.
+    /// Length of whole millimetres up to a bound in either direction, m; sometimes zero.
     pub fn length(&mut self, bound: f64) -> f64 {
         if self.chance(0.15) {
             return 0.0;
@@ -49,12 +49,12 @@ impl Dice {
         (1e3 * self.0.random_range(-bound..bound)).round() / 1e3
     }
 
-    /// A length of full millimetres between bounds, m.
+    /// Length of whole millimetres between bounds, m.
     pub fn distance(&mut self, low: f64, high: f64) -> f64 {
         (1e3 * self.0.random_range(low..high)).round() / 1e3
     }
 
-    /// An angle within a bound on either side, rad: a decimal, or full degrees.
+    /// Angle up to a bound in either direction, rad: a decimal, or whole degrees.
     pub fn angle(&mut self, bound: f64) -> f64 {
         if self.chance(0.3) {
             return self
@@ -67,7 +67,7 @@ impl Dice {
         self.length(bound)
     }
 
-    /// The angle between neighbouring axes: a right angle, parallel, or any.
+    /// Angle between neighbouring axes: right, parallel, or any.
     pub fn twist(&mut self) -> f64 {
         let exact: f64 = self.pick(&[90.0, -90.0, 0.0, 180.0, 60.0, -45.0]);
         if self.chance(0.6) {

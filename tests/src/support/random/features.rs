@@ -1,10 +1,10 @@
-//! What a drawn mechanism has, so that a run can tell whether it has met everything.
+//! Features of drawn mechanisms, to check the coverage of a run.
 
 use super::{Attachment, Shape, Sketch};
 use crate::reference::{JointKind, Motion};
 use std::collections::BTreeSet;
 
-/// Everything that a run of some hundred mechanisms has to meet.
+/// All features that a run of some hundred mechanisms must cover.
 pub const ALL: [&str; 44] = [
     "motion: slide",
     "motion: hinge",
@@ -53,7 +53,7 @@ pub const ALL: [&str; 44] = [
 ];
 
 impl Sketch {
-    /// What the mechanism has of [`ALL`].
+    /// Features of the mechanism in [`ALL`].
     #[must_use]
     pub fn features(&self) -> BTreeSet<String> {
         let mut found = BTreeSet::new();
@@ -148,7 +148,7 @@ impl Shape {
         }
     }
 
-    /// The joints from the base to the last one.
+    /// Joints from the base to the last one.
     fn path(&self) -> Vec<usize> {
         let mut path = Vec::new();
         let mut at = self.members.len().checked_sub(1);

@@ -1,27 +1,29 @@
-//! Friction of other kinds than the symmetric one: drawn from dice of its own when all else is drawn, so that a
-//! seed has the mechanism that it had without it.
+//! Random friction of other kinds than the symmetric one.
+//!
+//! It is drawn last from a separate random stream, so that it does not change the rest of a seed's
+//! mechanism.
 
 use super::{Dice, Shape, Sketch};
 use crate::reference::parameters::SYMBOLS;
 use crate::reference::{JointKind, Motion, Spring};
 
-/// What is added to the seed of a mechanism for the dice of its friction.
+/// Offset of the seed for the random stream of friction.
 const OWN: u64 = 0x0f12_1c71;
 
-/// Groups and symbols with friction that is the same in both directions.
+/// Groups and symbols of friction that is equal in both directions.
 const SYMMETRIC: [&str; 5] = ["all", "friction", "fv", "fs", "off"];
 
 /// The load a + b cos(q) of a revolute joint, or a + b q of a prismatic one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// What it is at any position.
+    /// Constant part.
     pub constant: f64,
-    /// What depends on the position.
+    /// Factor of the position-dependent part.
     pub factor: f64,
 }
 
 impl Load {
-    /// As the reference has it.
+    /// Load for the reference.
     fn spring(self, kind: JointKind) -> Spring {
         let Self { constant, factor } = self;
         Spring::new(move |q: f64| match kind {
@@ -30,7 +32,7 @@ impl Load {
         })
     }
 
-    /// As a description has it.
+    /// Load as an expression of the description.
     pub(super) fn text(self, kind: JointKind) -> String {
         let Self { constant, factor } = self;
         match kind {
@@ -41,8 +43,8 @@ impl Load {
 }
 
 impl Sketch {
-    /// Draws friction that rises towards standstill, that differs by direction, and, without a platform, that
-    /// grows with a load.
+    /// Draws Stribeck friction, direction-dependent friction and, without a platform,
+    /// load-dependent friction.
     pub(super) fn draw_friction(&mut self) {
         let mut dice = Dice::new(self.seed ^ OWN);
         let is_tree = self.motion == Motion::None;
@@ -65,7 +67,7 @@ impl Shape {
             }
             if dice.chance(0.15) {
                 let own = match member.parameters.iter().any(|one| SYMMETRIC.contains(one)) {
-                    // Both directions together would be the symmetric one once more.
+                    // Both directions together would be symmetric friction again.
                     true => [[0, 2], [1, 3]]
                         .map(|pair| directed[dice.pick(&pair)])
                         .to_vec(),

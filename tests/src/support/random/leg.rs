@@ -1,4 +1,4 @@
-//! Legs that can follow a platform's motion, by structure.
+//! Random legs that can follow a platform's motion, by structure.
 
 use super::chain::Chain;
 use super::{Attachment, Dice, Placed, Placement, Shape, Sketch};
@@ -7,19 +7,20 @@ use crate::reference::{Frame, Joint, JointKind, Motion};
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// What a leg is built like.
+/// Structure of a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Structure {
-    /// Six joints anywhere, the last body fixed on the platform.
+    /// Six joints anywhere; the last body is fixed to the platform.
     Serial,
-    /// Three joints anywhere to a point of the platform.
+    /// Three joints anywhere, to a point of the platform.
     Arm,
-    /// One or two joints anywhere; their end meets the platform along as many axes.
+    /// One or two joints anywhere; their end coincides with the platform along as many axes.
     Slot,
-    /// Joints that move in the plane normal to an axis: three to a fixed end, two to a point.
+    /// Joints that move in the plane normal to an axis: three to a rigid end, two to a point.
     InPlane(usize),
-    /// Joints each followed by one that turns back, so that the end only translates; for a platform
-    /// with one rotation a further joint about its axis.
+    /// Joints each followed by one that rotates back, so that the end only translates.
+    ///
+    /// For a platform with one rotation, there is a further joint about its axis.
     Parallelograms,
     /// Three axes through the origin.
     Wrist,
@@ -58,7 +59,7 @@ impl Structure {
         }
     }
 
-    /// The base frame of a leg in its place.
+    /// Base frame of a placed leg.
     fn draw_base(self, dice: &mut Dice, motion: Motion) -> Placement {
         let at = std::array::from_fn(|_| dice.length(0.6));
         let axis = match (self, motion) {
@@ -67,7 +68,7 @@ impl Structure {
             _ => None,
         };
         let rotation = match axis {
-            // The leg's z axis is put on the axis that its joints are parallel to.
+            // The leg's z axis coincides with the axis that its joints are parallel to.
             Some(0) => [FRAC_PI_2, 0.0, FRAC_PI_2],
             Some(1) => [-FRAC_PI_2, 0.0, 0.0],
             Some(_) => [0.0, 0.0, dice.angle(3.0)],
@@ -76,7 +77,7 @@ impl Structure {
         };
         let at = match (self, motion) {
             (Self::Wrist, _) => [0.0; 3],
-            // The joint may be anywhere along the axis that the platform turns about.
+            // The joint may be anywhere along the platform's rotation axis.
             (Self::Drive(axis), Motion::Hinge { point, .. }) => {
                 std::array::from_fn(|i| if i == axis { at[i] } else { point[i] })
             }
@@ -86,8 +87,9 @@ impl Structure {
     }
 }
 
-/// A leg with one or more placements that close at home; none where an end's orientation has no
-/// well-conditioned angles.
+/// Leg with one or more placements that close at home.
+///
+/// `None` if an end's orientation has no well-conditioned angles.
 pub(super) fn draw_shape(dice: &mut Dice, sketch: &Sketch, structure: Structure) -> Option<Shape> {
     let mut shape = Shape {
         structure,
@@ -108,7 +110,7 @@ pub(super) fn draw_shape(dice: &mut Dice, sketch: &Sketch, structure: Structure)
     Some(shape)
 }
 
-/// What kind of end a chain has.
+/// Type of a chain's end.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Free,
@@ -171,7 +173,7 @@ impl Shape {
         end
     }
 
-    /// One motor, sometimes two or none; all joints of a tree.
+    /// Draws one motor, sometimes two or none; all joints of a tree are actuated.
     fn draw_actuators(&mut self, dice: &mut Dice) {
         let mut independent = self.independent();
         dice.shuffle(&mut independent);
@@ -215,7 +217,7 @@ impl Shape {
     }
 }
 
-/// The angles of an orientation, but near the pitch of a right angle.
+/// Angles of an orientation; `None` near a pitch of a right angle.
 fn angles(frame: &Frame) -> Option<[f64; 3]> {
     let (rx, ry, rz) = Rotation3::from_matrix_unchecked(frame.rotation).euler_angles();
     (ry.cos() > 0.1).then_some([rx, ry, rz])
@@ -228,7 +230,7 @@ impl Chain<'_> {
         std::array::from_fn(|at| (at == axis) != two)
     }
 
-    /// Joints anywhere, some with bodies between or beside them.
+    /// Joints anywhere, some with intermediate or branch bodies.
     fn anywhere(&mut self, count: usize) {
         for at in 0..count {
             if at > 0 {
@@ -240,7 +242,7 @@ impl Chain<'_> {
             self.push(joint);
         }
         if self.dice.chance(0.5) {
-            // A last body that is fixed carries the end away from the last joint's axis.
+            // A fixed last body moves the end away from the last joint's axis.
             let joint = self.draw_joint(JointKind::Fixed);
             self.push(joint);
         }
@@ -248,7 +250,7 @@ impl Chain<'_> {
 
     /// Joints that move in the plane normal to the leg's z axis.
     fn in_plane(&mut self, count: usize) {
-        // Whether the last z axis lies in the plane, that of a prismatic joint.
+        // Whether the last z axis is in the plane, that of a prismatic joint.
         let mut lies = false;
         for _ in 0..count {
             self.maybe_branch();
@@ -262,7 +264,7 @@ impl Chain<'_> {
             let joint = self.next(kind);
             let dice = &mut *self.dice;
             let joint = Joint {
-                // The frame of a slide can only turn about its axis, out of the plane.
+                // The frame of a slide can only rotate about its axis, out of the plane.
                 gamma: if lies { 0.0 } else { dice.angle(3.0) },
                 alpha,
                 d: dice.length(0.5),
@@ -281,7 +283,7 @@ impl Chain<'_> {
         }
     }
 
-    /// Three joints that keep the orientation, and one about the leg's z axis if asked for.
+    /// Three joints that keep the orientation, and optionally one about the leg's z axis.
     fn parallelograms(&mut self, turns: bool) {
         let first = self.dice.chance(0.5);
         if turns && first {

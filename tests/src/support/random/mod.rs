@@ -1,13 +1,13 @@
-//! Random mechanisms as descriptions, the same for the same seed on any machine.
+//! Random mechanisms as descriptions, reproducible on any machine.
 //!
-//! A mechanism is drawn from its platform inwards. Legs are chains of random modified Denavit-Hartenberg
-//! steps whose structure lets them follow the platform's motion; joints are put anywhere, and the leg's
-//! end says where on the platform it is attached, so that every loop closes at home. A draw that is near
-//! a singularity at home is thrown away and drawn anew: there, a comparison would measure the
-//! conditioning and not the model.
+//! A mechanism is drawn from its platform inwards. Legs are chains of random modified
+//! Denavit-Hartenberg steps whose structure can follow the platform's motion. Joints are placed
+//! anywhere, and the leg's end determines the attachment on the platform, so that every loop closes
+//! at home. A draw near a singularity at home is rejected, because a comparison would measure its
+//! conditioning instead of the model.
 //!
-//! A [`Sketch`] is written twice from the same numbers: as TOML, which the generator reads, and as the
-//! plain data of the numeric [`reference`](mod@crate::reference).
+//! A [`Sketch`] is written twice from the same numbers: as TOML for the generator, and as plain
+//! data of the numeric [`reference`](mod@crate::reference).
 
 mod aside;
 mod chain;
@@ -48,22 +48,22 @@ pub struct Member {
     pub joint: Joint,
     /// Symbols and groups of the parameters that are present.
     pub parameters: Vec<&'static str>,
-    /// The load with which dry friction grows.
+    /// Load that increases dry friction.
     pub load: Option<Load>,
 }
 
-/// Where a placed leg meets the platform.
+/// Attachment of a leg to the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Attachment {
-    /// Nowhere: a tree.
+    /// None: a tree.
     Free,
-    /// The last frame is fixed on the platform.
+    /// The last frame is fixed to the platform.
     Rigid(Placement),
     /// The last frame's origin coincides with a point of the platform along axes of the base frame.
     Point([f64; 3], [bool; 3]),
 }
 
-/// A leg in its place.
+/// A placed leg.
 #[derive(Clone, Debug)]
 pub struct Placed {
     /// The leg's base frame.
@@ -74,14 +74,14 @@ pub struct Placed {
     pub end: Attachment,
 }
 
-/// A leg that is written once, and its placements.
+/// A leg that is described once, and its placements.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// What the leg is built like.
+    /// Structure of the leg.
     pub structure: Structure,
     /// The joints; antecedents come first, the last one carries the end.
     pub members: Vec<Member>,
-    /// Where the leg stands.
+    /// Placements of the leg.
     pub places: Vec<Placed>,
 }
 
@@ -100,10 +100,10 @@ impl Shape {
     }
 }
 
-/// A mechanism as it is drawn.
+/// A drawn mechanism.
 #[derive(Clone, Debug)]
 pub struct Sketch {
-    /// The seed that it was drawn from.
+    /// Seed.
     pub seed: u64,
     /// Motion of the platform.
     pub motion: Motion,
@@ -115,15 +115,15 @@ pub struct Sketch {
     pub shapes: Vec<Shape>,
     /// The platform's parameters.
     pub platform: Vec<&'static str>,
-    /// The payload's, if there may be one.
+    /// Parameters of the payload, if there may be one.
     pub payload: Option<Vec<&'static str>>,
-    /// Kept actuators of case 2; none leaves the choice to the generator.
+    /// Kept actuators; `None` leaves the choice to the generator.
     pub kept: Option<Vec<usize>>,
     /// The friction model of `[identification]`.
     pub friction: &'static str,
 }
 
-/// Joints that all legs together may have: what is larger takes the generator seconds.
+/// Largest number of joints; larger mechanisms take the generator seconds.
 const MAX_JOINTS: usize = 12;
 
 impl Sketch {
@@ -200,8 +200,8 @@ impl Sketch {
         self.shapes.iter().map(of).sum()
     }
 
-    /// Whether legs and inverse Jacobian are well conditioned at home, with room for the states around
-    /// it.
+    /// Whether legs and inverse Jacobian are well conditioned at home, with a margin for the states
+    /// around it.
     fn is_regular(&self) -> bool {
         let mechanism = self.mechanism();
         let still = DVector::zeros(mechanism.dof());
@@ -209,7 +209,7 @@ impl Sketch {
         let jacobians = state.and_then(|state| state.jacobians(&mechanism));
         jacobians.is_ok_and(|j| {
             let least = |matrix| singular_values(matrix).min() * MAX_CONDITION;
-            // A single joint or coordinate has no condition number: what tells is the size.
+            // A single joint or coordinate has no condition number, so its size matters.
             least(&j.legs) > 1.0
                 && least(&j.inverse) > 1.0
                 && j.worst_leg_condition(&mechanism) < MAX_CONDITION / 3.0
@@ -218,7 +218,7 @@ impl Sketch {
         })
     }
 
-    /// Kept actuators that determine the platform's motion at home.
+    /// Draws kept actuators that determine the platform's motion at home.
     fn draw_kept(&self, dice: &mut Dice) -> Option<Vec<usize>> {
         let mechanism = self.mechanism();
         let still = DVector::zeros(mechanism.dof());
@@ -236,7 +236,7 @@ impl Sketch {
     }
 }
 
-/// Every motion in turn; axes at random.
+/// Every motion in turn, with random axes.
 fn draw_motion(dice: &mut Dice, seed: u64) -> Motion {
     let axis = dice.below(3);
     match seed % 8 {
@@ -259,7 +259,7 @@ fn draw_motion(dice: &mut Dice, seed: u64) -> Motion {
     }
 }
 
-/// A home pose; coordinates that the motion has not stay zero.
+/// Draws a home pose; coordinates that the motion lacks stay zero.
 fn draw_home(dice: &mut Dice, motion: Motion) -> Placement {
     let mut home = Placement::default();
     if let Motion::Slide { point, .. } | Motion::Hinge { point, .. } = motion {
@@ -291,7 +291,7 @@ fn draw_gravity(dice: &mut Dice) -> [f64; 3] {
     }
 }
 
-/// A free body's parameters.
+/// Draws the parameters of a free body.
 fn draw_inertia(dice: &mut Dice) -> Vec<&'static str> {
     match dice.below(3) {
         0 => vec!["inertia"],
@@ -300,7 +300,7 @@ fn draw_inertia(dice: &mut Dice) -> Vec<&'static str> {
     }
 }
 
-/// A leg body's and its joint's parameters.
+/// Draws the parameters of a leg body and its joint.
 fn draw_parameters(dice: &mut Dice, kind: JointKind) -> Vec<&'static str> {
     if kind == JointKind::Fixed {
         return draw_inertia(dice);
@@ -310,7 +310,8 @@ fn draw_parameters(dice: &mut Dice, kind: JointKind) -> Vec<&'static str> {
         1 => Vec::new(),
         2 => vec!["inertia", "ia"],
         3 => vec!["m", "zz", "friction"],
-        // A spring's coefficient and friction of another kind, the last symbols, belong to joints with a spring alone.
+        // The last symbols, spring coefficient and other kinds of friction, are for joints with a
+        // spring only.
         _ => dice.some(&crate::reference::parameters::SYMBOLS[..14]),
     }
 }

@@ -1,11 +1,11 @@
-//! A sketch as the numeric reference's plain data.
+//! Converts a sketch to the plain data of the numeric reference.
 
 use super::{Attachment, Placed, Placement, Shape, Sketch};
 use crate::reference::{End, Frame, Leg, Mechanism, Motion};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 
 impl Placement {
-    /// The frame at this placement.
+    /// Frame of the placement.
     #[must_use]
     pub fn frame(&self) -> Frame {
         let [rx, ry, rz] = self.rotation;
@@ -15,7 +15,7 @@ impl Placement {
 }
 
 impl Shape {
-    /// The leg in one of its places.
+    /// The leg at one of its placements.
     #[must_use]
     pub fn leg(&self, placed: &Placed) -> Leg {
         let joint = self.members.len() - 1;

@@ -1,15 +1,15 @@
-//! Random robots without a platform: a tree of joints, and chains between any of its bodies and of theirs.
+//! Random robots without a platform: a tree of joints, and chains between any bodies.
 //!
-//! Every joint of the skeleton has a motor, so the actuators determine the motion whatever the chains do; some
-//! chains have motors, too. A chain is a drive of two crossing axes and a slide, an arm of three revolute joints,
-//! or three slides: three joints that follow the point that they end in. It starts near its home, and closes by
-//! itself or not at all; what does not close, or is nearly singular, is for the caller to throw away. Some bodies of
-//! chains carry a branch, whose joints are independent coordinates too, and from which later chains may start.
+//! Every joint of the skeleton has a motor, so the actuators determine the motion; some chains also
+//! have motors. A chain is a drive of two crossing axes and a slide, an arm of three revolute
+//! joints, or three slides. Its three joints follow from its end point. It starts near its home and
+//! may fail to close; the caller rejects open and nearly singular draws. Some bodies of chains
+//! carry a branch, whose joints are independent coordinates too, and where later chains may start.
 
 use super::Dice;
 use std::fmt::Write;
 
-/// The description of a seed.
+/// Description of a seed.
 #[must_use]
 pub fn skeleton(seed: u64) -> String {
     let mut dice = Dice::new(seed);
@@ -28,7 +28,7 @@ pub fn skeleton(seed: u64) -> String {
     text + &places
 }
 
-/// Writes the skeleton; the names of its bodies.
+/// Writes the skeleton; returns the names of its bodies.
 fn tree(dice: &mut Dice, text: &mut String, places: &mut String) -> Vec<String> {
     let count = 2 + dice.below(3);
     write(text, format_args!("[leg.tree]\n{}", base(dice, None)));
@@ -54,7 +54,7 @@ fn tree(dice: &mut Dice, text: &mut String, places: &mut String) -> Vec<String> 
     (0..count).map(|index| format!("j{index}")).collect()
 }
 
-/// Writes a branch of one or two joints on a body of a chain; the names of its bodies.
+/// Writes a branch of one or two joints on a body of a chain; returns the names of its bodies.
 fn branch(
     dice: &mut Dice,
     text: &mut String,
@@ -79,7 +79,7 @@ fn branch(
     (0..count).map(|joint| format!("{name}.j{joint}")).collect()
 }
 
-/// Writes a chain between two bodies; the names of its own.
+/// Writes a chain between two bodies; returns the names of its own.
 fn chain(
     dice: &mut Dice,
     text: &mut String,
@@ -186,7 +186,7 @@ fn slides(dice: &mut Dice, text: &mut String, name: &str) -> Vec<String> {
         .collect()
 }
 
-/// A joint of any placement.
+/// Writes a joint with any placement.
 fn joint(
     text: &mut String,
     dice: &mut Dice,
@@ -212,7 +212,7 @@ fn joint(
     );
 }
 
-/// A base frame in the ground or on a body.
+/// Base frame on the ground or on a body.
 fn base(dice: &mut Dice, body: Option<&str>) -> String {
     let at = [0; 3].map(|_| dice.length(0.4));
     let rotation = [0; 3].map(|_| dice.angle(1.0));
@@ -231,6 +231,6 @@ fn place(places: &mut String, name: &str, home: &[String]) {
 }
 
 pub(super) fn write(text: &mut String, what: std::fmt::Arguments<'_>) {
-    // Text takes what is written.
+    // Writing to a string does not fail.
     let _ = text.write_fmt(what);
 }

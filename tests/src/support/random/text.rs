@@ -1,4 +1,4 @@
-//! A sketch as a description in TOML.
+//! Writes a sketch as a description in TOML.
 
 use super::{Attachment, Member, Placed, Placement, Shape, Sketch};
 use crate::reference::{JointKind, Motion};
@@ -97,7 +97,7 @@ impl Sketch {
         }
     }
 
-    /// Names as `kept_actuators` has them: leg and joint.
+    /// Names of legs and joints, as in `kept_actuators`.
     fn actuator_names(&self) -> Vec<String> {
         let mut names = Vec::new();
         let mut leg = 0;
@@ -265,7 +265,7 @@ fn write_joint(text: &mut String, shape: usize, members: &[Member], member: &Mem
     }
 }
 
-/// An angle: full degrees as such, others in radians.
+/// Angle: whole degrees in degrees, others in radians.
 fn angle(value: f64) -> String {
     let degrees = value.to_degrees().round();
     if (degrees.to_radians() - value).abs() < 1e-15 {
@@ -275,12 +275,12 @@ fn angle(value: f64) -> String {
     }
 }
 
-/// A list of three variables.
+/// List of three variables.
 fn list(of: &str) -> String {
     format!("[\"{of}0\", \"{of}1\", \"{of}2\"]")
 }
 
 fn line(text: &mut String, line: &str) {
-    // Writing to a string can't fail.
+    // Writing to a string does not fail.
     let _ = writeln!(text, "{line}");
 }
