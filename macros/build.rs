@@ -31,9 +31,10 @@ fn add(folder: &Path, contents: &mut DefaultHasher) {
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
     paths.sort();
     for path in paths {
-        match path.is_dir() {
-            true => add(&path, contents),
-            false => (path.file_name(), fs::read(&path).ok()).hash(contents),
+        if path.is_dir() {
+            add(&path, contents)
+        } else {
+            (path.file_name(), fs::read(&path).ok()).hash(contents)
         }
     }
 }

@@ -27,9 +27,10 @@ impl Arguments {
     /// # Errors
     /// All unknown function names.
     pub(crate) fn choice(&self) -> Result<Option<Choice>, Failure> {
-        let mut choice = match self.functions.is_empty() {
-            true => Choice::all(),
-            false => self.named()?,
+        let mut choice = if self.functions.is_empty() {
+            Choice::all()
+        } else {
+            self.named()?
         };
         if !self.from.is_empty() {
             choice = choice.evaluated_from(self.from.iter().map(|source| source.from()));

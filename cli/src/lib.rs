@@ -78,9 +78,10 @@ pub fn run_with(arguments: Vec<OsString>) -> u8 {
 fn misused(error: &clap::Error, wants_json: bool) -> u8 {
     if error.use_stderr() && !wants_json && error.kind() != NO_COMMAND {
         let colours = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-        let said = match colours && io::stderr().is_terminal() {
-            true => error.render().ansi().to_string(),
-            false => error.render().to_string(),
+        let said = if colours && io::stderr().is_terminal() {
+            error.render().ansi().to_string()
+        } else {
+            error.render().to_string()
         };
         let code = format!("error[{}]", Code::USAGE);
         let _ = write!(io::stderr(), "{}", said.replacen("error", &code, 1));

@@ -64,9 +64,10 @@ impl States {
 
     fn parse(file: String, text: &str) -> Result<Self, Failure> {
         let text = text.trim_start_matches('\u{feff}');
-        let format = match text.trim_start().starts_with(['[', '{']) {
-            true => Format::Json,
-            false => Format::Csv,
+        let format = if text.trim_start().starts_with(['[', '{']) {
+            Format::Json
+        } else {
+            Format::Csv
         };
         let states = match format {
             Format::Json => from_json(text),

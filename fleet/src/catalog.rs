@@ -73,9 +73,10 @@ impl Catalog {
                 let table = context
                     .read_parquet(file, ParquetReadOptions::default())
                     .await?;
-                match whole {
-                    true => table.collect().await.map(drop),
-                    false => Ok(()),
+                if whole {
+                    table.collect().await.map(drop)
+                } else {
+                    Ok(())
                 }
             };
             match read.await {

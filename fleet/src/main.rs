@@ -264,9 +264,10 @@ fn tell(fleet: &Fleet, rows: usize, times: [f64; 2]) {
 }
 
 async fn sql(own: Sql) -> Result<(), String> {
-    let query = match Path::new(&own.query).is_file() {
-        true => std::fs::read_to_string(&own.query).map_err(|error| error.to_string())?,
-        false => own.query,
+    let query = if Path::new(&own.query).is_file() {
+        std::fs::read_to_string(&own.query).map_err(|error| error.to_string())?
+    } else {
+        own.query
     };
     let start = Instant::now();
     let mut fleet = open(&own.data).await?;
@@ -276,12 +277,13 @@ async fn sql(own: Sql) -> Result<(), String> {
         .await
         .map_err(|error| error.strip_backtrace())?;
     let took = start.elapsed().as_secs_f64() - opened;
-    let text = match own.csv {
-        true => csv(&rows)?,
-        false => format!(
+    let text = if own.csv {
+        csv(&rows)?
+    } else {
+        format!(
             "{}\n",
             pretty_format_batches(&rows).map_err(|error| error.to_string())?
-        ),
+        )
     };
     tell(
         &fleet,

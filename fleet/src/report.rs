@@ -189,9 +189,10 @@ fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>)
          without drift<th class=\"days\">days</tr>",
     );
     for (place, own) in alarms.iter().enumerate() {
-        let plot = match place < MOST_PLOTS {
-            true => line(own),
-            false => String::new(),
+        let plot = if place < MOST_PLOTS {
+            line(own)
+        } else {
+            String::new()
         };
         let _ = write!(
             html,

@@ -38,9 +38,10 @@ impl Robots {
                 Err(error) => problems.push(error.to_string()),
             }
         }
-        match problems.is_empty() {
-            true => Ok(Self(Arc::new(robots))),
-            false => Err(problems.join("\n")),
+        if problems.is_empty() {
+            Ok(Self(Arc::new(robots)))
+        } else {
+            Err(problems.join("\n"))
         }
     }
 

@@ -156,9 +156,10 @@ impl Fleet {
         }
         let before = self.left_out.len();
         self.register(true).await?;
-        match self.left_out.len() > before {
-            true => self.answer(query).await,
-            false => first,
+        if self.left_out.len() > before {
+            self.answer(query).await
+        } else {
+            first
         }
     }
 
@@ -223,9 +224,10 @@ impl Fleet {
             .filter(|file| !catalog.copies.contains_key(*file))
             .cloned()
             .collect();
-        let mut factors = match simple.is_empty() {
-            true => None,
-            false => Some(self.table(&simple).await?),
+        let mut factors = if simple.is_empty() {
+            None
+        } else {
+            Some(self.table(&simple).await?)
         };
         for (file, copies) in catalog.copies {
             let copies = copies.into_iter().map(lit).collect();

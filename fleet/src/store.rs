@@ -52,9 +52,10 @@ impl FromStr for Place {
             return Err(format!("files are not read from `{scheme}://`: {way_out}"));
         }
         let url = Url::parse(text).map_err(|error| format!("{error}: {way_out}"))?;
-        match url.host_str().is_some_and(|bucket| !bucket.is_empty()) {
-            true => Ok(Self::Bucket(url)),
-            false => Err(format!("there is no bucket in `{text}`: {way_out}")),
+        if url.host_str().is_some_and(|bucket| !bucket.is_empty()) {
+            Ok(Self::Bucket(url))
+        } else {
+            Err(format!("there is no bucket in `{text}`: {way_out}"))
         }
     }
 }

@@ -116,9 +116,10 @@ fn copied(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a folder");
     for entry in fs::read_dir(from).expect("a folder").flatten() {
         let (own, target) = (entry.path(), to.join(entry.file_name()));
-        match own.is_dir() {
-            true => copied(&own, &target),
-            false => drop(fs::copy(&own, &target).expect("a file")),
+        if own.is_dir() {
+            copied(&own, &target)
+        } else {
+            drop(fs::copy(&own, &target).expect("a file"))
         }
     }
 }

@@ -49,12 +49,13 @@ fn description(named: bool) -> String {
         "[leg.arm]",
         "[platform.payload]\nparameters = [\"m\"]\n\n[leg.arm]",
     );
-    let (names, values) = match named {
-        true => (
+    let (names, values) = if named {
+        (
             "payloads = [\"heavy\", \"light\"]\n\n",
             "m_payload_heavy = 0.9\nm_payload_light = 0.4\n",
-        ),
-        false => ("", "m_payload = 0.9\n"),
+        )
+    } else {
+        ("", "m_payload = 0.9\n")
     };
     let head = head
         .replace("[constants]", &format!("{names}[constants]"))

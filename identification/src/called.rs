@@ -6,9 +6,10 @@
 #[must_use]
 pub fn called(name: &str) -> String {
     let is_number = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_digit());
-    match is_number {
-        true => format!("joint {name}"),
-        false => format!("`{name}`"),
+    if is_number {
+        format!("joint {name}")
+    } else {
+        format!("`{name}`")
     }
 }
 

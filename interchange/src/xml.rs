@@ -168,9 +168,10 @@ fn text(node: roxmltree::Node<'_, '_>, place: &Place) -> (String, Place) {
         // With character references, lengths in text and file differ; only the whole range is then
         // known.
         let before = own.len() - own.trim_start().len();
-        let (start, end) = match own.len() == range.len() {
-            true => (range.start + before, range.start + before + inside.len()),
-            false => (range.start, range.end),
+        let (start, end) = if own.len() == range.len() {
+            (range.start + before, range.start + before + inside.len())
+        } else {
+            (range.start, range.end)
         };
         span = Some(span.map_or(start..end, |span| span.start..end));
         if !all.is_empty() {

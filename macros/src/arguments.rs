@@ -72,9 +72,10 @@ impl Parse for Arguments {
             let functions = arguments.functions.unwrap_or_default();
             arguments.functions = Some(functions.with_columns(columns));
         }
-        match input.is_empty() {
-            true => Ok(arguments),
-            false => Err(input.error("expected `,`")),
+        if input.is_empty() {
+            Ok(arguments)
+        } else {
+            Err(input.error("expected `,`"))
         }
     }
 }

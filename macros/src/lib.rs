@@ -58,9 +58,10 @@ fn read(attribute: TokenStream, item: TokenStream) -> syn::Result<(Arguments, It
             "expected the path of a robot's description: `#[redundant_robot(\"robot.toml\")]`";
         let is_path = is_empty || e.to_string().contains("string literal");
         // Errors of other kinds may be several, which stay together.
-        match is_path {
-            true => syn::Error::new(e.span(), message),
-            false => e,
+        if is_path {
+            syn::Error::new(e.span(), message)
+        } else {
+            e
         }
     })?;
     let item = syn::parse::<Item>(item)?;

@@ -83,9 +83,10 @@ impl Session {
     ) -> Result<(), JsValue> {
         let log = self.robot.log_of_bytes(name, bytes.into(), payload);
         let log = log.map_err(thrown)?;
-        match held_out {
-            true => self.runs.validation.push(log),
-            false => self.runs.identified.push(log),
+        if held_out {
+            self.runs.validation.push(log)
+        } else {
+            self.runs.identified.push(log)
         }
         Ok(())
     }

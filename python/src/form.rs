@@ -52,9 +52,10 @@ impl Form {
         let index = model.functions.iter().position(|f| f.name == name)?;
         let function = &model.functions[index];
         let is_served = is_served(model, function);
-        let arguments = match is_served {
-            true => served_arguments(owner.model(), function.computes),
-            false => own_arguments(model, function),
+        let arguments = if is_served {
+            served_arguments(owner.model(), function.computes)
+        } else {
+            own_arguments(model, function)
         };
         Some(Self {
             owner,
@@ -268,9 +269,10 @@ fn served_arguments(robot: &InterpretedRobot, function: Function) -> Vec<Argumen
     let sizes = robot.info().sizes;
     let is_tree = robot.model().is_tree();
     let argument = |input: &Input| Argument {
-        name: match is_tree {
-            true => input.name_without_platform(),
-            false => input.name(),
+        name: if is_tree {
+            input.name_without_platform()
+        } else {
+            input.name()
         }
         .to_owned(),
         length: sizes.of(*input),

@@ -79,9 +79,12 @@ impl Function {
                 .iter()
                 .zip(&shared)
                 .zip(&widths)
-                .map(|((values, shared), width)| match shared {
-                    true => values,
-                    false => &values[first * width..(first + count) * width],
+                .map(|((values, shared), width)| {
+                    if shared {
+                        values
+                    } else {
+                        &values[first * width..(first + count) * width]
+                    }
                 })
                 .collect();
             let place = &mut written[first * width..(first + count) * width];
@@ -139,12 +142,11 @@ impl Function {
         let function = self.form.function().computes;
         let is_model = !function.is_vector();
         let base = function.is_of_base_parameters() && is_model && function.columns().is_some();
-        match base {
-            true => model.base.iter().map(|one| model.base_name(one)).collect(),
-            false => {
-                let columns = model.columns_of(function).iter();
-                columns.map(|&one| model.parameter_name(one)).collect()
-            }
+        if base {
+            model.base.iter().map(|one| model.base_name(one)).collect()
+        } else {
+            let columns = model.columns_of(function).iter();
+            columns.map(|&one| model.parameter_name(one)).collect()
         }
     }
 
@@ -237,9 +239,10 @@ impl Function {
             return Err(self.misused("takes no `start`, since it finds no pose"));
         }
         let rows = Rows::new(given, "start", (info.sizes.pose, ""))?;
-        match rows.is_shared() {
-            true => Ok(rows.values()?.to_vec()),
-            false => Err(PyValueError::new_err("`start` is one pose, not several")),
+        if rows.is_shared() {
+            Ok(rows.values()?.to_vec())
+        } else {
+            Err(PyValueError::new_err("`start` is one pose, not several"))
         }
     }
 }
@@ -305,9 +308,10 @@ impl Call<'_> {
         let rows = |(values, shared): (&&'v [f64], &bool)| {
             let values: &'v [f64] = values;
             let width = values.len() / samples.max(1);
-            match shared {
-                true => values,
-                false => &values[first * width..(first + count) * width],
+            if shared {
+                values
+            } else {
+                &values[first * width..(first + count) * width]
             }
         };
         inputs.iter().zip(self.shared).map(rows).collect()

@@ -150,9 +150,10 @@ fn runs(robot: &Robot, wishes: &Wishes, teller: &Teller) -> Result<Runs, Error> 
             experiment.plan_mut().seed = seed;
         }
         let own = robot.held_out();
-        let held = match wishes.held_out.is_empty() {
-            true => &own,
-            false => &wishes.held_out,
+        let held = if wishes.held_out.is_empty() {
+            &own
+        } else {
+            &wishes.held_out
         };
         return experiment.runs(held, &|part, run| teller.tell(part, run));
     }

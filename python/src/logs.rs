@@ -86,9 +86,10 @@ fn samples(item: &Bound<'_, PyTuple>) -> PyResult<Samples> {
         actuators,
         positions,
         torques: array(5)?.0,
-        velocities: match velocities.is_none() {
-            true => Vec::new(),
-            false => array(6)?.0,
+        velocities: if velocities.is_none() {
+            Vec::new()
+        } else {
+            array(6)?.0
         },
     })
 }
@@ -137,9 +138,10 @@ pub(crate) fn logs(
             Err(error) => errors.push(error),
         }
     }
-    match errors.is_empty() {
-        true => Ok(logs),
-        false => Err(Error::Several(errors)),
+    if errors.is_empty() {
+        Ok(logs)
+    } else {
+        Err(Error::Several(errors))
     }
 }
 

@@ -61,12 +61,13 @@ impl Handle {
             let message = format!("the robot {robot} has no function `{name}`; {help}");
             return Err(PyAttributeError::new_err(message));
         }
-        let owner = match own.functions.iter().any(|one| one.name == name) {
-            true => Owner::Robot(Arc::clone(&self.robot)),
-            false => Owner::Own(Box::new(
+        let owner = if own.functions.iter().any(|one| one.name == name) {
+            Owner::Robot(Arc::clone(&self.robot))
+        } else {
+            Owner::Own(Box::new(
                 py.detach(|| self.compiled_alone(name))
                     .map_err(|error| errors::of_robot(py, &error))?,
-            )),
+            ))
         };
         let form = Form::new(owner, name);
         let form = form.ok_or_else(|| {
@@ -305,10 +306,7 @@ fn info(robot: &Robot) -> serde_json::Value {
         "actuators": info.actuators,
         "actuator_is_revolute": info.actuator_is_revolute,
         "coordinates": info.coordinates,
-        "pose_coordinates": match model.is_tree() {
-            true => mechanism.coordinates(),
-            false => mechanism.pose_coordinates(),
-        },
+        "pose_coordinates": if model.is_tree() { mechanism.coordinates() } else { mechanism.pose_coordinates() },
         "home_pose": info.home_pose,
         "home_joints": info.home_joints,
         "kept_actuators": info.kept_actuators,

@@ -45,9 +45,10 @@ impl Plot {
             title: self.title.clone(),
             description: self.title.clone(),
             x: Axis::linear(x.as_str()),
-            y: match self.logarithmic {
-                true => Axis::logarithmic(y.as_str()),
-                false => Axis::linear(y.as_str()),
+            y: if self.logarithmic {
+                Axis::logarithmic(y.as_str())
+            } else {
+                Axis::linear(y.as_str())
             },
             lines: self.curves.iter().enumerate().map(line).collect(),
             rules: rules

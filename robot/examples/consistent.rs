@@ -29,9 +29,10 @@ fn row(path: &str) -> Result<String, Box<dyn Error>> {
     let runs = experiment.runs(&robot.held_out(), &|_, _| {})?;
     let settings = robot.settings(runs.sampling_frequency());
     let (model, info) = (robot.model(), robot.model().info());
-    let projection = match info.sizes.actuators > info.sizes.dof {
-        true => Projection::Platform,
-        false => Projection::Joints,
+    let projection = if info.sizes.actuators > info.sizes.dof {
+        Projection::Platform
+    } else {
+        Projection::Joints
     };
     let prepared = prepare(model, &runs.identified, &[projection], &settings, &|_| {})?;
     let outcome = estimate_projection(&prepared, 0, &settings, None)?;

@@ -77,9 +77,12 @@ fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn
 fn tilted(text: &str, tilt: Vector2<f64>) -> Result<Robot, overact_robot::Error> {
     let [x, y] = [tilt.x, tilt.y].map(|angle| -GRAVITY * angle.sin());
     let z = -(GRAVITY * GRAVITY - x * x - y * y).sqrt();
-    let line = |line: &str| match line.starts_with("gravity = ") {
-        true => format!("gravity = [\"{x:.9} m/s^2\", \"{y:.9} m/s^2\", \"{z:.9} m/s^2\"]\n"),
-        false => format!("{line}\n"),
+    let line = |line: &str| {
+        if line.starts_with("gravity = ") {
+            format!("gravity = [\"{x:.9} m/s^2\", \"{y:.9} m/s^2\", \"{z:.9} m/s^2\"]\n")
+        } else {
+            format!("{line}\n")
+        }
     };
     let text: String = text.lines().map(line).collect();
     Robot::from_text("tilted.toml", &text)

@@ -147,9 +147,10 @@ pub(crate) fn read_or(path: &Path, origin: &str) -> Result<Source, Error> {
                 format!("the file can't be read: {error}"),
             )
             .file(name);
-            Err(match missing {
-                true => problem.help(origin),
-                false => problem,
+            Err(if missing {
+                problem.help(origin)
+            } else {
+                problem
             }
             .into())
         }

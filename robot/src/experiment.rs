@@ -160,9 +160,10 @@ impl VirtualExperiment<'_> {
             .help(help)
         };
         let problems: Vec<Problem> = unknown.map(problem).collect();
-        match problems.is_empty() {
-            true => Ok(()),
-            false => Err(Error::Problems(problems)),
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(Error::Problems(problems))
         }
     }
 

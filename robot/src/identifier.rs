@@ -259,9 +259,10 @@ impl<'a> Identifier<'a> {
         let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });
         let settings = self.with_defaults();
         let found = self.robot.gravity_direction(self.runs, &settings, &tell)?;
-        let turned = match found.significant {
-            true => Some(self.robot.in_gravity(found.used())?),
-            false => None,
+        let turned = if found.significant {
+            Some(self.robot.in_gravity(found.used())?)
+        } else {
+            None
         };
         let robot = turned.as_ref().unwrap_or(self.robot);
         // The prior must refer to the parameters that have an effect in this gravity.
@@ -363,9 +364,10 @@ impl<'a> Identifier<'a> {
 
 /// Settings that disable the elimination if essential parameters are not requested.
 pub(crate) fn essential_or_not(settings: &Settings, essential: bool) -> Settings {
-    let r_sigma = match essential {
-        true => settings.r_sigma,
-        false => f64::INFINITY,
+    let r_sigma = if essential {
+        settings.r_sigma
+    } else {
+        f64::INFINITY
     };
     Settings {
         r_sigma,

@@ -275,9 +275,10 @@ impl InterpretedRobot {
 
     /// Name of an input as in generated code.
     fn called(&self, input: Input) -> &'static str {
-        match self.model.is_tree() {
-            true => input.name_without_platform(),
-            false => input.name(),
+        if self.model.is_tree() {
+            input.name_without_platform()
+        } else {
+            input.name()
         }
     }
 
@@ -311,9 +312,10 @@ impl InterpretedRobot {
             shared: false,
         };
         let poses = rows(0);
-        let found = match served.inputs.contains(&Given::Joints) {
-            true => self.find_joints(poses.values)?,
-            false => Vec::new(),
+        let found = if served.inputs.contains(&Given::Joints) {
+            self.find_joints(poses.values)?
+        } else {
+            Vec::new()
         };
         if served.function == Function::Joints && !found.is_empty() {
             let joints = output.chunks_mut(self.names.sizes.joints);

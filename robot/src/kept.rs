@@ -35,8 +35,9 @@ pub fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>
         );
         problems.push(Problem::new(Code::KEPT_ACTUATORS, message));
     }
-    match problems.is_empty() {
-        true => Ok(kept),
-        false => Err(Error::Problems(problems)),
+    if problems.is_empty() {
+        Ok(kept)
+    } else {
+        Err(Error::Problems(problems))
     }
 }

@@ -7,9 +7,10 @@ use overact_codegen::diagnostic::{Code, did_you_mean};
 /// Name of a function in the table of functions; `_base` marks functions of base parameters.
 #[must_use]
 pub fn function_of_model(function: Function) -> String {
-    match function.is_of_base_parameters() {
-        true => format!("{}_base", function.name()),
-        false => function.name().to_owned(),
+    if function.is_of_base_parameters() {
+        format!("{}_base", function.name())
+    } else {
+        function.name().to_owned()
     }
 }
 

@@ -79,9 +79,10 @@ fn links(description: &Description, home_joints: &[f64]) -> BTreeMap<Body, Vecto
     for (number, leg) in description.legs.iter().enumerate() {
         let mut ends: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); leg.joints.len()];
         for (index, joint) in leg.joints.iter().enumerate() {
-            let position = match joint.is_independent(index) {
-                true => positions.next().copied().unwrap_or(0.0),
-                false => 0.0,
+            let position = if joint.is_independent(index) {
+                positions.next().copied().unwrap_or(0.0)
+            } else {
+                0.0
             };
             if let Some(end) = joint.antecedent.and_then(|from| ends.get_mut(from)) {
                 end.push(origin(joint, position));

@@ -55,9 +55,10 @@ impl Robot {
         {
             return beside_references(logs, files, &mapping);
         }
-        match errors.is_empty() {
-            true => Ok(logs),
-            false => Err(Error::Several(errors)),
+        if errors.is_empty() {
+            Ok(logs)
+        } else {
+            Err(Error::Several(errors))
         }
     }
 }

@@ -94,9 +94,12 @@ fn what_a_harmful_fault_leaves_far_beyond_the_noise_is_not_trusted_in_part() {
 fn a_filter_of_all_signals_is_told_by_masses_that_change_with_the_pose() {
     let smooth: Vec<String> = DELTA
         .lines()
-        .map(|line| match line.starts_with("fs_") {
-            true => format!("# {line}"),
-            false => line.to_owned(),
+        .map(|line| {
+            if line.starts_with("fs_") {
+                format!("# {line}")
+            } else {
+                line.to_owned()
+            }
         })
         .collect();
     let result = identified(&smooth.join("\n"), |positions, torques, n| {

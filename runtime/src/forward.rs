@@ -79,11 +79,12 @@ pub fn gauss_newton<T: Float>(
         residual = accumulate(measured, actuators, inverse_jacobian, normal, step);
         solve_positive_definite(normal, step)
     };
-    match iterate(pose, step, find, displace)? {
-        true => Ok(()),
-        false => Err(Error::NoConvergence {
+    if iterate(pose, step, find, displace)? {
+        Ok(())
+    } else {
+        Err(Error::NoConvergence {
             residual: residual.into(),
-        }),
+        })
     }
 }
 
@@ -155,9 +156,10 @@ pub fn from_closed_form<T: Float, P: AsRef<[T]>>(
         return fit(start);
     };
     let mut coordinates = closed.as_ref().iter().zip(start.as_ref());
-    let (first, second) = match coordinates.all(|(a, b)| (*a - *b).abs() <= T::of(NEAR)) {
-        true => (closed, start),
-        false => (start, closed),
+    let (first, second) = if coordinates.all(|(a, b)| (*a - *b).abs() <= T::of(NEAR)) {
+        (closed, start)
+    } else {
+        (start, closed)
     };
     fit(first).or_else(|_| fit(second))
 }
@@ -422,9 +424,10 @@ mod tests {
         let mut tried = Vec::new();
         let fit = |pose| {
             tried.push(pose);
-            match fails {
-                true => Err(Error::NoConvergence { residual: 1.0 }),
-                false => Ok(pose),
+            if fails {
+                Err(Error::NoConvergence { residual: 1.0 })
+            } else {
+                Ok(pose)
             }
         };
         assert_eq!(from_closed_form(closed, start, fit).is_err(), fails);

@@ -100,9 +100,10 @@ pub fn solve<T: Float>(
 /// An intermediate pose between home and the target.
 fn between<T: Float>(legs: &Legs<'_, T>, pose: &[T], part: T, way: &mut [T]) {
     for ((w, h), p) in way.iter_mut().zip(legs.home_pose).zip(pose) {
-        *w = match part >= T::of(1.0) {
-            true => *p,
-            false => *h + part * (*p - *h),
+        *w = if part >= T::of(1.0) {
+            *p
+        } else {
+            *h + part * (*p - *h)
         };
     }
     if legs.has_quaternion {
@@ -132,9 +133,10 @@ fn newton<T: Float>(
                 return Err(singular(leg, condition));
             }
             let (step, longest) = (largest_of(part(error, range.clone())), T::of(LONGEST_STEP));
-            let scale = match step > longest {
-                true => longest / step,
-                false => T::of(1.0),
+            let scale = if step > longest {
+                longest / step
+            } else {
+                T::of(1.0)
             };
             let moved = joints.iter_mut().zip(error.iter());
             for (q, s) in moved.skip(range.start).take(range.len()) {

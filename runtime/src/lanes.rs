@@ -127,9 +127,12 @@ pub fn scattered_of_first<const LENGTH: usize, V: Vector, const LEGS: usize>(
     count: usize,
     at: Turn<V, LEGS>,
 ) -> Lanes<V> {
-    let of_leg = |leg: usize| match leg < count {
-        true => array.get(first + leg * stride).copied(),
-        false => None,
+    let of_leg = |leg: usize| {
+        if leg < count {
+            array.get(first + leg * stride).copied()
+        } else {
+            None
+        }
     };
     Lanes(V::of(at.1, |lane| of_leg(at.leg(lane)).unwrap_or(0.0)))
 }

@@ -58,9 +58,10 @@ fn wrong_uses_are_explained_and_right_ones_compile() -> Result<(), Box<dyn Error
         if path.extension().is_none_or(|e| e != "rs") || !is_of_the_tier {
             continue;
         }
-        match name.starts_with("pass") {
-            true => cases.pass(path),
-            false => cases.compile_fail(path),
+        if name.starts_with("pass") {
+            cases.pass(path)
+        } else {
+            cases.compile_fail(path)
         }
     }
     Ok(())

@@ -199,9 +199,10 @@ fn spread(
             if !bodies.iter().any(|(body, _)| *body == own.body) {
                 let heavier =
                     matches!(own.body, Body::Leg { leg: 0, index, .. } if Some(index) == last);
-                let more = match heavier && build == 'B' {
-                    true => SECOND_BUILD,
-                    false => 0.0,
+                let more = if heavier && build == 'B' {
+                    SECOND_BUILD
+                } else {
+                    0.0
                 };
                 bodies.push((own.body, 1.0 + more + MASS_SPREAD * normal(random)));
             }

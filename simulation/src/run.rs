@@ -190,9 +190,10 @@ fn checked(model: &dyn Model, experiment: &Experiment, run: &Run) -> Result<(), 
         ..experiment.clone()
     };
     let problems = alone.problems(&model.info());
-    match problems.is_empty() {
-        true => Ok(()),
-        false => Err(Error::Experiment(problems)),
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Experiment(problems))
     }
 }
 

@@ -158,12 +158,13 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     for function in &model.functions {
         let is_moved = has_masses || !matches!(function.computes, Function::ForwardDynamics(_));
         if is_moved && (is_well_kept || !depends_on_kept(function.computes)) {
-            let own = match function.name.contains("dynamics_base")
+            let own = if function.name.contains("dynamics_base")
                 || function.name.contains("matrix_base")
                 || function.name.contains("bias_base")
             {
-                true => &mut of_base,
-                false => &mut comparison,
+                &mut of_base
+            } else {
+                &mut comparison
             };
             own.function(function, &evaluated, &all, &truths)?;
         }

@@ -28,9 +28,10 @@ pub(crate) fn write_all() -> Result<(), Failure> {
         .filter_map(|(file, _)| pages.get_key_value(*file));
     for (file, text) in own.chain(borrowed) {
         let name = in_book(file).unwrap_or_default();
-        let text = match *file == *ERRORS {
-            true => errors(),
-            false => text.clone(),
+        let text = if *file == *ERRORS {
+            errors()
+        } else {
+            text.clone()
         };
         write(
             &format!("target/book/docs/{name}"),
@@ -46,9 +47,10 @@ pub(crate) fn write_all() -> Result<(), Failure> {
 
 /// Fails unless the page of all errors is up to date.
 pub(crate) fn check() -> Result<(), Failure> {
-    match read(ERRORS)? == errors() {
-        true => Ok(()),
-        false => Err(format!("{ERRORS}: renew it with `cargo xtask book`").into()),
+    if read(ERRORS)? == errors() {
+        Ok(())
+    } else {
+        Err(format!("{ERRORS}: renew it with `cargo xtask book`").into())
     }
 }
 

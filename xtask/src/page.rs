@@ -41,8 +41,9 @@ pub(crate) fn test() -> Result<(), Failure> {
 fn succeeds(mut command: Command) -> Result<(), Failure> {
     let status = command.status();
     let status = status.map_err(|error| format!("{command:?}: {error}"))?;
-    match status.success() {
-        true => Ok(()),
-        false => Err(format!("{command:?} failed").into()),
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("{command:?} failed").into())
     }
 }

@@ -118,9 +118,10 @@ fn tell(exported: &Exported) {
     if is_quiet() {
         return;
     }
-    let mut lines = vec![match exported.changed.is_empty() {
-        true => "nothing differs from the file".to_owned(),
-        false => format!("changed: {}", exported.changed.join(", ")),
+    let mut lines = vec![if exported.changed.is_empty() {
+        "nothing differs from the file".to_owned()
+    } else {
+        format!("changed: {}", exported.changed.join(", "))
     }];
     lines.extend(exported.notes.iter().cloned());
     for line in lines {

@@ -65,17 +65,18 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let made = robot.factors(identified, &settings, arguments.equations, &tell)?;
     drop(bar);
     let bytes = write_factors(&made)?;
-    let said = match as_json {
-        true => output::json(&serde_json::json!({
+    let said = if as_json {
+        output::json(&serde_json::json!({
             "runs": made.iter().map(|run| &run.summary).collect::<Vec<_>>(),
             "like": made.first().map(|run| &run.like),
             "bytes": bytes.len(),
-        }))?,
-        false => format!(
+        }))?
+    } else {
+        format!(
             "{}, {} bytes",
             output::counted(made.len(), "run", "runs"),
             bytes.len()
-        ),
+        )
     };
     output::emit_with(&said, None, vec![(arguments.output.clone(), bytes)])
 }

@@ -49,9 +49,10 @@ pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
     let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
     let found = robot.identify_factors(&gathered, &settings, request.skip_bad, &tell)?;
     drop(bar);
-    let text = match request.as_json {
-        true => output::json(&found)?,
-        false => text(&found),
+    let text = if request.as_json {
+        output::json(&found)?
+    } else {
+        text(&found)
     };
     output::emit(&text, request.output)
 }

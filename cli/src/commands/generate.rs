@@ -169,9 +169,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.output().is_none() {
         return print(&modules.iter().map(Module::text).collect::<String>());
     }
-    let what = match arguments.check {
-        true => "up to date",
-        false => "written",
+    let what = if arguments.check {
+        "up to date"
+    } else {
+        "written"
     };
     let files = modules.iter().flat_map(|m| &m.parts);
     let files = files.filter_map(|part| part.file.as_ref());

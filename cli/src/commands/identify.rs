@@ -132,13 +132,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
     let scope = arguments.calibrate.map(CalibrationScope::from);
     let identifier = Identifier::new(&robot).data(&runs).settings(settings);
-    let identifier = match arguments.gains {
-        true => identifier.gains(true),
-        false => identifier,
+    let identifier = if arguments.gains {
+        identifier.gains(true)
+    } else {
+        identifier
     };
-    let identifier = match arguments.gravity_direction {
-        true => identifier.gravity_direction(true),
-        false => identifier,
+    let identifier = if arguments.gravity_direction {
+        identifier.gravity_direction(true)
+    } else {
+        identifier
     };
     let mut result = identified(identifier, scope, as_json)?;
     let beside = reports.published().filter(|_| arguments.runs.are_virtual());
@@ -153,9 +155,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         output::json(&result)?
     } else {
         let page = reports.page().map(|path| path.display().to_string());
-        let extent = match arguments.all || arguments.tables {
-            true => Extent::Whole,
-            false => Extent::Short,
+        let extent = if arguments.all || arguments.tables {
+            Extent::Whole
+        } else {
+            Extent::Short
         };
         let mut text = overact_report::summary(&result, page.as_deref(), extent);
         if arguments.tables {

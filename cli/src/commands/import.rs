@@ -75,9 +75,10 @@ fn position(text: &str) -> Result<(String, f64), String> {
         .trim()
         .parse()
         .map_err(|_| format!("`{value}` is no number"))?;
-    match value.is_finite() {
-        true => Ok((name.trim().to_owned(), value)),
-        false => Err(format!("`{value}` is no finite number")),
+    if value.is_finite() {
+        Ok((name.trim().to_owned(), value))
+    } else {
+        Err(format!("`{value}` is no finite number"))
     }
 }
 

@@ -27,21 +27,20 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::check(&inputs, &[arguments.output.as_path()])?;
     let gathered = gather(&arguments.files, None, arguments.skip_bad)?;
     let bytes = write_factors(&gathered.runs)?;
-    let said = match as_json {
-        true => output::json(&serde_json::json!({
+    let said = if as_json {
+        output::json(&serde_json::json!({
             "runs": gathered.runs.len(),
             "left_out": gathered.left_out,
             "bytes": bytes.len(),
-        }))?,
-        false => {
-            let mut text = format!(
-                "{}, {} bytes\n",
-                output::counted(gathered.runs.len(), "run", "runs"),
-                bytes.len()
-            );
-            text.push_str(&super::factors::left_out(&gathered.left_out));
-            text
-        }
+        }))?
+    } else {
+        let mut text = format!(
+            "{}, {} bytes\n",
+            output::counted(gathered.runs.len(), "run", "runs"),
+            bytes.len()
+        );
+        text.push_str(&super::factors::left_out(&gathered.left_out));
+        text
     };
     output::emit_with(&said, None, vec![(arguments.output.clone(), bytes)])
 }

@@ -26,9 +26,10 @@ pub(super) struct Given {
 impl Given {
     /// Adds the name of the payload to the log.
     pub(super) fn label(&self, log: Log) -> Log {
-        let log = match self.streamed {
-            true => log.with_name("-"),
-            false => log,
+        let log = if self.streamed {
+            log.with_name("-")
+        } else {
+            log
         };
         match &self.name {
             Some(name) => log.with_payload_name(name),
@@ -81,11 +82,14 @@ impl<'a> Payloads<'a> {
                 Some(name) if self.names.contains(&name.as_str()) => None,
                 Some(name) => {
                     let help = did_you_mean(name, self.names.iter().copied());
-                    let help = help.unwrap_or_else(|| match self.names.is_empty() {
-                        true => String::from(
-                            "name the payloads of the robot in its description, payloads = [\"A\", \"B\"]",
-                        ),
-                        false => format!("its payloads are {list}"),
+                    let help = help.unwrap_or_else(|| {
+                        if self.names.is_empty() {
+                            String::from(
+                                "name the payloads of the robot in its description, payloads = [\"A\", \"B\"]",
+                            )
+                        } else {
+                            format!("its payloads are {list}")
+                        }
                     });
                     let message = format!("there is no payload `{name}`");
                     Some(
@@ -108,9 +112,10 @@ impl<'a> Payloads<'a> {
             }
         };
         let problems: Vec<Problem> = given.filter_map(problem).collect();
-        match problems.is_empty() {
-            true => Ok(()),
-            false => Err(problems.into()),
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(problems.into())
         }
     }
 }

@@ -97,9 +97,10 @@ enum Identity {
 
 fn identity(path: &Path) -> Identity {
     // `-` is stdin, which the shell may have opened from one of the files.
-    let path = match path.as_os_str() == "-" {
-        true => Path::new("/dev/stdin"),
-        false => path,
+    let path = if path.as_os_str() == "-" {
+        Path::new("/dev/stdin")
+    } else {
+        path
     };
     #[cfg(unix)]
     if let Ok(existing) = fs::metadata(path) {

@@ -195,12 +195,13 @@ fn text(stem: &str, calls: &[Call], float: Float) -> Result<String, Failure> {
         }
         arguments.push("out".to_owned());
         let (name, arguments) = (&call.name, arguments.join(", "));
-        match call.name == "partition" {
-            true => writeln!(text, "    case {number}: return partition();")?,
-            false => writeln!(
+        if call.name == "partition" {
+            writeln!(text, "    case {number}: return partition();")?
+        } else {
+            writeln!(
                 text,
                 "    case {number}: return (int){stem}_{name}({arguments});"
-            )?,
+            )?
         }
     }
     write!(

@@ -85,9 +85,10 @@ pub(crate) fn output(
     let Some(function) = model.functions.get(index) else {
         return forward();
     };
-    let pose = match model.finds_pose(function) {
-        true => forward()?,
-        false => robot.unit_pose(&inputs["pose"])?,
+    let pose = if model.finds_pose(function) {
+        forward()?
+    } else {
+        robot.unit_pose(&inputs["pose"])?
     };
     let joints = || {
         let mut joints = vec![0.0; model.mechanism.joints().len()];
@@ -101,9 +102,10 @@ pub(crate) fn output(
     let used = function.program.used_inputs();
     let arrays = function.program.inputs.iter().zip(used);
     let needs_joints = arrays.clone().any(|(a, used)| a.name == "joints" && used);
-    let joints = match finds_joints && needs_joints {
-        true => joints()?,
-        false => inputs["joints"].clone(),
+    let joints = if finds_joints && needs_joints {
+        joints()?
+    } else {
+        inputs["joints"].clone()
     };
     let rows = arrays.map(|(array, _)| {
         let values = match array.name.as_str() {
@@ -185,9 +187,10 @@ pub(crate) fn states(robot: &InterpretedRobot, count: usize, seed: u64) -> Vec<I
                 let is_large = ["m_", "xx_", "yy_", "zz_", "ia_"]
                     .iter()
                     .any(|p| name.starts_with(p));
-                match is_large {
-                    true => 2.0 + dice.next(),
-                    false => 0.1 * dice.next(),
+                if is_large {
+                    2.0 + dice.next()
+                } else {
+                    0.1 * dice.next()
                 }
             })
             .collect()

@@ -146,19 +146,23 @@ impl Writer<'_> {
     /// The text, in parentheses if the context binds more tightly.
     fn within(&self, expression: &Expression, binding: Binding) -> String {
         let text = self.text(expression);
-        match expression.binding() < binding {
-            true => format!("({text})"),
-            false => text,
+        if expression.binding() < binding {
+            format!("({text})")
+        } else {
+            text
         }
     }
 
     fn text(&self, expression: &Expression) -> String {
         match expression {
             Expression::Number(value) => number(*value),
-            Expression::Constant { name, negative } => match negative {
-                true => format!("-{name}"),
-                false => name.clone(),
-            },
+            Expression::Constant { name, negative } => {
+                if *negative {
+                    format!("-{name}")
+                } else {
+                    name.clone()
+                }
+            }
             Expression::Input { array, index } => format!("{}[{index}]", self.inputs[*array]),
             Expression::Value(name) => name.clone(),
             Expression::Negative(inner) => format!("-{}", self.within(inner, Binding::Atom)),

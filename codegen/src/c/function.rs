@@ -163,9 +163,10 @@ fn rest(
     let reserved = |name: &str| naming.is_reserved(name);
     let labels = Labels::new(model, function);
     // An error leaves the output unchanged: functions that may still fail write it last.
-    let body = match outline.is_placed() && program.guards.is_empty() {
-        true => Body::placed(program, &labels, &reserved),
-        false => Body::write(program, &labels, &reserved),
+    let body = if outline.is_placed() && program.guards.is_empty() {
+        Body::placed(program, &labels, &reserved)
+    } else {
+        Body::write(program, &labels, &reserved)
     };
     let mut writer = Writer {
         model,
@@ -220,10 +221,7 @@ fn documented(
         shapes.join(" x "),
         table.unwrap_or_default()
     ));
-    lines.push(match outline.can_fail {
-        true => "@return 0, or an error: an input that is not finite or too large, a pose out of reach, or a singular configuration.",
-        false => "@return 0, or an error: an input that is not finite or too large.",
-    }.to_owned());
+    lines.push(if outline.can_fail { "@return 0, or an error: an input that is not finite or too large, a pose out of reach, or a singular configuration." } else { "@return 0, or an error: an input that is not finite or too large." }.to_owned());
     lines.push(String::new());
     let operations = operations::of_function(&model.cost(function));
     lines.extend(operations.iter().map(|line| line.trim_start().to_owned()));

@@ -231,9 +231,10 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
     };
     let tables = aside.map_or_else(String::new, |own| coordinates(&own));
     let (fit, steps) = fitting(model);
-    let turn = match has_quaternion(model) {
-        true => [TURN, "\n"].concat(),
-        false => String::new(),
+    let turn = if has_quaternion(model) {
+        [TURN, "\n"].concat()
+    } else {
+        String::new()
     };
     let displace = [&tables, &turn, displace].concat();
     let helpers = text(&[&displace, "\n", GAUSS_NEWTON, "\n", &steps, "\n"]);
@@ -303,9 +304,10 @@ fn joints(model: &RobotModel, naming: &Naming) -> String {
         shape: vec![mechanism.pose_len()],
     };
     let head = signature("joints", &[pose], naming);
-    let (scaled, goal, way) = match has_quaternion(model) {
-        true => (JOINTS_CHECKS_QUATERNION, "unit_pose", WAY_OF_A_QUATERNION),
-        false => ("", "pose", ""),
+    let (scaled, goal, way) = if has_quaternion(model) {
+        (JOINTS_CHECKS_QUATERNION, "unit_pose", WAY_OF_A_QUATERNION)
+    } else {
+        ("", "pose", "")
     };
     let body = JOINTS.replace("ROB_GOAL", goal).replace("ROB_WAY", way);
     let text = |parts: &[&str]| naming.apply(&parts.concat());

@@ -152,9 +152,10 @@ fn overview(model: &RobotModel) -> Vec<String> {
     let mechanism = &model.mechanism;
     let mut out = Vec::new();
     let summary = text::plain(&mechanism.summary);
-    out.push(match summary.is_empty() {
-        true => "A robot.".to_owned(),
-        false => format!("{}.", summary.trim_end_matches('.')),
+    out.push(if summary.is_empty() {
+        "A robot.".to_owned()
+    } else {
+        format!("{}.", summary.trim_end_matches('.'))
     });
     out.push(String::new());
     out.push(format!(

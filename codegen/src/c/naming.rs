@@ -63,9 +63,10 @@ impl Naming {
             let rest = snake.strip_prefix(begin);
             rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_lowercase()))
         });
-        let prefix = match is_library || holds(NO_FILES, &snake) {
-            true => format!("robot_{snake}"),
-            false => snake,
+        let prefix = if is_library || holds(NO_FILES, &snake) {
+            format!("robot_{snake}")
+        } else {
+            snake
         };
         Self {
             prefix,

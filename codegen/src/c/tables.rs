@@ -313,9 +313,10 @@ pub fn definitions(model: &RobotModel, naming: &Naming) -> String {
 #[must_use]
 pub fn number(value: f64) -> String {
     // A number that is not finite does not compile, so that it does not reach a user.
-    match value.is_finite() {
-        true => format!("{value:?}"),
-        false => "internal_error_of_overact_a_constant_is_not_finite".to_owned(),
+    if value.is_finite() {
+        format!("{value:?}")
+    } else {
+        "internal_error_of_overact_a_constant_is_not_finite".to_owned()
     }
 }
 

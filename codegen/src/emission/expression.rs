@@ -200,9 +200,10 @@ impl<'a> Writer<'a> {
             Expression::Number(value) => number(*value, self.float),
             Expression::Constant { name, negative } => {
                 let name = ident(name);
-                match negative {
-                    true => quote!(-#name),
-                    false => quote!(#name),
+                if *negative {
+                    quote!(-#name)
+                } else {
+                    quote!(#name)
                 }
             }
             Expression::Input { array, index } => {

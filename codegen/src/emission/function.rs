@@ -92,34 +92,36 @@ fn straight(
     let program = &function.program;
     let labels = Labels::new(model, function);
     // Words of Rust are not among the derivation's names.
-    let (body, output) = match outline.is_placed() {
-        true => (
+    let (body, output) = if outline.is_placed() {
+        (
             Body::placed(program, &labels, &|name| name == "output"),
             None,
-        ),
-        false => {
-            let body = Body::write(program, &labels, &|_| false);
-            (body, Some(&program.output))
-        }
+        )
+    } else {
+        let body = Body::write(program, &labels, &|_| false);
+        (body, Some(&program.output))
     };
     let is_wide = is_wide(model, function);
-    let writer = match is_wide {
-        true => Writer::wide(&program.inputs, model.float),
-        false => Writer::new(&program.inputs, model.float),
+    let writer = if is_wide {
+        Writer::wide(&program.inputs, model.float)
+    } else {
+        Writer::new(&program.inputs, model.float)
     };
     let written = expression::write(&writer, &body, output);
     let (statements, value) = (written.statements, written.value);
     let value = quote!(::core::result::Result::Ok(#value));
-    let (run, copies) = match outline.is_placed() {
-        true => (quote!(::overact::roomiest), copies(program)),
-        false => (quote!(::overact::widest), TokenStream::new()),
+    let (run, copies) = if outline.is_placed() {
+        (quote!(::overact::roomiest), copies(program))
+    } else {
+        (quote!(::overact::widest), TokenStream::new())
     };
-    let (statements, value) = match is_wide {
-        true => (
+    let (statements, value) = if is_wide {
+        (
             before,
             quote!(#run(#[inline(always)] || { #copies #statements #value })),
-        ),
-        false => (quote!(#before #statements), value),
+        )
+    } else {
+        (quote!(#before #statements), value)
     };
     Item {
         tokens: around(model, function, outline, &statements, &value),
@@ -243,9 +245,10 @@ fn around(
 
 /// Name of the function that contains the statements.
 fn body_name(function: &CompiledFunction, outline: &Outline<'_>) -> String {
-    match outline.is_placed() {
-        true => into(&function.name),
-        false => function.name.clone(),
+    if outline.is_placed() {
+        into(&function.name)
+    } else {
+        function.name.clone()
     }
 }
 

@@ -183,9 +183,10 @@ impl<'p> Writer<'p> {
 
     fn entry(&mut self, entry: Entry) -> Expression {
         let value = self.operand(entry.operand).expression;
-        match entry.negative {
-            true => Expression::Negative(Box::new(value)),
-            false => value,
+        if entry.negative {
+            Expression::Negative(Box::new(value))
+        } else {
+            value
         }
     }
 
@@ -265,9 +266,10 @@ impl<'p> Writer<'p> {
         let angle = self.operand(angle).expression;
         let (first, second) = (self.declare(at), self.declare(at + 1));
         let cosine_first = matches!(self.program.steps[at].operation, Operation::Cosine(_));
-        let (sine, cosine) = match cosine_first {
-            true => (second, first),
-            false => (first, second),
+        let (sine, cosine) = if cosine_first {
+            (second, first)
+        } else {
+            (first, second)
         };
         self.statements.push(Statement::Pair(Pair {
             angle,

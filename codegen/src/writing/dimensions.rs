@@ -117,9 +117,10 @@ impl Base {
     /// v, v², 1/v and similar powers.
     fn powers(&self) -> Vec<Dimension> {
         let (n, v) = (&self.name, self.value);
-        let own = match self.others.is_empty() {
-            true => n.clone(),
-            false => format!("{n} = {}", self.others.join(" = ")),
+        let own = if self.others.is_empty() {
+            n.clone()
+        } else {
+            format!("{n} = {}", self.others.join(" = "))
         };
         vec![
             self.dimension(n, &own, v, 1),

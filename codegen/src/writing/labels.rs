@@ -35,9 +35,10 @@ impl Label {
     /// The name, `q1_leg2`.
     #[must_use]
     pub fn name(&self) -> String {
-        match self.place.is_empty() {
-            true => self.what.clone(),
-            false => format!("{}_{}", self.what, self.place),
+        if self.place.is_empty() {
+            self.what.clone()
+        } else {
+            format!("{}_{}", self.what, self.place)
         }
     }
 }
@@ -156,9 +157,10 @@ impl Labels {
             if let crate::lowering::Operand::Step(at) = entry.operand
                 && !label.is_empty()
             {
-                let name = match entry.negative {
-                    true => format!("minus_{label}"),
-                    false => label.clone(),
+                let name = if entry.negative {
+                    format!("minus_{label}")
+                } else {
+                    label.clone()
                 };
                 names[at].get_or_insert(name);
             }
@@ -188,9 +190,10 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
         let indices = model.mechanism.joints();
         let label = |&at: &usize| Label {
             what: format!("{prefix}{}", model.mechanism.joint(indices[at]).name),
-            place: match model.is_tree() {
-                true => String::new(),
-                false => model.mechanism.legs[indices[at].leg].name.clone(),
+            place: if model.is_tree() {
+                String::new()
+            } else {
+                model.mechanism.legs[indices[at].leg].name.clone()
             },
         };
         all.iter().map(label).collect()
@@ -267,9 +270,10 @@ fn row(model: &RobotModel, function: Function, row: usize) -> String {
     let joint = |at: usize| {
         let index = joints[at];
         let joint = &model.mechanism.joint(index).name;
-        match model.is_tree() {
-            true => format!("q{joint}"),
-            false => format!("q{joint}_{}", model.mechanism.legs[index.leg].name),
+        if model.is_tree() {
+            format!("q{joint}")
+        } else {
+            format!("q{joint}_{}", model.mechanism.legs[index.leg].name)
         }
     };
     let on_actuators = matches!(

@@ -92,9 +92,10 @@ impl<'p> Names<'p> {
         loop {
             let count = self.numbered.entry(section.clone()).or_default();
             *count += 1;
-            let name = match section.is_empty() {
-                true => format!("t{count}"),
-                false => format!("t{count}_{section}"),
+            let name = if section.is_empty() {
+                format!("t{count}")
+            } else {
+                format!("t{count}_{section}")
             };
             if is_free(&name) {
                 return name;
@@ -198,9 +199,10 @@ impl<'p> Names<'p> {
     fn product(&self, a: Operand, b: Operand) -> Option<Term> {
         let (a, b) = (self.factor(a)?, self.factor(b)?);
         // `half_a_b` for a × half b: numbers come first.
-        let (first, second) = match matches!(b.label.what.as_str(), "half" | "twice") {
-            true => (&b, &a),
-            false => (&a, &b),
+        let (first, second) = if matches!(b.label.what.as_str(), "half" | "twice") {
+            (&b, &a)
+        } else {
+            (&a, &b)
         };
         Some(Term {
             negative: a.negative != b.negative,
@@ -239,28 +241,31 @@ impl<'p> Names<'p> {
 /// The text of a name.
 fn text(term: &Term) -> String {
     let name = term.label.name();
-    match term.negative {
-        true => format!("minus_{name}"),
-        false => name,
+    if term.negative {
+        format!("minus_{name}")
+    } else {
+        name
     }
 }
 
 /// Joins two names; a leg that both share, or that only one has, comes last.
 fn pair(a: &Label, word: &str, b: &Label) -> Label {
-    let place = match a.place.is_empty() {
-        true => &b.place,
-        false => &a.place,
+    let place = if a.place.is_empty() {
+        &b.place
+    } else {
+        &a.place
     };
     let shared = a.place == b.place || a.place.is_empty() || b.place.is_empty();
-    match shared {
-        true => Label {
+    if shared {
+        Label {
             what: format!("{}{word}{}", a.what, b.what),
             place: place.clone(),
-        },
-        false => Label {
+        }
+    } else {
+        Label {
             what: format!("{}{word}{}", a.name(), b.what),
             place: b.place.clone(),
-        },
+        }
     }
 }
 

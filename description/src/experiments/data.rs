@@ -176,9 +176,10 @@ fn offsets(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
     let Some(item) = table.get("position_offset") else {
         return Some(vec![0.0; kinds.len()]);
     };
-    let list = match item.value.is_array() {
-        true => item.list()?,
-        false => vec![item.clone(); kinds.len()],
+    let list = if item.value.is_array() {
+        item.list()?
+    } else {
+        vec![item.clone(); kinds.len()]
     };
     check_count(&item, list.len(), kinds.len())?;
     // All are read, so that each error is reported.
@@ -208,9 +209,10 @@ fn gains_of_joints(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Diagnost
         return Vec::new();
     };
     let kinds = robot.actuator_kinds();
-    let list = match item.value.is_array() {
-        true => item.list().unwrap_or_default(),
-        false => vec![item.clone(); kinds.len()],
+    let list = if item.value.is_array() {
+        item.list().unwrap_or_default()
+    } else {
+        vec![item.clone(); kinds.len()]
     };
     let other = |(item, kind): (&Item<'_, '_>, &JointKind)| {
         let (own, other) = match kind {

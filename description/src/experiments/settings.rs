@@ -253,9 +253,10 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
 /// Velocities of standstill: one for all actuators or a list.
 fn standstill(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
     let kinds = robot.actuator_kinds();
-    let list = match item.value.is_array() {
-        true => item.list()?,
-        false => vec![item.clone(); kinds.len()],
+    let list = if item.value.is_array() {
+        item.list()?
+    } else {
+        vec![item.clone(); kinds.len()]
     };
     check_count(item, list.len(), kinds.len())?;
     let dimension = |kind| match position(kind) {

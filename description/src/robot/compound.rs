@@ -56,9 +56,10 @@ pub(crate) fn split<'c, 't>(
     let last = joints.len() - 1;
     for (place, (joint, axis)) in joints.iter_mut().zip(axes).enumerate() {
         joint.name = own(axis);
-        joint.parameters = match place == last {
-            true => parameters.clone(),
-            false => between(axis),
+        joint.parameters = if place == last {
+            parameters.clone()
+        } else {
+            between(axis)
         };
     }
     if let (Word::Helical, [slide, turn]) = (word, joints.as_mut_slice()) {

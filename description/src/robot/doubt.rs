@@ -28,9 +28,10 @@ pub(crate) fn length(item: &Item<'_, '_>, length: Number) {
     let metres = length.value();
     if metres.abs() > LONGEST {
         let bare = !item.context.text(&item.span).contains(" m");
-        let unit = match bare {
-            true => format!("a number without a unit is in m: {metres} mm?"),
-            false => String::from("mm?"),
+        let unit = if bare {
+            format!("a number without a unit is in m: {metres} mm?")
+        } else {
+            String::from("mm?")
         };
         let what = format!("`{}` is {metres} m long, and {unit}", item.key.value);
         item.context.doubt(what, &item.span);

@@ -62,11 +62,10 @@ impl Inventory<'_> {
                     joint: index,
                 };
                 for symbol in &joint.parameters {
-                    let name = match single {
-                        true => format!("{}_{}", symbol.name(), joint.name.value),
-                        false => {
-                            format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
-                        }
+                    let name = if single {
+                        format!("{}_{}", symbol.name(), joint.name.value)
+                    } else {
+                        format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
                     };
                     let dimension = joint.formula_of(*symbol).map_or_else(
                         || dimension(*symbol, joint.kind.value),

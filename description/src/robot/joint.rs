@@ -108,10 +108,8 @@ impl Reader<'_, '_, '_> {
             let right = Ratio::new(1, 2).map_or(Angle::ZERO, Angle::half_turns);
             self.spanned(None, right)
         };
-        let turned = |item: Option<&Item<'_, '_>>| match joint.turned {
-            true => quarter(),
-            false => angle(item),
-        };
+        let turned =
+            |item: Option<&Item<'_, '_>>| if joint.turned { quarter() } else { angle(item) };
         Joint {
             name: joint.name.clone(),
             kind: joint.kind.clone(),

@@ -132,9 +132,10 @@ impl MotorShape<'_, '_> {
 /// Offsets of motors are determined by those of the joints.
 fn own(coupled: bool) -> Vec<StandardParameter> {
     use StandardParameter as P;
-    match coupled {
-        true => vec![P::Ia, P::Fv, P::Fs],
-        false => Vec::new(),
+    if coupled {
+        vec![P::Ia, P::Fv, P::Fs]
+    } else {
+        Vec::new()
     }
 }
 

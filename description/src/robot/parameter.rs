@@ -18,10 +18,13 @@ pub(crate) fn dimension(parameter: StandardParameter, kind: JointKind) -> Dimens
         StandardParameter::K => Dimension::ANGULAR_STIFFNESS,
         viscous if viscous.is_viscous() && slides => Dimension::LINEAR_VISCOSITY,
         viscous if viscous.is_viscous() => Dimension::ANGULAR_VISCOSITY,
-        dry if dry.has_sign() || dry == StandardParameter::Off => match slides {
-            true => Dimension::FORCE,
-            false => Dimension::TORQUE,
-        },
+        dry if dry.has_sign() || dry == StandardParameter::Off => {
+            if slides {
+                Dimension::FORCE
+            } else {
+                Dimension::TORQUE
+            }
+        }
         _ => Dimension::INERTIA,
     }
 }

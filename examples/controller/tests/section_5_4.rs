@@ -44,9 +44,10 @@ fn numbers<const N: usize>(slice: &[f64]) -> [f64; N] {
 }
 
 fn load(run: &Run) -> Load {
-    match run.payload {
-        true => Load::Loaded,
-        false => Load::Unloaded,
+    if run.payload {
+        Load::Loaded
+    } else {
+        Load::Unloaded
     }
 }
 

@@ -156,22 +156,22 @@ impl Rows {
             "" => Ok(log),
             own if names.contains(&own) => Ok(log.with_payload_name(own)),
             "true" if names.is_empty() => {
-                match robot.model().info().payload_parameters.is_empty() {
-                    true => {
-                        Err("the run carries a payload, but the description has none".to_owned())
-                    }
-                    false => Ok(log.with_payload(true)),
+                if robot.model().info().payload_parameters.is_empty() {
+                    Err("the run carries a payload, but the description has none".to_owned())
+                } else {
+                    Ok(log.with_payload(true))
                 }
             }
             "true" => Err(format!(
                 "the robot has several payloads: say by its name which one the run carries, of {}",
                 names.join(", ")
             )),
-            own => Err(match names.is_empty() {
-                true => format!(
+            own => Err(if names.is_empty() {
+                format!(
                     "there is no payload `{own}`: the description names none, so write `true` or `false`"
-                ),
-                false => format!("there is no payload `{own}`, but {}", names.join(", ")),
+                )
+            } else {
+                format!("there is no payload `{own}`, but {}", names.join(", "))
             }),
         }
     }
@@ -275,9 +275,12 @@ impl Accumulator for Rows {
             .collect();
         for row in 0..rows.len() {
             // A missing number becomes NaN and is reported with the log.
-            let value = |own: &&arrow::array::Float64Array| match own.is_valid(row) {
-                true => own.value(row),
-                false => f64::NAN,
+            let value = |own: &&arrow::array::Float64Array| {
+                if own.is_valid(row) {
+                    own.value(row)
+                } else {
+                    f64::NAN
+                }
             };
             self.values.extend(numbers.iter().map(value));
         }

@@ -46,9 +46,10 @@ impl Gather {
 
 impl AggregateUDFImpl for Gather {
     fn name(&self) -> &str {
-        match self.estimates {
-            true => "estimate",
-            false => "merge_r",
+        if self.estimates {
+            "estimate"
+        } else {
+            "merge_r"
         }
     }
 
@@ -78,9 +79,10 @@ impl AggregateUDFImpl for Gather {
     }
 
     fn return_type(&self, _: &[DataType]) -> Result<DataType> {
-        Ok(match self.estimates {
-            true => DataType::Struct(arrays::of_estimate()),
-            false => DataType::LargeBinary,
+        Ok(if self.estimates {
+            DataType::Struct(arrays::of_estimate())
+        } else {
+            DataType::LargeBinary
         })
     }
 
@@ -155,9 +157,10 @@ impl Accumulator for Gathered {
     }
 
     fn evaluate(&mut self) -> Result<ScalarValue> {
-        Ok(match self.estimates {
-            true => arrays::value(&self.pool.estimate()),
-            false => ScalarValue::LargeBinary(Some(self.pool.to_bytes())),
+        Ok(if self.estimates {
+            arrays::value(&self.pool.estimate())
+        } else {
+            ScalarValue::LargeBinary(Some(self.pool.to_bytes()))
         })
     }
 

@@ -47,9 +47,10 @@ fn check(given: &[DataType], estimates: usize, name: &str) -> Result<Vec<DataTyp
         [DataType::Utf8 | DataType::Utf8View | DataType::LargeUtf8]
     );
     let wanted = DataType::Struct(arrays::of_estimate());
-    match texts && own.iter().all(|kind| kind.equals_datatype(&wanted)) {
-        true => Ok(given.to_vec()),
-        false => Err(wrong(name)),
+    if texts && own.iter().all(|kind| kind.equals_datatype(&wanted)) {
+        Ok(given.to_vec())
+    } else {
+        Err(wrong(name))
     }
 }
 
@@ -93,9 +94,10 @@ impl ScalarUDFImpl for ParameterOf {
             None => arrays::no_parameter(),
         });
         let values = values.collect::<Result<Vec<_>>>()?;
-        Ok(ColumnarValue::Array(match values.is_empty() {
-            true => arrow::array::new_empty_array(&self.return_type(&[])?),
-            false => ScalarValue::iter_to_array(values)?,
+        Ok(ColumnarValue::Array(if values.is_empty() {
+            arrow::array::new_empty_array(&self.return_type(&[])?)
+        } else {
+            ScalarValue::iter_to_array(values)?
         }))
     }
 }

@@ -33,13 +33,10 @@ pub(crate) fn assumptions(
     models: &[ModelKind],
     before: Found,
 ) -> Vec<String> {
-    let gains = match before.gains {
-        true => {
-            "the parameters that are stated as known are exact: gains and all other parameters are in proportion to them"
-        }
-        false => {
-            "the gains of the drives are right as a whole: if all torques are wrong by one factor, so are all parameters, and nothing in the data tells"
-        }
+    let gains = if before.gains {
+        "the parameters that are stated as known are exact: gains and all other parameters are in proportion to them"
+    } else {
+        "the gains of the drives are right as a whole: if all torques are wrong by one factor, so are all parameters, and nothing in the data tells"
     };
     let mut all = vec![
         String::from(gains),

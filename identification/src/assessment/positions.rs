@@ -299,9 +299,10 @@ impl<'a> Misses<'a> {
         model.evaluate(function, &[pose], &mut self.reached).ok()?;
         let both = row.iter().zip(&self.reached);
         for ((q, reached), revolute) in both.zip(info.actuator_is_revolute) {
-            let difference = match *revolute {
-                true => wrap_angle(q - reached),
-                false => q - reached,
+            let difference = if *revolute {
+                wrap_angle(q - reached)
+            } else {
+                q - reached
             };
             self.largest = self.largest.max(difference.abs());
         }

@@ -141,12 +141,11 @@ pub fn objections(checks: &[Check], model: ModelKind, stage: Stage) -> Objection
     let mut found: Vec<(usize, &Check)> = found
         .filter(|(_, check)| !check.passed && check.concerns(model, stage))
         .collect();
-    let most = match found.iter().any(|(_, check)| check.kind.is_certain()) {
-        true => f64::INFINITY,
-        false => {
-            let parts = found.iter().filter_map(|(_, check)| check.explained);
-            parts.fold(0.0, f64::max)
-        }
+    let most = if found.iter().any(|(_, check)| check.kind.is_certain()) {
+        f64::INFINITY
+    } else {
+        let parts = found.iter().filter_map(|(_, check)| check.explained);
+        parts.fold(0.0, f64::max)
     };
     let explained = |check: &Check| check.explained.unwrap_or(f64::INFINITY);
     // A stable sort keeps the order of checks of equal grade and explained fraction.

@@ -49,9 +49,10 @@ fn fitting_mass(given: &[Option<f64>; 10], uniform: &Inertia) -> f64 {
         product += given.unwrap_or_default() * own;
         square += own * own * f64::from(u8::from(given.is_some()));
     }
-    match square > 0.0 && product > 0.0 {
-        true => uniform[9] * product / square,
-        false => uniform[9],
+    if square > 0.0 && product > 0.0 {
+        uniform[9] * product / square
+    } else {
+        uniform[9]
     }
 }
 

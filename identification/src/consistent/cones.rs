@@ -81,9 +81,12 @@ const ENTRIES: [(usize, usize); 10] = [
 ];
 
 fn coordinates(matrix: &Matrix4<f64>) -> Inertia {
-    Inertia::from(ENTRIES.map(|(i, j)| match i == j {
-        true => matrix[(i, i)],
-        false => (matrix[(i, j)] + matrix[(j, i)]) * std::f64::consts::FRAC_1_SQRT_2,
+    Inertia::from(ENTRIES.map(|(i, j)| {
+        if i == j {
+            matrix[(i, i)]
+        } else {
+            (matrix[(i, j)] + matrix[(j, i)]) * std::f64::consts::FRAC_1_SQRT_2
+        }
     }))
 }
 

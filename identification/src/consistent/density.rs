@@ -20,9 +20,10 @@ impl Values {
             match &group.kind {
                 Kind::Body { prior } => {
                     let suffix = unknowns.names[group.first].trim_start_matches("xx");
-                    let to = match self.given.contains_key(suffix) {
-                        true => &mut known,
-                        false => &mut uniform,
+                    let to = if self.given.contains_key(suffix) {
+                        &mut known
+                    } else {
+                        &mut uniform
                     };
                     to.rows_mut(group.first, 10).copy_from(prior);
                 }

@@ -92,9 +92,10 @@ impl Values {
                     .map(|p| from.get(&format!("{}{suffix}", p.name())).copied())
             };
             let uniform = named(&prior.uniform);
-            let uniform = match uniform.iter().any(Option::is_some) {
-                true => Inertia::from(uniform.map(Option::unwrap_or_default)),
-                false => ball(),
+            let uniform = if uniform.iter().any(Option::is_some) {
+                Inertia::from(uniform.map(Option::unwrap_or_default))
+            } else {
+                ball()
             };
             let own = named(&prior.values);
             if own.iter().any(Option::is_some) {

@@ -58,8 +58,9 @@ impl Side {
 
 /// Multiple of a change at which a positive value becomes zero.
 pub(super) fn until(value: f64, change: f64) -> f64 {
-    match change < 0.0 {
-        true => -value / change,
-        false => f64::INFINITY,
+    if change < 0.0 {
+        -value / change
+    } else {
+        f64::INFINITY
     }
 }

@@ -99,9 +99,10 @@ impl Clock {
         let expected = self.expected.unwrap_or(step);
         let rounding = UNITS * rounding(times);
         let is_rounded = rounding > STEP_TOLERANCE * expected;
-        let tolerance = match rounding <= MOST * expected {
-            true => rounding.max(STEP_TOLERANCE * expected),
-            false => STEP_TOLERANCE * expected,
+        let tolerance = if rounding <= MOST * expected {
+            rounding.max(STEP_TOLERANCE * expected)
+        } else {
+            STEP_TOLERANCE * expected
         };
         // Also false for NaN.
         let uniform = expected > 0.0 && (step - expected).abs() <= tolerance;
@@ -134,9 +135,10 @@ fn rounding(times: [f64; 2]) -> f64 {
     let largest = times
         .into_iter()
         .fold(0.0, |most: f64, time| most.max(time.abs()));
-    match times.into_iter().all(is_single) {
-        true => largest * f64::from(f32::EPSILON),
-        false => 0.0,
+    if times.into_iter().all(is_single) {
+        largest * f64::from(f32::EPSILON)
+    } else {
+        0.0
     }
 }
 

@@ -338,9 +338,10 @@ impl<'a> Columns<'a> {
         let full: Vec<&str> = full.iter().map(String::as_str).collect();
         let all: Vec<&str> = full.iter().chain(&bare).copied().collect();
         let what = self.tables[0].existing().what;
-        let existing = match full.is_empty() {
-            false => format!("the files have {}", quoted(full.iter().copied())),
-            true => format!("the files have {columns} columns, without names"),
+        let existing = if full.is_empty() {
+            format!("the files have {columns} columns, without names")
+        } else {
+            format!("the files have {}", quoted(full.iter().copied()))
         };
         let problem = no_columns(self.run, (missing, what), &existing);
         if missing.iter().any(|name| name.starts_with('$')) {

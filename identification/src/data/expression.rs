@@ -238,11 +238,10 @@ impl<'a> Parser<'a> {
             self.signed()?
         } else {
             let base = self.primary()?;
-            match self.take('^') {
-                true => {
-                    Expression::Binary(Operator::Power, Box::new(base), Box::new(self.signed()?))
-                }
-                false => base,
+            if self.take('^') {
+                Expression::Binary(Operator::Power, Box::new(base), Box::new(self.signed()?))
+            } else {
+                base
             }
         };
         self.depth -= 1;

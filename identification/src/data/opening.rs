@@ -168,12 +168,15 @@ impl Files {
             let labels = clocks.iter().map(|(table, ..)| self.tables[*table].label());
             labels.collect::<Vec<_>>().join(", ")
         };
-        let passed = |rate: f64, is_lower: bool| match is_lower {
-            true => format!(
-                ", after a low-pass that keeps what lies below {} Hz",
-                round(0.4 * rate)
-            ),
-            false => String::new(),
+        let passed = |rate: f64, is_lower: bool| {
+            if is_lower {
+                format!(
+                    ", after a low-pass that keeps what lies below {} Hz",
+                    round(0.4 * rate)
+                )
+            } else {
+                String::new()
+            }
         };
         if let Some((rate, step)) = self.resample {
             let mut steps = self.clocks.iter().map(|(_, _, step)| *step).chain([step]);

@@ -351,14 +351,16 @@ impl<'a> Rows<'a> {
         let sample = self.samples - 1;
         let problem = Problem::new(
             Code::NOT_A_NUMBER,
-            match value.is_finite() {
-                true => format!("sample {sample}: `{text}` is {value:e}, which nothing measures"),
-                false => format!("sample {sample}: `{text}` is not a finite number"),
+            if value.is_finite() {
+                format!("sample {sample}: `{text}` is {value:e}, which nothing measures")
+            } else {
+                format!("sample {sample}: `{text}` is not a finite number")
             },
         );
-        let problem = match value.is_finite() {
-            true => problem.help("cut the run there, or look at how the log was written"),
-            false => problem,
+        let problem = if value.is_finite() {
+            problem.help("cut the run there, or look at how the log was written")
+        } else {
+            problem
         };
         let problem = problem.file(self.files.name()).column(text);
         Err(match self.line() {

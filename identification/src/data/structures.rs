@@ -252,9 +252,12 @@ impl Order {
 
     /// Adds a name to an array, since those in structures have none.
     fn named(self, array: &[u8]) -> Option<Vec<u8>> {
-        let bytes = |number: u32| match self.is_little {
-            true => number.to_le_bytes(),
-            false => number.to_be_bytes(),
+        let bytes = |number: u32| {
+            if self.is_little {
+                number.to_le_bytes()
+            } else {
+                number.to_be_bytes()
+            }
         };
         let mut elements = self.elements(array);
         let (flags, size) = (elements.next()?.whole, elements.next()?.whole);

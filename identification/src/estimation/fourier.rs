@@ -56,9 +56,12 @@ impl Fourier {
         ];
         for first in (0..count).step_by(2) {
             // Two signals form one complex signal; their spectra are its even and odd parts.
-            let column = |index: usize| match index < count {
-                true => signals.column(index).iter().copied().collect(),
-                false => vec![0.0; self.size],
+            let column = |index: usize| {
+                if index < count {
+                    signals.column(index).iter().copied().collect()
+                } else {
+                    vec![0.0; self.size]
+                }
             };
             let (mut real, mut imaginary) = (column(first), column(first + 1));
             self.transform(&mut real, &mut imaginary);

@@ -136,9 +136,12 @@ impl Mean {
         let mut stray = Stray::default();
         // Coefficient of the squared residual at each harmonic and line, for independent lines.
         let mut counts = vec![0.0; (last + 1) * lines.len()];
-        let twice = |harmonic: usize| match harmonic == 0 || harmonic == last {
-            true => 1.0,
-            false => 2.0,
+        let twice = |harmonic: usize| {
+            if harmonic == 0 || harmonic == last {
+                1.0
+            } else {
+                2.0
+            }
         };
         let reach = NEIGHBOURS as isize;
         let least = LEAST_LEFT * (2 * NEIGHBOURS + 1) as f64;

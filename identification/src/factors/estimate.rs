@@ -64,9 +64,10 @@ pub fn identify_factors(
         let mut usable = run.models.iter().filter(|own| own.parts.is_ok());
         usable.all(|own| !own.stretches.is_empty())
     };
-    let deviations = match runs.iter().all(has_equations) {
-        true => Deviations::Equations,
-        false => Deviations::Parts,
+    let deviations = if runs.iter().all(has_equations) {
+        Deviations::Equations
+    } else {
+        Deviations::Parts
     };
     // Use the stretches of all runs or of none.
     let mut runs = runs.to_vec();

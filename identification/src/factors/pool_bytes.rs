@@ -18,12 +18,11 @@ impl Pool {
     /// # Errors
     /// A pool that is damaged, or has a run that this one has.
     pub fn take(&mut self, bytes: &[u8]) -> Result<(), PoolError> {
-        match bytes.starts_with(&MAGIC) {
-            true => self.merge(Self::from_bytes(bytes)?),
-            false => {
-                self.push(bytes);
-                Ok(())
-            }
+        if bytes.starts_with(&MAGIC) {
+            self.merge(Self::from_bytes(bytes)?)
+        } else {
+            self.push(bytes);
+            Ok(())
         }
     }
 
@@ -76,9 +75,10 @@ impl Pool {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, PoolError> {
         let mut rest = Rest(bytes.strip_prefix(&MAGIC).ok_or(PoolError::Damaged)?);
         let own = read(&mut rest).ok_or(PoolError::Damaged)?;
-        match rest.0.is_empty() {
-            true => Ok(own),
-            false => Err(PoolError::Damaged),
+        if rest.0.is_empty() {
+            Ok(own)
+        } else {
+            Err(PoolError::Damaged)
         }
     }
 }

@@ -181,12 +181,11 @@ fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
         columns,
         models,
     };
-    match content(&run) == run.content {
-        true => Ok(run),
-        false => {
-            let message = "its numbers are not those that were written: their hash is another one";
-            Err(Damaged::run(&first.run, message))
-        }
+    if content(&run) == run.content {
+        Ok(run)
+    } else {
+        let message = "its numbers are not those that were written: their hash is another one";
+        Err(Damaged::run(&first.run, message))
     }
 }
 

@@ -152,9 +152,10 @@ impl Record {
             let mut all = own.factor.matrix().iter().chain(own.factor.sums());
             all.all(|value| value.is_finite())
         };
-        match finite(&own) {
-            true => Ok(own),
-            false => Err(NoRecord::NotFinite),
+        if finite(&own) {
+            Ok(own)
+        } else {
+            Err(NoRecord::NotFinite)
         }
     }
 

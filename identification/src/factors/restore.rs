@@ -146,9 +146,10 @@ fn places(
                 (Some(load), name) => name.as_ref() == Some(load),
                 (None, _) => run.summary.payload,
             };
-            own.push(match loads.contains(column) && !carried {
-                true => None,
-                false => found,
+            own.push(if loads.contains(column) && !carried {
+                None
+            } else {
+                found
             });
             if found.is_none() && (carried || !loads.contains(column)) {
                 let message = format!("the factors have no column `{}`", wanted.name);
@@ -184,9 +185,10 @@ impl Places {
         });
         let part = |part: &Part| Part {
             run: number,
-            lines: match same {
-                true => part.lines.clone(),
-                false => part.lines.iter().map(|line| line.combined(&pick)).collect(),
+            lines: if same {
+                part.lines.clone()
+            } else {
+                part.lines.iter().map(|line| line.combined(&pick)).collect()
             },
         };
         let stretch = |stretch: &Stretch| Stretch {

@@ -54,9 +54,10 @@ impl RunFactors {
     /// Name of the run, with the serial number if known.
     #[must_use]
     pub fn title(&self) -> String {
-        match self.serial.is_empty() {
-            true => self.summary.name.clone(),
-            false => format!("{} of {}", self.summary.name, self.serial),
+        if self.serial.is_empty() {
+            self.summary.name.clone()
+        } else {
+            format!("{} of {}", self.summary.name, self.serial)
         }
     }
 

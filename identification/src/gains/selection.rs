@@ -42,12 +42,13 @@ impl Selection {
         let missing: Vec<String> = missing
             .map(|column| format!("`{}`", actuators[column - unknown]))
             .collect();
-        match missing.is_empty() {
-            true => Ok(Self { columns, drives }),
-            false => Err(undetermined(
+        if missing.is_empty() {
+            Ok(Self { columns, drives })
+        } else {
+            Err(undetermined(
                 &missing,
                 ", whose torques are combinations of what the parameters and the other drives explain",
-            )),
+            ))
         }
     }
 

@@ -93,9 +93,10 @@ pub(super) fn solve(equations: &Equations, selection: &Selection) -> Result<Solu
     // Accept a small change between two noise updates.
     let noise = Noise::new(equations, selection, &solution.values);
     let next = with_noise(lines, selection, &noise, solution.clone())?;
-    match change(solution.gains(), next.gains()) < CONVERGED {
-        true => Ok(next),
-        false => Err(not_converged()),
+    if change(solution.gains(), next.gains()) < CONVERGED {
+        Ok(next)
+    } else {
+        Err(not_converged())
     }
 }
 

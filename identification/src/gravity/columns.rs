@@ -96,9 +96,10 @@ impl Extended {
             let all = 0..places.len();
             all.filter(|place| load(place) == own).collect()
         };
-        let mut blocks: Vec<Vec<usize>> = match names.is_empty() {
-            true => vec![of(Some(None))],
-            false => names.iter().map(|name| of(Some(Some(name)))).collect(),
+        let mut blocks: Vec<Vec<usize>> = if names.is_empty() {
+            vec![of(Some(None))]
+        } else {
+            names.iter().map(|name| of(Some(Some(name)))).collect()
         };
         if payload == PayloadUse::Regrouped {
             let always = blocks.pop().unwrap_or_default();

@@ -58,9 +58,10 @@ impl Turned {
         // The last column replaces Y.
         let mut all: Vec<DVector<f64>> = own.chain(slopes).collect();
         let last = all.pop().unwrap_or_else(|| DVector::zeros(rows));
-        let coefficients = match all.is_empty() {
-            true => DMatrix::zeros(rows, 0),
-            false => DMatrix::from_columns(&all),
+        let coefficients = if all.is_empty() {
+            DMatrix::zeros(rows, 0)
+        } else {
+            DMatrix::from_columns(&all)
         };
         let of_line = |line: &Factor| line.combined_with(&coefficients, &last);
         let of = |lines: &Vec<Factor>| lines.iter().map(of_line).collect();

@@ -180,10 +180,7 @@ pub fn identify_after(
     let verdicts = verdicts(&estimates, &checks, rests_on.as_deref());
     // Detection limits are irrelevant for a refused result.
     let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
-    let unseen = match refused {
-        true => Vec::new(),
-        false => unseen(&checks),
-    };
+    let unseen = if refused { Vec::new() } else { unseen(&checks) };
     Ok(Identification {
         robot: info.name.to_owned(),
         base_parameters: BaseParameter::all(&prepared.columns, &prepared.base, dataset.true_values),

@@ -139,9 +139,10 @@ impl<'a> Stream<'a> {
             steps.iter_mut().for_each(|step| *step *= self.frequency);
             steps
         };
-        let around = match self.velocity_filter.is_some() {
-            true => around,
-            false => per_second(around),
+        let around = if self.velocity_filter.is_some() {
+            around
+        } else {
+            per_second(around)
         };
         let run = (n, last);
         let accelerations = central_differences(&around, before, first..end, run, self.reach);

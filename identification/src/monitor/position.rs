@@ -92,9 +92,10 @@ impl Position {
             let before = rows[(before - 1) * n..].iter();
             self.bounds.extend(before.map(|q| (*q, *q)));
             // The first equal value: store the speed before it.
-            self.speed_before = match is_long {
-                true => (position - back(known)).abs(),
-                false => 0.0,
+            self.speed_before = if is_long {
+                (position - back(known)).abs()
+            } else {
+                0.0
             };
         }
         for ((low, high), q) in self.bounds.iter_mut().zip(row) {

@@ -254,9 +254,10 @@ impl ColumnSet {
         };
         let mut columns = Vec::new();
         for (index, (parameter, rate)) in info.parameters.iter().zip(rates).enumerate() {
-            let origin = match payload && is_carried(parameter) {
-                true => Origin::Carried(index),
-                false => Origin::Robot(index),
+            let origin = if payload && is_carried(parameter) {
+                Origin::Carried(index)
+            } else {
+                Origin::Robot(index)
             };
             let whole = Column::new(parameter, origin);
             match rate {
@@ -411,9 +412,12 @@ impl ColumnSet {
             }
             Ok(output)
         };
-        let ask = |function: Function, wanted: bool| match wanted {
-            true => fill(function, Vec::new()),
-            false => Ok(Vec::new()),
+        let ask = |function: Function, wanted: bool| {
+            if wanted {
+                fill(function, Vec::new())
+            } else {
+                Ok(Vec::new())
+            }
         };
         let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
         let split = columns().any(|column| column.rate.is_some());

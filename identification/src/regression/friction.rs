@@ -166,9 +166,10 @@ impl FrictionPower {
     /// The part of u that affects a friction column, at a state.
     fn speed(&self, sample: usize, column: usize, symbol: StandardParameter) -> f64 {
         let power = self.power(true, sample, column).max(0.0);
-        match symbol.is_viscous() {
-            true => (power / SLOW).sqrt(),
-            false => power,
+        if symbol.is_viscous() {
+            (power / SLOW).sqrt()
+        } else {
+            power
         }
     }
 
@@ -265,9 +266,12 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
         let under_load = symbol == StandardParameter::Fl;
         let joint = (0..info.sizes.joints)
             .filter(|joint| !taken.contains(&(symbol, *joint)))
-            .find(|joint| match under_load {
-                true => friction.matches_load(&own(*joint), column),
-                false => friction.matches(&own(*joint), column, symbol),
+            .find(|joint| {
+                if under_load {
+                    friction.matches_load(&own(*joint), column)
+                } else {
+                    friction.matches(&own(*joint), column, symbol)
+                }
             });
         taken.extend(joint.map(|joint| (symbol, joint)));
         // The rate of a coupled joint follows from its friction without load.

@@ -60,9 +60,10 @@ impl Projection {
     /// Projections of a robot: platform and actuator projection, or its joints without redundancy.
     #[must_use]
     pub fn usual(info: &Info<'_>, kept_actuators: &[usize]) -> Vec<Self> {
-        match info.sizes.actuators > info.sizes.dof {
-            true => vec![Self::Platform, Self::Actuators(kept_actuators.to_vec())],
-            false => vec![Self::Joints],
+        if info.sizes.actuators > info.sizes.dof {
+            vec![Self::Platform, Self::Actuators(kept_actuators.to_vec())]
+        } else {
+            vec![Self::Joints]
         }
     }
 

@@ -178,9 +178,10 @@ impl LineSink {
         standstill: Option<f64>,
     ) -> Result<Self, Error> {
         let width = parameters + 1;
-        let instruments = match instruments {
-            true => Some(InstrumentSink::new(plan, stream(width)?, parameters)),
-            false => None,
+        let instruments = if instruments {
+            Some(InstrumentSink::new(plan, stream(width)?, parameters))
+        } else {
+            None
         };
         let standstill = match standstill {
             Some(limit) => Some(Standstill {

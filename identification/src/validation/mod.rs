@@ -269,9 +269,10 @@ fn rows(
         .model
         .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
         .map_err(|error| motion.outside(first + error.sample, error.error))?;
-    let closures = match layout.closure() {
-        true => closures(observer.model, pose, count),
-        false => None,
+    let closures = if layout.closure() {
+        closures(observer.model, pose, count)
+    } else {
+        None
     };
     let torques = slice(&motion.torques, n, first, count);
     let mut rows = vec![0.0; count * layout.width()];

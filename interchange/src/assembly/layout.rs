@@ -385,9 +385,10 @@ pub(crate) fn skeleton_rates(
         if follows(network, index) {
             continue;
         }
-        let (to, sign) = match edge.groups[0] == from {
-            true => (edge.groups[1], 1.0),
-            false => (edge.groups[0], -1.0),
+        let (to, sign) = if edge.groups[0] == from {
+            (edge.groups[1], 1.0)
+        } else {
+            (edge.groups[0], -1.0)
         };
         let relative = &twists[to] - &twists[from];
         let axis = network.axis(edge, state);

@@ -56,9 +56,10 @@ impl Course {
         let mut stops = Vec::new();
         for step in 1..=APPROACH + STEPS {
             let rates = guide.rates(&state).ok_or(Trouble::Singular)?;
-            let next = match step <= APPROACH {
-                true => &begin * (f64::from(step) / f64::from(APPROACH)),
-                false => wanted(f64::from(step - APPROACH) / f64::from(STEPS)),
+            let next = if step <= APPROACH {
+                &begin * (f64::from(step) / f64::from(APPROACH))
+            } else {
+                wanted(f64::from(step - APPROACH) / f64::from(STEPS))
             };
             state = guide
                 .step(&state, &rates, &(&next - &now))

@@ -112,9 +112,10 @@ impl<'g, 'm> Guide<'g, 'm> {
                 .position(|c| c.joint == leader);
             at.map_or(0.0, |at| factor * tree[(at, j)])
         });
-        let driven = match actuators.nrows() >= actuators.ncols() {
-            true => actuators.clone().singular_values().amin(),
-            false => 0.0,
+        let driven = if actuators.nrows() >= actuators.ncols() {
+            actuators.clone().singular_values().amin()
+        } else {
+            0.0
         };
         Some((Rates { tree, actuators }, [size, driven]))
     }
@@ -194,12 +195,13 @@ impl<'g, 'm> Guide<'g, 'm> {
         let names: Vec<String> = passed
             .map(|(_, joint)| format!("`{}`", joint.name))
             .collect();
-        match names.is_empty() {
-            true => Vec::new(),
-            false => vec![format!(
+        if names.is_empty() {
+            Vec::new()
+        } else {
+            vec![format!(
                 "Home stands on a limit of {}, which these runs pass: `overact import --home` starts elsewhere.",
                 names.join(", ")
-            )],
+            )]
         }
     }
 }

@@ -31,9 +31,10 @@ pub(super) fn inertia(patch: &mut Patch, text: &str, body: Node<'_, '_>, own: &I
         t[(0, 2)],
         t[(1, 2)],
     ];
-    match inertial.has_attribute("fullinertia") {
-        true => patch.set(inertial, "fullinertia", &numbers(&full)),
-        false => patch.rename(inertial, "diaginertia", "fullinertia", &numbers(&full)),
+    if inertial.has_attribute("fullinertia") {
+        patch.set(inertial, "fullinertia", &numbers(&full))
+    } else {
+        patch.rename(inertial, "diaginertia", "fullinertia", &numbers(&full))
     }
     for turn in ["quat", "axisangle", "xyaxes", "zaxis", "euler"] {
         patch.remove(text, inertial, turn);

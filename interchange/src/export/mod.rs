@@ -160,9 +160,10 @@ impl Export<'_, '_> {
         let is_single = plan.legs.len() == 1;
         for leg in &plan.legs {
             for joint in &leg.joints {
-                let of = match is_single {
-                    true => joint.name.clone(),
-                    false => format!("{}_{}", joint.name, leg.name),
+                let of = if is_single {
+                    joint.name.clone()
+                } else {
+                    format!("{}_{}", joint.name, leg.name)
                 };
                 self.body(joint, &of);
                 self.torques(joint, &of);

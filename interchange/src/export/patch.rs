@@ -73,9 +73,10 @@ impl Patch {
                 let range = last.range();
                 let line = text[..range.start].rfind('\n').map_or(0, |at| at + 1);
                 let indent = &text[line..range.start];
-                let between = match indent.trim().is_empty() && line > 0 {
-                    true => format!("\n{indent}"),
-                    false => String::new(),
+                let between = if indent.trim().is_empty() && line > 0 {
+                    format!("\n{indent}")
+                } else {
+                    String::new()
                 };
                 self.replace(range.end..range.end, format!("{between}{element}"));
             }

@@ -57,12 +57,13 @@ pub(crate) fn base(nodes: &[Node], on: &Pose, end: Option<Point3<f64>>) -> Pose 
         return *on;
     };
     let frame = placed(first, on, &next(nodes, 0, end));
-    let back = match first.is_prismatic {
-        true => Pose::from_parts((Vector3::z() * -first.home).into(), Rotation3::identity()),
-        false => Pose::from_parts(
+    let back = if first.is_prismatic {
+        Pose::from_parts((Vector3::z() * -first.home).into(), Rotation3::identity())
+    } else {
+        Pose::from_parts(
             Vector3::zeros().into(),
             crate::geometry::exact::about(2, -first.home),
-        ),
+        )
     };
     frame * back
 }
@@ -87,9 +88,10 @@ pub(crate) fn framed(nodes: &[Node], base: &Pose, end: Option<Point3<f64>>) -> V
         // Recompute the frame from the constants, so that rounding errors do not accumulate.
         let frame = before * step.frame();
         let mut step = step;
-        match node.is_prismatic {
-            true => step.r -= node.home,
-            false => step.theta = super::step::round(wrapped(step.theta - node.home)),
+        if node.is_prismatic {
+            step.r -= node.home
+        } else {
+            step.theta = super::step::round(wrapped(step.theta - node.home))
         }
         all.push(Framed {
             is_behind_turn,

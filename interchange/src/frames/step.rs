@@ -31,9 +31,10 @@ impl Step {
         if (PARALLEL..NEARLY).contains(&sine) {
             return None;
         }
-        let step = match sine < PARALLEL {
-            true => Self::parallel(z.z < 0.0, &rotation, &at),
-            false => Self::crossing(sine, &rotation, &at),
+        let step = if sine < PARALLEL {
+            Self::parallel(z.z < 0.0, &rotation, &at)
+        } else {
+            Self::crossing(sine, &rotation, &at)
         };
         Some(step)
     }
@@ -41,9 +42,10 @@ impl Step {
     fn parallel(is_opposite: bool, rotation: &Rotation3<f64>, at: &Vector3<f64>) -> Self {
         let alpha = if is_opposite { PI } else { 0.0 };
         let away = at.x.hypot(at.y);
-        let (gamma, d) = match away < 1e-14 {
-            true => (0.0, 0.0),
-            false => near(round(at.y.atan2(at.x)), away),
+        let (gamma, d) = if away < 1e-14 {
+            (0.0, 0.0)
+        } else {
+            near(round(at.y.atan2(at.x)), away)
         };
         let r = if is_opposite { -at.z } else { at.z };
         Self {

@@ -59,9 +59,10 @@ pub(crate) fn angle(value: f64) -> String {
     }
     let degrees = decimal(value * (180.0 / PI));
     let radians = decimal(value);
-    match degrees.len() <= 7 && radians.len() > degrees.len() {
-        true => format!("{} deg", degrees.trim_end_matches(".0")),
-        false => radians,
+    if degrees.len() <= 7 && radians.len() > degrees.len() {
+        format!("{} deg", degrees.trim_end_matches(".0"))
+    } else {
+        radians
     }
 }
 

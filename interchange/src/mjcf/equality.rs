@@ -90,12 +90,13 @@ fn frames(
         };
         let (a, b) = (site("site1")?, site("site2")?);
         let (bodies, at) = ([a.0, b.0], [a.1, b.1]);
-        return Some(match is_point {
-            true => ClosureKind::Point {
+        return Some(if is_point {
+            ClosureKind::Point {
                 bodies,
                 at: at.map(|f| Point3::from(f.translation.vector)),
-            },
-            false => ClosureKind::Weld { bodies, at },
+            }
+        } else {
+            ClosureKind::Weld { bodies, at }
         });
     }
     let body = |key: &str| {

@@ -22,9 +22,10 @@ pub(super) fn value(text: &str, symbols: &BTreeMap<String, f64>) -> Result<f64, 
         depth: 0,
     };
     let value = reader.sum()?;
-    match reader.rest.trim().is_empty() && value.is_finite() {
-        true => Ok(value),
-        false => Err(Fault::Unreadable),
+    if reader.rest.trim().is_empty() && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Fault::Unreadable)
     }
 }
 

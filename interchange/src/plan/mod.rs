@@ -121,9 +121,10 @@ fn skeleton(
         }
     }
     let name = names.unique(if is_tree { "robot" } else { "skeleton" });
-    let comment = match is_tree {
-        true => Vec::new(),
-        false => vec![independent(network, layout)],
+    let comment = if is_tree {
+        Vec::new()
+    } else {
+        vec![independent(network, layout)]
     };
     let joints = draft.joints(&framed, !is_tree);
     let axes = draft.nodes.iter().map(|node| node.direction).collect();

@@ -30,9 +30,10 @@ pub(crate) fn word(name: &str) -> String {
     let text = text.trim_matches('_');
     let text = if text.is_empty() { "joint" } else { text };
     let reserved = ["base", "ground", "payload", "platform"];
-    match text.starts_with(|c: char| c.is_ascii_alphabetic()) && !reserved.contains(&text) {
-        true => text.to_owned(),
-        false => format!("j_{text}"),
+    if text.starts_with(|c: char| c.is_ascii_alphabetic()) && !reserved.contains(&text) {
+        text.to_owned()
+    } else {
+        format!("j_{text}")
     }
 }
 

@@ -118,14 +118,16 @@ impl<'f> Gathered<'f> {
         }
         let frame = self.frames.all.len();
         let outer = self.frames.scopes[scope].clone();
-        let whole = match source.is_merged {
-            true => format!("{}_merged__{name}__model__", outer.prefix),
-            false => format!("{}{name}", outer.prefix),
+        let whole = if source.is_merged {
+            format!("{}_merged__{name}__model__", outer.prefix)
+        } else {
+            format!("{}{name}", outer.prefix)
         };
         self.frame(element, &name, &whole, scope, Holder::Nothing);
-        let prefix = match source.is_merged {
-            true => outer.prefix,
-            false => format!("{whole}::"),
+        let prefix = if source.is_merged {
+            outer.prefix
+        } else {
+            format!("{whole}::")
         };
         let own = self.frames.scopes.len();
         self.frames.scopes.push(Scope {

@@ -68,9 +68,12 @@ fn beneath(uri: &str, open: &[PathBuf]) -> Option<PathBuf> {
         path
     };
     let first = open.first()?.parent()?;
-    let real = |path: &Path| match path.as_os_str().is_empty() {
-        true => Path::new(".").canonicalize().ok(),
-        false => path.canonicalize().ok(),
+    let real = |path: &Path| {
+        if path.as_os_str().is_empty() {
+            Path::new(".").canonicalize().ok()
+        } else {
+            path.canonicalize().ok()
+        }
     };
     match (real(first), real(&path)) {
         (Some(first), Some(path)) if !path.starts_with(&first) => None,

@@ -175,9 +175,10 @@ impl Tree<'_, '_> {
     /// order.
     fn hang(&mut self, edge: usize, is_against: bool, model: &mut Model) -> usize {
         let Edge { item, ends, axes } = &self.edges[edge];
-        let [carrier, carried] = match is_against {
-            true => [ends[1], ends[0]],
-            false => *ends,
+        let [carrier, carried] = if is_against {
+            [ends[1], ends[0]]
+        } else {
+            *ends
         };
         let frames = &self.gathered.frames;
         let to = self.frame(carried);
@@ -199,9 +200,10 @@ impl Tree<'_, '_> {
             }
             model.joints.push(joint);
             let is_last = at + 1 == order.len();
-            let own = match is_last {
-                true => name.to_owned(),
-                false => format!("{name}_{}", at + 1),
+            let own = if is_last {
+                name.to_owned()
+            } else {
+                format!("{name}_{}", at + 1)
             };
             let joint = Some(model.joints.len() - 1);
             parent = push(model, own, parent, placement, joint);
@@ -290,19 +292,16 @@ impl Tree<'_, '_> {
         let (Some(from), Some(to)) = (self.body(parent), self.body(child)) else {
             return;
         };
-        let (first, at) = match self.edges[edge].axes.is_empty() {
-            true => {
-                let seen = self
-                    .gathered
-                    .frames
-                    .seen(self.frame(child), self.frame(parent));
-                (from, seen)
-            }
-            false => {
-                let body = self.hang(edge, false, model);
-                model.bodies[body].name.clear();
-                (body, Pose::identity())
-            }
+        let (first, at) = if self.edges[edge].axes.is_empty() {
+            let seen = self
+                .gathered
+                .frames
+                .seen(self.frame(child), self.frame(parent));
+            (from, seen)
+        } else {
+            let body = self.hang(edge, false, model);
+            model.bodies[body].name.clear();
+            (body, Pose::identity())
         };
         model.closures.push(Closure {
             name: item.name.clone(),

@@ -81,9 +81,10 @@ fn base64(bytes: &[u8]) -> String {
             .fold(0_usize, |bits, byte| bits << 8 | usize::from(*byte))
             << (8 * (3 - part.len()));
         for place in 0..4 {
-            text.push(match place <= part.len() {
-                true => char::from(LETTERS[bits >> (18 - 6 * place) & 63]),
-                false => '=',
+            text.push(if place <= part.len() {
+                char::from(LETTERS[bits >> (18 - 6 * place) & 63])
+            } else {
+                '='
             });
         }
     }

@@ -10,13 +10,12 @@ use overact_identification::{DriveGain, JointParameter, Settings};
 /// Section; empty if no gains were identified.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
-    let body = match identification.gains.is_empty() {
-        true => String::new(),
-        false => {
-            introduction(&identification.settings)
-                + &drives(&identification.gains)
-                + &parameters(&identification.gain_parameters)
-        }
+    let body = if identification.gains.is_empty() {
+        String::new()
+    } else {
+        introduction(&identification.settings)
+            + &drives(&identification.gains)
+            + &parameters(&identification.gain_parameters)
     };
     Section {
         id: "gains",

@@ -49,12 +49,13 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
     Section {
         id: "inputs",
-        title: match answers(identification)
+        title: if answers(identification)
             .iter()
             .all(|one| one.model == ModelKind::Joints)
         {
-            true => "Measured and predicted torques",
-            false => "Measured and predicted torques, projected",
+            "Measured and predicted torques"
+        } else {
+            "Measured and predicted torques, projected"
         },
         body,
     }

@@ -130,9 +130,10 @@ pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Optio
     let interval = format!("{} … {}", digits(low), digits(high));
     // A value far below the width of its interval keeps two digits.
     let first = (value / scale).abs().log10().floor();
-    let own = match first.is_finite() {
-        true => usize::try_from(1 - first as i32).unwrap_or(0),
-        false => 0,
+    let own = if first.is_finite() {
+        usize::try_from(1 - first as i32).unwrap_or(0)
+    } else {
+        0
     };
     let value = rounded(value, decimals.max(own.min(decimals + MOST_MORE)));
     if fixed {

@@ -32,14 +32,13 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         ]],
         rows: rows.collect(),
     };
-    let body = match motors.is_empty() {
-        true => String::new(),
-        false => {
-            table.html()
-                + &note(
-                    "Inertia and viscous friction are smaller by the square of the ratio, dry friction by its magnitude, an offset by the ratio. Parameters into which others are regrouped are none of the motor alone.",
-                )
-        }
+    let body = if motors.is_empty() {
+        String::new()
+    } else {
+        table.html()
+            + &note(
+                "Inertia and viscous friction are smaller by the square of the ratio, dry friction by its magnitude, an offset by the ratio. Parameters into which others are regrouped are none of the motor alone.",
+            )
     };
     Section {
         id: "motors",

@@ -124,9 +124,10 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
 /// Formats words as a sentence.
 fn sentence(words: &str) -> String {
     let words = capital(words);
-    match words.ends_with(['.', '?', '!']) {
-        true => words,
-        false => words + ".",
+    if words.ends_with(['.', '?', '!']) {
+        words
+    } else {
+        words + "."
     }
 }
 

@@ -314,9 +314,10 @@ fn rule_names(rules: &[&Rule], lines: &[Line], y: &Scale) -> String {
         let free = places.as_flattened().iter().find(|place| is_free(place));
         let place = *free.unwrap_or(&places[0][0]);
         taken.push(place);
-        let (x, anchor) = match place.0 {
-            true => (left + 2.0, "start"),
-            false => (right - 2.0, "end"),
+        let (x, anchor) = if place.0 {
+            (left + 2.0, "start")
+        } else {
+            (right - 2.0, "end")
         };
         let _ = write!(
             svg,

@@ -93,12 +93,11 @@ impl Rows<'_> {
         let fits = |text: &str| text.lines().all(|line| line.chars().count() <= WIDTH);
         // A table that is too wide was split into parts.
         let is_whole = fits(&with_truth) && with_truth.lines().count() == names.len() + 2;
-        match has_truth && !is_whole {
-            true => {
-                text.push_str(&self.side_by_side(&names, false));
-                paragraph(&mut text, "", "--tables has the true values.");
-            }
-            false => text.push_str(&with_truth),
+        if has_truth && !is_whole {
+            text.push_str(&self.side_by_side(&names, false));
+            paragraph(&mut text, "", "--tables has the true values.");
+        } else {
+            text.push_str(&with_truth)
         }
         if owns().any(is_outside) {
             paragraph(
@@ -112,9 +111,10 @@ impl Rows<'_> {
                 .iter()
                 .map(|&place| best_known(&self.answers, self.names[place]));
             let best = best.fold(f64::INFINITY, f64::min);
-            let known = match best.is_finite() {
-                true => format!("; the best of them is known to {} %", significant(best, 2)),
-                false => String::new(),
+            let known = if best.is_finite() {
+                format!("; the best of them is known to {} %", significant(best, 2))
+            } else {
+                String::new()
             };
             let told = format!("--all lists {} more{known}.", left.len());
             paragraph(&mut text, "", &told);

@@ -18,9 +18,10 @@ pub(crate) fn angle(direction: &GravityDirection) -> String {
     let [tilt, deviation] =
         [direction.tilt, direction.tilt_deviation].map(|one| significant(one.to_degrees(), 3));
     let own = format!("{tilt} deg from the described one, standard deviation {deviation} deg");
-    match direction.significant {
-        true => format!("{own}; all below is identified with it"),
-        false => format!("{own}: not told from none, so all below is identified as described"),
+    if direction.significant {
+        format!("{own}; all below is identified with it")
+    } else {
+        format!("{own}: not told from none, so all below is identified as described")
     }
 }
 

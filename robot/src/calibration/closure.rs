@@ -173,9 +173,12 @@ fn end_miss(
         )
     };
     let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
-    let along = |joint: usize, way: Vector3<f64>| match is_on_way(leg, joint) {
-        true => -way,
-        false => Vector3::zeros(),
+    let along = |joint: usize, way: Vector3<f64>| {
+        if is_on_way(leg, joint) {
+            -way
+        } else {
+            Vector3::zeros()
+        }
     };
     match length {
         Length::B(joint) => along(joint, antecedent(joint) * Vector3::z()),

@@ -88,9 +88,10 @@ fn heading(calibration: &Calibration) -> String {
 
 fn signed(one: &CalibratedParameter) -> String {
     let number = rounded(one.change, one.standard_deviation);
-    match one.change < 0.0 {
-        true => number,
-        false => format!("+{number}"),
+    if one.change < 0.0 {
+        number
+    } else {
+        format!("+{number}")
     }
 }
 

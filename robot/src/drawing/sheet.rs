@@ -61,9 +61,10 @@ impl Sheet {
         let middle = (low.unwrap_or_default() + high.unwrap_or_default()) / 2.0;
         let far = points.iter().map(|point| (point - middle).norm());
         let radius = far.fold(scene.sphere.unwrap_or(0.0), f64::max);
-        let scale = match radius < NOTHING {
-            true => 400.0,
-            false => LARGEST_TURNED / (2.0 * radius),
+        let scale = if radius < NOTHING {
+            400.0
+        } else {
+            LARGEST_TURNED / (2.0 * radius)
         };
         let [right, up, _] = view.project(&middle);
         Self {

@@ -253,9 +253,10 @@ impl Series<'_> {
         let round = |term: &Term| {
             let amplitude = term.amplitude;
             Term {
-                amplitude: match is_length(&term.coordinate) {
-                    true => (amplitude * 1e6).round() / 1e6,
-                    false => ((amplitude.to_degrees() * 1e4).round() / 1e4).to_radians(),
+                amplitude: if is_length(&term.coordinate) {
+                    (amplitude * 1e6).round() / 1e6
+                } else {
+                    ((amplitude.to_degrees() * 1e4).round() / 1e4).to_radians()
                 },
                 phase_rad: ((term.phase_rad.to_degrees() * 1e2).round() / 1e2).to_radians(),
                 ..term.clone()

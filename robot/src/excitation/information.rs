@@ -80,12 +80,13 @@ impl Question {
                 "exciting runs are searched for robots whose actuators drive all coordinates";
             return Err(Problem::new(Code::EXCITATION, message).help(help).into());
         }
-        let projections = match sizes.actuators == sizes.dof {
-            true => vec![Projection::Joints],
-            false => vec![
+        let projections = if sizes.actuators == sizes.dof {
+            vec![Projection::Joints]
+        } else {
+            vec![
                 Projection::Platform,
                 Projection::Actuators(bench.kept.clone()),
-            ],
+            ]
         };
         let values = truth.map(|truth| base.regrouped(&columns, truth));
         let normal = DVector::from_element(base.columns.len(), 1.0);
@@ -292,9 +293,10 @@ fn condition(information: &DMatrix<f64>) -> f64 {
         return f64::INFINITY;
     }
     let values = SymmetricEigen::new(matrix).eigenvalues;
-    match values.min() > 0.0 {
-        true => (values.max() / values.min()).sqrt(),
-        false => f64::INFINITY,
+    if values.min() > 0.0 {
+        (values.max() / values.min()).sqrt()
+    } else {
+        f64::INFINITY
     }
 }
 

@@ -138,9 +138,10 @@ pub(super) fn limits(
         .clone()
         .or(runs.clone())
         .map_or(safe, |values| values[0]);
-    let assumed = match moving.is_some() {
-        true => None,
-        false => Some(reached(bench, condition)),
+    let assumed = if moving.is_some() {
+        None
+    } else {
+        Some(reached(bench, condition))
     };
     add(LimitKind::Position, key(|t| &t.position), moving, assumed);
     add(LimitKind::Travel, key(|t| &t.travel), None, None);

@@ -417,9 +417,10 @@ fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<
             .into_iter()
             .map(|c| c.1)
             .collect(),
-        kept: match sizes.actuators > sizes.dof {
-            true => info.kept_actuators.to_vec(),
-            false => (0..sizes.actuators).collect(),
+        kept: if sizes.actuators > sizes.dof {
+            info.kept_actuators.to_vec()
+        } else {
+            (0..sizes.actuators).collect()
         },
         scales: (0..sizes.dof).map(|column| norm(column).recip()).collect(),
         parameters: truth.map(|truth| all().map(|p| value(truth, p.name)).collect()),

@@ -330,9 +330,10 @@ impl<'a> Search<'a> {
 
 /// Sum of the information matrices of runs.
 pub(super) fn added(before: &[DMatrix<f64>], own: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
-    match before.is_empty() {
-        true => own.to_vec(),
-        false => before.iter().zip(own).map(|(a, b)| a + b).collect(),
+    if before.is_empty() {
+        own.to_vec()
+    } else {
+        before.iter().zip(own).map(|(a, b)| a + b).collect()
     }
 }
 

@@ -50,9 +50,10 @@ fn term(term: &Term, coordinates: &[(&str, String, bool)]) -> String {
     let (name, is_length) = known.map_or((term.coordinate.as_str(), false), |(_, name, length)| {
         (name, *length)
     });
-    let amplitude = match is_length {
-        true => format!("{:.3} mm", term.amplitude * 1e3),
-        false => format!("{:.4} deg", term.amplitude.to_degrees()),
+    let amplitude = if is_length {
+        format!("{:.3} mm", term.amplitude * 1e3)
+    } else {
+        format!("{:.4} deg", term.amplitude.to_degrees())
     };
     format!(
         "    {{ coordinate = \"{name}\", harmonic = {}, amplitude = \"{amplitude}\", phase = \"{:.2} deg\" }},\n",

@@ -220,10 +220,7 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
                 name: mechanism.joint_name(overact_codegen::mechanism::JointIndex { leg, joint }),
                 joint: kind,
                 actuated: j.actuated,
-                actuator: match j.actuated {
-                    true => actuators.next(),
-                    false => None,
-                },
+                actuator: if j.actuated { actuators.next() } else { None },
                 parameters: named(&is_own),
             });
         }
@@ -292,9 +289,10 @@ impl Function {
         Self {
             name: function.computes.name(),
             function: function.name.clone(),
-            columns: match function.computes.is_of_base_parameters() {
-                true => Some(Columns::Base.name()),
-                false => function.computes.columns().map(Columns::name),
+            columns: if function.computes.is_of_base_parameters() {
+                Some(Columns::Base.name())
+            } else {
+                function.computes.columns().map(Columns::name)
             },
             from: function.from.name(),
             inputs,

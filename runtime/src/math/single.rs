@@ -16,9 +16,10 @@ use overact_core::trigonometry::single::{COSINE, HALF_PI, LARGEST, ROUND, SINE};
 #[inline]
 #[must_use]
 pub fn sin_cos(angle: f32) -> (f32, f32) {
-    match angle.abs() <= LARGEST {
-        true => reduced(angle),
-        false => library(angle),
+    if angle.abs() <= LARGEST {
+        reduced(angle)
+    } else {
+        library(angle)
     }
 }
 

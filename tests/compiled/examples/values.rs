@@ -37,9 +37,12 @@ fn answer(
     inputs: &[String],
 ) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
     let robot = overact_compiled::by_stem(stem).ok_or("no such robot")?;
-    let name = |one: &Function| match one.is_of_base_parameters() {
-        true => format!("{}_base", one.name()),
-        false => one.name().to_owned(),
+    let name = |one: &Function| {
+        if one.is_of_base_parameters() {
+            format!("{}_base", one.name())
+        } else {
+            one.name().to_owned()
+        }
     };
     let found = Function::ALL.into_iter().find(|one| name(one) == function);
     let found = found.ok_or("no such function")?;

@@ -268,9 +268,10 @@ fn carried_torques(
 pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
     let count = super::parameters::count(mechanism);
     let joints = mechanism.joints();
-    let dof = match mechanism.motion.has_platform() {
-        true => mechanism.motion.free_basis().ncols(),
-        false => mechanism.dof(),
+    let dof = if mechanism.motion.has_platform() {
+        mechanism.motion.free_basis().ncols()
+    } else {
+        mechanism.dof()
     };
     let mut columns = DMatrix::zeros(joints + dof, count);
     let motions = state.legs(mechanism);

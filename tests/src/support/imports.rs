@@ -71,9 +71,12 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         .map(|entry| entry.expect("an entry").path())
         .collect();
     paths.sort();
-    let below = |path: PathBuf| match path.is_dir() {
-        true => files(&path),
-        false => vec![path],
+    let below = |path: PathBuf| {
+        if path.is_dir() {
+            files(&path)
+        } else {
+            vec![path]
+        }
     };
     let all = paths.into_iter().flat_map(below);
     all.filter(|path| path.extension().is_some_and(|e| e == "rs"))

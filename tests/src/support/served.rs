@@ -37,9 +37,10 @@ impl Backend for Served<'_> {
     fn call(&self, function: &str, sample: &Sample) -> Result<DMatrix<f64>, Failure> {
         // A model offers functions from the pose, and those with joint inputs from joints.
         let is_called = |known: &&Function| {
-            let from = match known.inputs().contains(&Input::Joints) {
-                true => MotionInput::Joints,
-                false => MotionInput::Pose,
+            let from = if known.inputs().contains(&Input::Joints) {
+                MotionInput::Joints
+            } else {
+                MotionInput::Pose
             };
             function_name(**known, from, false) == function
         };

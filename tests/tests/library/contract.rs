@@ -423,9 +423,10 @@ impl Contract<'_> {
         let Some((first, wanted)) = answers.next() else {
             panic!("no backend");
         };
-        let tolerance = match case.contains(&format!("a pose off by {FAR}")) {
-            true => FAR_TOLERANCE,
-            false => TOLERANCE,
+        let tolerance = if case.contains(&format!("a pose off by {FAR}")) {
+            FAR_TOLERANCE
+        } else {
+            TOLERANCE
         };
         for (name, found) in answers {
             let is_same = match (&wanted, &found) {

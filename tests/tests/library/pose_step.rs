@@ -127,9 +127,10 @@ fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> 
                 if middle <= low || middle >= high {
                     break;
                 }
-                match cross(low)? * cross(middle)? > 0.0 {
-                    true => low = middle,
-                    false => high = middle,
+                if cross(low)? * cross(middle)? > 0.0 {
+                    low = middle
+                } else {
+                    high = middle
                 }
             }
             for beside in [0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4] {

@@ -76,9 +76,10 @@ fn lacking(at: usize, missing: &[String], states: &States, takes: &[String]) -> 
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let held = match found.is_empty() {
-        true => "nothing".to_owned(),
-        false => quoted(&mut found.into_iter().take(MOST_NAMED)) + &more,
+    let held = if found.is_empty() {
+        "nothing".to_owned()
+    } else {
+        quoted(&mut found.into_iter().take(MOST_NAMED)) + &more
     };
     let mut help = format!("the function takes {}", takes.join(", "));
     if missing.iter().any(|name| name.ends_with("parameters")) {

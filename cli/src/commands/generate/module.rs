@@ -116,9 +116,10 @@ impl Module {
 /// Path of a description's Rust module, if it is written to a file.
 pub(super) fn rust_file(description: &Path, arguments: &Arguments) -> Option<PathBuf> {
     let output = arguments.output()?;
-    Some(match arguments.is_folder(output) {
-        true => output.join(format!("{}.rs", module_name(description))),
-        false => output.to_owned(),
+    Some(if arguments.is_folder(output) {
+        output.join(format!("{}.rs", module_name(description)))
+    } else {
+        output.to_owned()
     })
 }
 
@@ -134,9 +135,10 @@ fn module_name(path: &Path) -> String {
         if c.is_uppercase() && (before.is_lowercase() || before.is_ascii_digit()) {
             name.push('_');
         }
-        match c.is_alphanumeric() {
-            true => name.extend(c.to_lowercase()),
-            false => name.push('_'),
+        if c.is_alphanumeric() {
+            name.extend(c.to_lowercase())
+        } else {
+            name.push('_')
         }
         before = c;
     }

@@ -64,9 +64,10 @@ fn bodies(document: &Inspection) -> String {
             Some(name) => format!("motor {name}"),
             None => String::new(),
         };
-        let parameters = match body.parameters.is_empty() {
-            true => "-".to_owned(),
-            false => body.parameters.join(" "),
+        let parameters = if body.parameters.is_empty() {
+            "-".to_owned()
+        } else {
+            body.parameters.join(" ")
         };
         (
             vec![body.name.clone(), body.joint.to_owned(), motor],

@@ -132,9 +132,10 @@ pub(super) fn run(
     let mut made = Made::default();
     for day in 0..arguments.days {
         for (file, members) in work.members.chunks(ROBOTS_OF_A_FILE).enumerate() {
-            match arguments.factors {
-                true => work.factors((day, file), members, &mut made)?,
-                false => work.logs(day, members, &mut made)?,
+            if arguments.factors {
+                work.factors((day, file), members, &mut made)?
+            } else {
+                work.logs(day, members, &mut made)?
             }
             let done = (day * robots + file * ROBOTS_OF_A_FILE) as f64;
             bar.at(done / (arguments.days * robots) as f64, &work.day(day));

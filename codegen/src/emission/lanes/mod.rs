@@ -71,12 +71,13 @@ pub(super) fn write(
         after,
     } = parts;
     let places = places(lanes);
-    let [none_failed, failed] = match split.has_guards {
-        true => [
+    let [none_failed, failed] = if split.has_guards {
+        [
             quote!(let mut failed = ::overact::lanes::Failed::none();),
             quote!(failed.told()?;),
-        ],
-        false => [TokenStream::new(), TokenStream::new()],
+        ]
+    } else {
+        [TokenStream::new(), TokenStream::new()]
     };
     let (shared, own) = (&split.shared, &split.own);
     let statements = quote! {
@@ -225,9 +226,10 @@ fn arrays(lanes: &Lanes) -> TokenStream {
                     let [first, stride, count] =
                         [place.first, place.stride, place.count].map(unsuffixed);
                     let from = quote!(#of, [#first, #stride]);
-                    match place.count == lanes.legs.len() {
-                        true => quote!(::overact::lanes::scattered(#from, at)),
-                        false => quote!(::overact::lanes::scattered_of_first(#from, #count, at)),
+                    if place.count == lanes.legs.len() {
+                        quote!(::overact::lanes::scattered(#from, at))
+                    } else {
+                        quote!(::overact::lanes::scattered_of_first(#from, #count, at))
                     }
                 });
                 quote!(let #name = [#(#places),*];)

@@ -149,9 +149,10 @@ impl<'a> Split<'a> {
                 }
             }
         }
-        let (zeros, after) = match are_scattered(places) {
-            true => local(shape),
-            false => (zeros(&is_written), TokenStream::new()),
+        let (zeros, after) = if are_scattered(places) {
+            local(shape)
+        } else {
+            (zeros(&is_written), TokenStream::new())
         };
         Parts {
             zeros,
@@ -166,12 +167,11 @@ impl<'a> Split<'a> {
         let value = self.own_writer.tokens(value);
         let [first, stride, count] = [place.first, place.stride, place.count].map(unsuffixed);
         let row = quote!(&mut output[#row]);
-        match place.count == self.lanes.legs.len() {
-            true => quote!(::overact::lanes::put(#row, [#first, #stride], at, #value);),
-            false => {
-                let place = quote!([#first, #stride]);
-                quote!(::overact::lanes::put_of_first(#row, #place, #count, at, #value);)
-            }
+        if place.count == self.lanes.legs.len() {
+            quote!(::overact::lanes::put(#row, [#first, #stride], at, #value);)
+        } else {
+            let place = quote!([#first, #stride]);
+            quote!(::overact::lanes::put_of_first(#row, #place, #count, at, #value);)
         }
     }
 }

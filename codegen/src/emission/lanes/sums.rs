@@ -49,9 +49,10 @@ pub(super) fn parts(
             .as_ref()
             .map(|added| quote!(::overact::lanes::sum(&#added)));
         let parts: Vec<TokenStream> = shared.into_iter().chain(added).collect();
-        match parts.is_empty() {
-            true => quote!(0.0),
-            false => quote!(#(#parts)+*),
+        if parts.is_empty() {
+            quote!(0.0)
+        } else {
+            quote!(#(#parts)+*)
         }
     });
     let follows = following(model, split, sums);
@@ -133,9 +134,10 @@ fn following(model: &RobotModel, split: &Split<'_>, sums: &Sums) -> TokenStream 
         Some(output),
     );
     let (statements, value) = (written.statements, written.value);
-    match statements.is_empty() {
-        true => value,
-        false => quote!({ #statements #value }),
+    if statements.is_empty() {
+        value
+    } else {
+        quote!({ #statements #value })
     }
 }
 
@@ -149,8 +151,9 @@ fn along(row: &[Option<TokenStream>]) -> TokenStream {
         Some(quote!(#number * solution[#at]))
     });
     let parts: Vec<TokenStream> = products.chain(last.clone()).collect();
-    match parts.is_empty() {
-        true => quote!(0.0),
-        false => quote!(#(#parts)+*),
+    if parts.is_empty() {
+        quote!(0.0)
+    } else {
+        quote!(#(#parts)+*)
     }
 }

@@ -60,9 +60,10 @@ impl Work {
             }
         };
         let work = quote!(Legs { #(#names),* });
-        let run = match lanes.legs.len() <= FEW {
-            true => quote!(::overact::lanes::few),
-            false => quote!(::overact::lanes::many),
+        let run = if lanes.legs.len() <= FEW {
+            quote!(::overact::lanes::few)
+        } else {
+            quote!(::overact::lanes::many)
         };
         Self {
             item,

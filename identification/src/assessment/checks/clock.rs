@@ -46,17 +46,14 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let harm = harm(context, scores, one);
         let sense = if accused.size() > 0.0 { "high" } else { "low" };
         let deviation = percent(accused.deviation);
-        let words = match accused.size().abs() > LARGEST {
-            true => format!(
+        let words = if accused.size().abs() > LARGEST { format!(
                 "gravity and motion do not go together in the torques, as if the sampling frequency were far too {sense}; {}. Check the time column and its unit, `gravity` of the description, and whether the log has the whole torques: with a compensation of gravity that the drive adds",
                 harm.words()
-            ),
-            false => format!(
+            ) } else { format!(
                 "the sampling frequency looks {} % too {sense} (standard deviation {deviation} %); {}. Check the time column and its unit",
                 percent(accused.size().abs()),
                 harm.words()
-            ),
-        };
+            ) };
         Check { words, ..check }.because(&harm)
     });
     Ok(checks.collect())

@@ -44,9 +44,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let range = ranges.into_iter().fold(0.0, f64::max);
         let closing = Closing {
             filtered: watched.closure_residual,
-            as_logged: match watched.closure_residual > limit {
-                true => positions::unfiltered_miss(context.model, log)?,
-                false => None,
+            as_logged: if watched.closure_residual > limit {
+                positions::unfiltered_miss(context.model, log)?
+            } else {
+                None
             },
             limit,
             harmless: HARMLESS * range * finest(context),

@@ -124,9 +124,10 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
         "{words}: velocities around reversals are rounded off, which biases dry friction; raise `filter_cutoff`"
     ));
     let dry = dry_friction(context);
-    Some(match dry.is_empty() {
-        true => check.found(),
-        false => check.allowing(Grade::UseListed).spoiling(dry),
+    Some(if dry.is_empty() {
+        check.found()
+    } else {
+        check.allowing(Grade::UseListed).spoiling(dry)
     })
 }
 

@@ -82,18 +82,20 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let paces = scores.paces();
     let fastest = paces.iter().flatten().map(|pace| pace.frequency);
     let is_far = accused.size().abs() * fastest.fold(0.0, f64::max) > LARGEST;
-    let by = match is_far {
-        true => String::from("far"),
-        false => format!("{} ms", number(size.abs())),
+    let by = if is_far {
+        String::from("far")
+    } else {
+        format!("{} ms", number(size.abs()))
     };
     let words = format!(
         "{whose} {by} {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no key shifts them: {}or give the two their own times in two files",
         if size > 0.0 { "behind" } else { "before" },
         number(deviation),
         harm.words(),
-        match is_far {
-            true => String::new(),
-            false => format!("{}, ", shifted(size, context)),
+        if is_far {
+            String::new()
+        } else {
+            format!("{}, ", shifted(size, context))
         }
     );
     let check = Check { words, ..check }.because(&harm);
@@ -112,14 +114,15 @@ fn shifted(delay: f64, context: &Context<'_>) -> String {
         .map_or(0.0, crate::data::Log::sampling_frequency);
     let samples = (1e-3 * delay.abs() * rate).round();
     let direction = if delay > 0.0 { "up" } else { "down" };
-    match samples >= 1.0 {
-        true => format!(
+    if samples >= 1.0 {
+        format!(
             "move the torques' columns of the log {direction} by {samples} {} before it is read",
             if samples == 1.0 { "line" } else { "lines" }
-        ),
-        false => String::from(
+        )
+    } else {
+        String::from(
             "interpolate the torques' columns of the log at earlier or later times before it is read",
-        ),
+        )
     }
 }
 

@@ -77,14 +77,18 @@ fn percent(value: f64) -> String {
 fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
     let visible: Vec<String> = detectable
         .iter()
-        .map(|one| match one.size.is_finite() {
-            true => format!("`{}` {} %", one.name, percent(one.size)),
-            false => format!("`{}` not at all", one.name),
+        .map(|one| {
+            if one.size.is_finite() {
+                format!("`{}` {} %", one.name, percent(one.size))
+            } else {
+                format!("`{}` not at all", one.name)
+            }
         })
         .collect();
-    let which = match detectable.iter().all(|one| one.size.is_finite()) {
-        true => "no drive",
-        false => "no drive of which these data tell",
+    let which = if detectable.iter().all(|one| one.size.is_finite()) {
+        "no drive"
+    } else {
+        "no drive of which these data tell"
     };
     let words = format!(
         "{which} has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",

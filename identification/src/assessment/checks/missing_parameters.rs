@@ -154,9 +154,10 @@ fn others(
 /// Names the others, as the end of a sentence.
 fn too(others: &[(String, Harm)]) -> String {
     let names: Vec<String> = others.iter().map(|(name, _)| format!("`{name}`")).collect();
-    match names.is_empty() {
-        true => String::new(),
-        false => format!("; the same test finds {}, too", names.join(", ")),
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!("; the same test finds {}, too", names.join(", "))
     }
 }
 
@@ -194,9 +195,10 @@ impl Told {
     fn near_standstill(&self, context: &Context<'_>, actuator: usize) -> String {
         let info = context.model.info();
         let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
-        let (unit, rate) = match revolute {
-            true => ("N m", "rad/s"),
-            false => ("N", "m/s"),
+        let (unit, rate) = if revolute {
+            ("N m", "rad/s")
+        } else {
+            ("N", "m/s")
         };
         let identified = context.watched.iter().take(context.dataset.runs.len());
         let speeds = identified.filter_map(|one| one.monitor.speeds().get(actuator).copied());

@@ -31,23 +31,25 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 significant(seconds, 2),
                 first.name()
             );
-            let (about, words) = match number < identified {
-                true => (
+            let (about, words) = if number < identified {
+                (
                     About::Data,
                     format!(
                         "{of}: they count twice, and all intervals are too narrow. Give each sample once: cut the runs where they do not overlap"
                     ),
-                ),
-                false => (
+                )
+            } else {
+                (
                     About::Extrapolation,
                     format!(
                         "{of}, though the run is held out: it says nothing of motions that were not identified from. Hold out another run"
                     ),
-                ),
+                )
             };
-            let grade = match shared.part > HARMLESS {
-                true => Grade::DoNotUse,
-                false => Grade::Use,
+            let grade = if shared.part > HARMLESS {
+                Grade::DoNotUse
+            } else {
+                Grade::Use
             };
             let check = Check::new(CheckKind::RepeatedSamples, about, words)
                 .in_run(log.name())

@@ -130,16 +130,17 @@ impl Told {
     /// The failed check of dry friction that differs around reversals.
     fn bent(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
         let harm = harm(of.0, of.1, one);
-        let words = match one.accused.size() > 0.0 {
-            true => format!(
+        let words = if one.accused.size() > 0.0 {
+            format!(
                 "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. So it is where positions and torques have passed the same filter before they were logged, or where friction bends before it slides: log without filters, or leave out equations near standstill (`standstill_velocity`)",
                 time(one.accused.size()),
                 harm.words()
-            ),
-            false => format!(
+            )
+        } else {
+            format!(
                 "dry friction is larger around reversals than the signs of the velocities make it; {}. Look at how velocities are filtered (`velocity_dead_band`, the cutoff), or leave out equations near standstill (`standstill_velocity`)",
                 harm.words()
-            ),
+            )
         };
         self.check(of, one, words).because(&harm)
     }

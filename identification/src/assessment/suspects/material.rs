@@ -87,9 +87,10 @@ impl<'a> Material<'a> {
         let alike = nearby.alike(motion, [&torques, &torque_turns], jacobians, &actuators)?;
         let suspects = pass.frame.suspects;
         let moved = suspects.iter().any(|one| matches!(one, Suspect::Offset(_)));
-        let misread = match moved {
-            true => nearby.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?,
-            false => Vec::new(),
+        let misread = if moved {
+            nearby.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?
+        } else {
+            Vec::new()
         };
         let payload = match sizes.payload_parameters {
             0 => Vec::new(),

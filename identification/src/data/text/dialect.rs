@@ -83,9 +83,10 @@ impl Dialect {
     /// The problem of a line with more cells than the first one.
     pub(super) fn wider(&self, file: &str, line: usize, cells: usize) -> Problem {
         let names = self.most;
-        let message = match self.has_header {
-            true => format!("the line has {cells} columns, but the header names {names}"),
-            false => format!("the line has {cells} columns, but the first one has {names}"),
+        let message = if self.has_header {
+            format!("the line has {cells} columns, but the header names {names}")
+        } else {
+            format!("the line has {cells} columns, but the first one has {names}")
         };
         let problem = Problem::new(Code::LOG_SHAPE, message).file(file).line(line);
         problem.help(match (self.separator, self.has_header) {

@@ -299,9 +299,10 @@ impl<'a> Context<'a> {
                 }
             }
         }
-        let gram = match wanted {
-            true => square(&rows),
-            false => DMatrix::zeros(0, 0),
+        let gram = if wanted {
+            square(&rows)
+        } else {
+            DMatrix::zeros(0, 0)
         };
         Section { scores, gram }
     }

@@ -159,9 +159,10 @@ fn estimated(parameter: Option<&ParameterEstimate>, truth: bool) -> Vec<Cell> {
         })
     } else {
         half_width_percent(one).map_or_else(Cell::nothing, |percent| {
-            Cell::number(match percent < LARGEST_PERCENT {
-                true => significant(percent, 2),
-                false => format!("> {LARGEST_PERCENT:.0}"),
+            Cell::number(if percent < LARGEST_PERCENT {
+                significant(percent, 2)
+            } else {
+                format!("> {LARGEST_PERCENT:.0}")
             })
         })
     };

@@ -66,12 +66,13 @@ impl Shape {
                 member.joint.stribeck = Some(dice.distance(0.05, 2.0));
             }
             if dice.chance(0.15) {
-                let own = match member.parameters.iter().any(|one| SYMMETRIC.contains(one)) {
+                let own = if member.parameters.iter().any(|one| SYMMETRIC.contains(one)) {
                     // Both directions together would be symmetric friction again.
-                    true => [[0, 2], [1, 3]]
+                    [[0, 2], [1, 3]]
                         .map(|pair| directed[dice.pick(&pair)])
-                        .to_vec(),
-                    false => directed.clone(),
+                        .to_vec()
+                } else {
+                    directed.clone()
                 };
                 member.parameters.extend(dice.some(&own));
             }

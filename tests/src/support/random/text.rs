@@ -109,9 +109,12 @@ impl Sketch {
                     .filter(|&at| driven(&shape.members[at]))
                     .collect();
                 let several = of.len() > 1;
-                names.extend(of.iter().map(|joint| match several {
-                    true => format!("leg{leg}.{}", joint + 1),
-                    false => format!("leg{leg}"),
+                names.extend(of.iter().map(|joint| {
+                    if several {
+                        format!("leg{leg}.{}", joint + 1)
+                    } else {
+                        format!("leg{leg}")
+                    }
                 }));
             }
         }
