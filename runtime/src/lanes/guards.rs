@@ -70,7 +70,7 @@ pub fn reach<V: Vector, const LEGS: usize>(
         radicand >= overact_core::limits::DOUBLE.radicand * home
     };
     if !radicands.every(is_reached) {
-        failed.note(legs, at, &|lane, leg| {
+        failed.note(legs, at, &move |lane, leg| {
             guard::reach(radicands.lane(lane), homes.lane(lane), leg)
         });
     }
@@ -87,7 +87,7 @@ pub fn size<V: Vector, const LEGS: usize>(
 ) {
     let values = value.of_legs(at.1);
     if !values.every(|value| value.abs() <= most) {
-        failed.note(legs, at, &|lane, _| guard::size(values.lane(lane), most));
+        failed.note(legs, at, &move |lane, _| guard::size(values.lane(lane), most));
     }
 }
 
@@ -109,7 +109,7 @@ pub fn leg<V: Vector, const LEGS: usize>(
         determinant.abs() > overact_core::SINGULAR * home
     };
     if !determinants.every(is_regular) {
-        failed.note(legs, at, &|lane, leg| {
+        failed.note(legs, at, &move |lane, leg| {
             guard::leg(determinants.lane(lane), homes.lane(lane), leg)
         });
     }
@@ -128,7 +128,7 @@ pub fn closed<V: Vector, const LEGS: usize>(
 ) {
     let gaps = gap.of_legs(at.1);
     if !gaps.every(|gap| gap.abs() <= within) {
-        failed.note(legs, at, &|lane, leg| {
+        failed.note(legs, at, &move |lane, leg| {
             guard::closed(gaps.lane(lane), within, leg)
         });
     }
