@@ -112,7 +112,7 @@ pub enum DiagnosticKind {
 }
 
 /// Largest number of characters of a message.
-const LONGEST_MESSAGE: usize = 2000;
+const LONGEST_MESSAGE: usize = 800;
 
 /// Shortens a message that contains a very long value, in the middle.
 fn short(message: String) -> String {
