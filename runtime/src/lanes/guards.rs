@@ -87,7 +87,9 @@ pub fn size<V: Vector, const LEGS: usize>(
 ) {
     let values = value.of_legs(at.1);
     if !values.every(|value| value.abs() <= most) {
-        failed.note(legs, at, &move |lane, _| guard::size(values.lane(lane), most));
+        failed.note(legs, at, &move |lane, _| {
+            guard::size(values.lane(lane), most)
+        });
     }
 }
 
