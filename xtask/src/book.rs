@@ -57,16 +57,16 @@ pub(crate) fn check() -> Result<(), Failure> {
 /// The page of all errors.
 fn errors() -> String {
     let mut text = String::from(
-        "# Every error\n\nEach error has a code, `error[OA102]` on a terminal and `\"code\": \"OA102\"` with `--json`, \
-         and `overact explain OA102` prints what stands here. A code that has been given keeps its meaning. \
-         This page is written by `cargo xtask book`.\n",
+        "# Every error\n\nEach error has a code: `error[OA102]` on a terminal, `\"code\": \"OA102\"` with `--json`. \
+         `overact explain OA102` prints its entry on this page. The meaning of a code never changes. \
+         `cargo xtask book` writes this page.\n",
     );
     for (area, table) in Code::areas() {
         let _ = write!(text, "\n## {area}\n");
         for one in *table {
             let _ = write!(
                 text,
-                "\n### {}: {}\n\n{}\n\n**Way out.** {}\n",
+                "\n### {}: {}\n\n{}\n\n**Remedy.** {}\n",
                 one.code,
                 one.title,
                 escaped(one.cause),

@@ -88,7 +88,7 @@ const SECTIONS: [(&str, &str); 19] = [
         "### `[[leg.NAME.motor]]`: motors that turn several joints",
         "",
     ),
-    ("## `[prior]`: what is believed before the data speak", ""),
+    ("## `[prior]`: prior values and bounds", ""),
     ("## `[excitation]`: limits of exciting runs", ""),
 ];
 

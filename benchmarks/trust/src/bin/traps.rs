@@ -77,7 +77,7 @@ const WORDS: usize = 200;
 /// One row for each trap of a robot.
 fn table(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
-        "| trap | worst error | of what may be used | visible | honestly | power | verdict | stands | checks | first words |\n|---|---:|---:|---:|---:|---:|---|---|---|---|\n",
+        "| fault | worst error | usable parameters | visible | detectable by the report | power | verdict | outcome | checks | first message |\n|---|---:|---:|---:|---:|---:|---|---|---|---|\n",
     );
     let number = |worst: &Option<(f64, String)>| match worst {
         Some((size, name)) if size.is_nan() => format!("undefined `{name}`"),
