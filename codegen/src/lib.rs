@@ -16,23 +16,22 @@
 //! | [`derivation`] | mechanism | expressions of the algebra `cas` |
 //! | `selection` | regressor | its form, and its present, independent and combined columns |
 //! | [`lowering`] | expressions | a straight-line program with its operation count |
-//! | [`emission`], [`c`] | programs | Rust, C |
-//! | [`evaluation`] | programs | numbers, block by block |
+//! | [`backends`] | programs | Rust, C |
+//! | [`interpreter`] | programs | numbers, block by block |
 //!
 //! The crate is pure: it maps text to a model or diagnostics.
 
-pub mod c;
+pub mod backends;
 #[allow(unreachable_pub, reason = "public to the stages that stand above")]
 mod cas;
 mod checked;
 mod choice;
 mod compile;
 pub mod derivation;
-pub mod emission;
-pub mod evaluation;
 mod float;
 #[doc(hidden)]
 pub mod internals;
+pub mod interpreter;
 pub mod lowering;
 pub mod mechanism;
 mod model;
@@ -41,8 +40,8 @@ mod request;
 mod runtime;
 mod selection;
 mod total_cost;
-mod writing;
 
+pub use backends::{c, rust};
 pub use checked::{Checked, check};
 pub use choice::{Choice, Group, UnknownFunction, serves_model};
 pub use compile::{Compiled, compile, compile_with, model_with};

@@ -11,7 +11,7 @@ mod expansions;
 
 use arguments::Arguments;
 use expansions::Expansion;
-use overact_codegen::{Request, Source, VERSIONS, compile_with, emission};
+use overact_codegen::{Request, Source, VERSIONS, backends::rust, compile_with};
 use proc_macro::TokenStream;
 use quote::quote;
 use syn::punctuated::Punctuated;
@@ -143,13 +143,13 @@ fn expansion(arguments: &Arguments, robot: &ItemStruct, source: &Source) -> syn:
             format!("{count} {noun} in the robot's description\n\n{list}"),
         )
     })?;
-    let emission::Robot {
+    let rust::Robot {
         documentation,
         items,
         ..
-    } = emission::robot(&compiled.model, &robot.ident);
+    } = rust::robot(&compiled.model, &robot.ident);
     let expansion = Expansion {
-        summary: emission::summary(&compiled.model),
+        summary: rust::summary(&compiled.model),
         documentation,
         items: items.to_string(),
     };
@@ -169,7 +169,7 @@ fn derives(robot: &ItemStruct) -> Option<Attribute> {
             own.extend(path.segments.last().map(|last| last.ident.to_string()));
         }
     }
-    let mut missing: Vec<Path> = emission::derives();
+    let mut missing: Vec<Path> = rust::derives();
     missing.retain(|path| {
         let last = path.segments.last();
         last.is_some_and(|last| !own.contains(&last.ident.to_string()))

@@ -4,7 +4,7 @@ use crate::{
     problems::{json, thrown},
     progress::tell,
 };
-use overact_codegen::{Effort, Request, Source, c, diagnostic::Code, emission};
+use overact_codegen::{Effort, Request, Source, backends::c, backends::rust, diagnostic::Code};
 use overact_robot::{CompiledFile, Inspection, Problem};
 use wasm_bindgen::prelude::*;
 
@@ -34,7 +34,7 @@ impl Model {
             ..Request::with_effort(effort)
         };
         let robot = CompiledFile::new(Source::new(name, text), &request).map_err(thrown)?;
-        let rust = emission::file(&robot.model, name);
+        let rust = rust::file(&robot.model, name);
         let c = c::files(&robot.model, &format!("{name} --lang c"));
         let inspection = json(&Inspection::new(robot))?;
         Ok(Self {

@@ -4,7 +4,7 @@
 //! `cargo run --release --example rows ../robots/dualv.toml 1000000`.
 
 use overact::{Columns, Function, Model};
-use overact_codegen::evaluation::{Evaluator, Rows};
+use overact_codegen::interpreter::{Evaluator, Rows};
 use overact_robot::Robot;
 use std::{error::Error, time::Instant};
 

@@ -4,7 +4,7 @@ use overact::{Error, Function, Input, Model, SampleError, guard, limits::DOUBLE}
 use overact_codegen::{
     CompiledFunction, RobotModel,
     derivation::MotionInput,
-    evaluation::{Evaluator, Rows},
+    interpreter::{Evaluator, Rows},
 };
 use overact_robot::{InterpretedRobot, Robot};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -8,7 +8,7 @@
 //! does not affect these tests. The partitions differ in one line, so the variants are generated
 //! from one description.
 
-use overact_codegen::{Effort, Request, Source, compile_with, description, emission};
+use overact_codegen::{Effort, Request, Source, backends::rust, compile_with, description};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
@@ -134,7 +134,7 @@ fn write_as(
     let source = Source::new(name.as_str(), text);
     let compiled = compile_with(&source, request).map_err(|errors| errors.render_plain(&source))?;
     let file = Path::new(&env::var("OUT_DIR")?).join(format!("{module}.rs"));
-    fs::write(file, emission::file(&compiled.model, &name))?;
+    fs::write(file, rust::file(&compiled.model, &name))?;
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! The same description gives the same bytes, whatever was compiled before.
 
-use overact_codegen::emission;
+use overact_codegen::backends::rust;
 use overact_tests::support::{Failure, description, model_of, repository};
 use overact_tier::by_tier;
 use std::fs;
@@ -16,7 +16,7 @@ fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
             let start = Instant::now();
             let model = model_of(&source)?;
             let compiled = start.elapsed();
-            files.push(emission::file(&model, &source.name));
+            files.push(rust::file(&model, &source.name));
             println!(
                 "{}: compiled in {compiled:.0?}, with emission {:.0?}",
                 source.name,
@@ -31,7 +31,7 @@ fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
 #[test]
 fn threads_give_the_same_bytes() -> Result<(), Failure> {
     let source = description(by_tier(["five_bar", "dualv"]))?;
-    let one = || model_of(&source).map(|model| emission::file(&model, &source.name));
+    let one = || model_of(&source).map(|model| rust::file(&model, &source.name));
     let (a, b) = std::thread::scope(|scope| {
         let (a, b) = (scope.spawn(one), scope.spawn(one));
         (a.join(), b.join())
@@ -46,7 +46,7 @@ fn generated_text_names_no_folder_of_this_machine() -> Result<(), Failure> {
     let here = repository("").canonicalize()?;
     let here = here.to_string_lossy();
     let source = description(by_tier(["emps", "five_bar"]))?;
-    let file = emission::file(&model_of(&source)?, &source.name);
+    let file = rust::file(&model_of(&source)?, &source.name);
     assert!(!file.contains(&*here));
     for entry in fs::read_dir(repository("generated/src"))? {
         let path = entry?.path();

@@ -6,7 +6,7 @@
 //! processor time.
 
 use overact_codegen::derivation::JointsBy;
-use overact_codegen::{Effort, Request, RobotModel, Source, compile_with, emission};
+use overact_codegen::{Effort, Request, RobotModel, Source, backends::rust, compile_with};
 use overact_tests::support::library::stems;
 use overact_tests::support::random::Sketch;
 use overact_tests::support::{Failure, description, repository};
@@ -43,7 +43,8 @@ fn a_way_to_a_panic_is_found() -> Result<(), Failure> {
         return Ok(());
     }
     let (stem, text) = ("emps".to_owned(), module("emps")?);
-    let checked = "::overact::guard::finite(&[(\"joints\", joints)])?;";
+    let checked = "::overact::guard::within(&[(\"joints\", joints, 1e12)])?;";
+    assert!(text.contains(checked));
     let panics = format!("{checked} assert!(joints[0] < 3.0);");
     let said = link("panics", &[(stem, text.replacen(checked, &panics, 1))])?;
     assert!(said.is_some_and(|said| said.contains(MARK)));
@@ -53,7 +54,7 @@ fn a_way_to_a_panic_is_found() -> Result<(), Failure> {
 /// Generated module of a robot.
 fn module(stem: &str) -> Result<String, Failure> {
     let source = description(stem)?;
-    Ok(emission::file(&model(&source)?, &source.name))
+    Ok(rust::file(&model(&source)?, &source.name))
 }
 
 /// Module of the first random mechanism whose joints need Newton's method; no robot of the library
@@ -64,7 +65,7 @@ fn with_newtons_method() -> Result<String, Failure> {
     let needs = |model: &RobotModel| model.selection.joints == JointsBy::Newton;
     let found = models.find(|(model, _)| needs(model));
     let (model, source) = found.ok_or("no mechanism needs Newton's method")?;
-    Ok(emission::file(&model, &source.name))
+    Ok(rust::file(&model, &source.name))
 }
 
 fn model(source: &Source) -> Result<RobotModel, Failure> {

@@ -5,7 +5,7 @@
 //! tier does this for the smallest vectors and for run-time detection, which takes a minute; the
 //! nightly tier for AVX2 and AVX-512 as well.
 
-use overact_codegen::{Effort, Request, compile_with, emission};
+use overact_codegen::{Effort, Request, backends::rust, compile_with};
 use overact_tests::support::{Failure, description, repository};
 use std::fs;
 use std::path::Path;
@@ -102,7 +102,7 @@ fn module(stem: &str, side_by_side: bool) -> Result<String, Failure> {
         ..Request::with_effort(Effort::None)
     };
     let compiled = compile_with(&source, &request).map_err(|e| e.render_plain(&source))?;
-    Ok(emission::file(&compiled.model, &source.name))
+    Ok(rust::file(&compiled.model, &source.name))
 }
 
 fn run(folder: &Path, flags: &str, features: &[&str]) -> Result<(), Failure> {

@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::files::read;
-use overact_codegen::{Effort, Request, Source, compile_with, emission};
+use overact_codegen::{Effort, Request, Source, backends::rust, compile_with};
 use serde_json::json;
 
 /// Prints a JSON document on a description.
@@ -20,7 +20,7 @@ pub(crate) fn print(effort: &str, file: &str) -> Result<(), Failure> {
         (function.name.clone(), told)
     });
     let functions: serde_json::Map<String, serde_json::Value> = functions.collect();
-    let code = emission::file(&model, file);
+    let code = rust::file(&model, file);
     let document = json!({
         "joints": model.mechanism.joints().len(),
         "dof": model.mechanism.dof(),

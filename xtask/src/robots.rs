@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::files::{read, stems};
 use crate::hash::hash;
-use overact_codegen::{Effort, Request, Source, TotalCost, compile_with, emission};
+use overact_codegen::{Effort, Request, Source, TotalCost, backends::rust, compile_with};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -69,6 +69,6 @@ fn module(stem: &str) -> Result<Module, Failure> {
         stem: stem.to_owned(),
         description,
         functions: functions.collect(),
-        text: emission::file(&model, &name),
+        text: rust::file(&model, &name),
     })
 }

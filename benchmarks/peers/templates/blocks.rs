@@ -3,7 +3,7 @@
 //! Prints the shortest times per sample in nanoseconds: function, contiguous blocks, rows.
 use overact::{Columns, Function};
 use overact_codegen::derivation::{MotionInput};
-use overact_codegen::evaluation::{Evaluator, Number, Rows};
+use overact_codegen::interpreter::{Evaluator, Number, Rows};
 use overact_codegen::{Source, compile};
 use overact_timed::{Output, @MODULE@};
 use std::{env, error::Error, fs, hint::black_box, time::Instant};

@@ -5,7 +5,7 @@
 //! program rounds these if the C computes with shorter numbers.
 
 use overact_codegen::Float;
-use overact_codegen::c::Files;
+use overact_codegen::backends::c::Files;
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

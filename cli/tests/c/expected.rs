@@ -3,8 +3,8 @@
 use crate::driver::Call;
 use overact::{Error, Function, Model, guard};
 use overact_codegen::derivation::BodyParameter;
-use overact_codegen::evaluation::Rows;
 use overact_codegen::internals::random_states;
+use overact_codegen::interpreter::Rows;
 use overact_codegen::{CompiledFunction, RobotModel};
 use overact_robot::InterpretedRobot;
 use std::collections::BTreeMap;

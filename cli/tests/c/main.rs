@@ -12,7 +12,9 @@ use driver::{Compiler, Driver, Failure, Question, UNTOUCHED};
 use expected::{Inputs, calls, output, states};
 use overact::{Columns, Function};
 use overact_codegen::derivation::MotionInput;
-use overact_codegen::{Choice, Effort, Float, Request, RobotModel, Source, c, compile_with};
+use overact_codegen::{
+    Choice, Effort, Float, Request, RobotModel, Source, backends::c, compile_with,
+};
 use overact_robot::InterpretedRobot;
 use overact_tier::{by_tier, of_many};
 use std::fs;

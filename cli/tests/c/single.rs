@@ -4,7 +4,7 @@ use crate::driver::{Compiler, Driver, Failure, Question};
 use crate::expected::{Inputs, calls, output, states};
 use crate::extreme::{Errors, check, extremes};
 use crate::{change, difference, folder, model, repository, robots};
-use overact_codegen::{Effort, Float, c};
+use overact_codegen::{Effort, Float, backends::c};
 use overact_robot::InterpretedRobot;
 use overact_tier::{by_tier, is_full};
 

@@ -16,7 +16,7 @@
 //!
 //! The lowering has two evaluators of its own: fingerprints in the field find equal values, and
 //! values with random errors at some states compare accuracy. Programs are evaluated by
-//! [`evaluation`](crate::evaluation).
+//! [`evaluation`](crate::interpreter).
 
 mod dag;
 mod divisors;

@@ -6,7 +6,7 @@ use super::combine::exact_combinations;
 use super::regressor::Regressor;
 use super::search::Search;
 use crate::derivation::{Combination, MotionInput, Selection, Underivable};
-use crate::evaluation::{BLOCK, Evaluator, Rows};
+use crate::interpreter::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Operand, Program};
 use crate::mechanism::states::{State, random_states};
 use crate::mechanism::{BaseColumns, Mechanism};

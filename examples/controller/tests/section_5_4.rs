@@ -5,7 +5,7 @@
 //! Tracking errors are those of Table 4.
 
 use overact::{Columns, Error, Function, Model};
-use overact_codegen::{Choice, Effort, Request, emission};
+use overact_codegen::{Choice, Effort, Request, backends::rust};
 use overact_controller::{ACTUATORS, Controller, Load, Motion, loaded, unloaded};
 use overact_robot::{CompiledFile, Identifier, Robot};
 use overact_simulation::{Control, Desired, Experiment, Run, simulate, simulate_controlled};
@@ -73,7 +73,7 @@ fn modules_are_what_their_parameters_generate() {
             "robots/dualv.toml --parameters examples/controller/{name}.toml --functions {}",
             functions.join(",")
         );
-        let expected = emission::file(&made.model, &label);
+        let expected = rust::file(&made.model, &label);
         // The full texts would fill the screen.
         let same = expected == text;
         assert!(

@@ -6,7 +6,7 @@ use overact::{
     forward::{self, Measured},
     guard,
 };
-use overact_codegen::{derivation::MotionInput, evaluation::Rows};
+use overact_codegen::{derivation::MotionInput, interpreter::Rows};
 
 /// Working memory of forward kinematics.
 #[derive(Debug, Default)]

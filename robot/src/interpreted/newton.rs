@@ -6,7 +6,7 @@ use overact::{
     Error, Model, SampleError,
     inverse::{self, Legs},
 };
-use overact_codegen::{derivation::MotionInput, evaluation::Rows, lowering::Program};
+use overact_codegen::{derivation::MotionInput, interpreter::Rows, lowering::Program};
 
 impl InterpretedRobot {
     /// Joint positions of all poses, pose by pose.

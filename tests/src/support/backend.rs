@@ -3,7 +3,7 @@
 use super::{Failure, Sample};
 use nalgebra::DMatrix;
 use overact_codegen::RobotModel;
-use overact_codegen::evaluation::Rows;
+use overact_codegen::interpreter::Rows;
 use overact_codegen::lowering::Program;
 
 /// A backend that computes a robot's functions by name.

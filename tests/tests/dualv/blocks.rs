@@ -3,8 +3,8 @@
 use overact::{ActuatorGroup, Columns, Function};
 use overact_codegen::CompiledFunction;
 use overact_codegen::derivation::MotionInput;
-use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::internals::{random_states, sample};
+use overact_codegen::interpreter::{BLOCK, Rows};
 use overact_codegen::lowering::Condition;
 use overact_compiled::DualV;
 use overact_tests::reference::robots;

@@ -3,9 +3,9 @@
 //! The cost table pins the operation counts of all functions.
 
 use overact::{Columns, Function};
+use overact_codegen::backends::rust;
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::description::{self, Description};
-use overact_codegen::emission;
 use overact_codegen::internals::{Arena, Derived, derive, random_states};
 use overact_codegen::lowering::{Operand, Operation, Program};
 use overact_codegen::mechanism::Mechanism;
@@ -258,7 +258,7 @@ const OPERATIONS: usize = 404;
 fn emission_of_two_functions() -> Result<(), Failure> {
     let both = [Function::ProjectPlatform, Function::IdmRedPayload];
     let model = searched(|function, _| both.contains(&function))?;
-    let file = emission::file(&model, "robots/dualv.toml");
+    let file = rust::file(&model, "robots/dualv.toml");
     let text = |name: &str| -> Result<String, Failure> {
         let signature = format!("    pub fn {name}(");
         let at = file.find(&signature).ok_or("no such function")?;

@@ -3,7 +3,7 @@
 //! The command line writes the text of `emission::file`, as its own tests check.
 
 use overact::{Columns, Function, Model, redundant_robot};
-use overact_codegen::{Effort, Request, compile_with, emission};
+use overact_codegen::{Effort, Request, backends::rust, compile_with};
 use overact_compiled::partitions;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Backend, Failure, dualv, expected::Expected, repository};
@@ -74,7 +74,7 @@ fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<
     let checked_in = parsed(&fs::read_to_string(repository("generated/src/dualv.rs"))?)?;
     let mut others = vec![("generated/", checked_in)];
     if is_full() {
-        others.push(("the emission", normalised(emission::module(dualv()?))));
+        others.push(("the emission", normalised(rust::module(dualv()?))));
     }
     for (which, tokens) in others {
         let difference = first_difference(&built, &tokens);
@@ -90,12 +90,12 @@ fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<
 #[test]
 fn macro_items_are_those_of_the_module() -> Result<(), Failure> {
     // The macro adds these items to the user's struct, whose name they have.
-    let items = normalised(emission::items(
+    let items = normalised(rust::items(
         dualv()?,
         &Ident::new("DualV", Span::call_site()),
     ));
-    assert!(normalised(emission::module(dualv()?)).ends_with(&items));
-    let other = emission::items(dualv()?, &Ident::new("Mine", Span::call_site()));
+    assert!(normalised(rust::module(dualv()?)).ends_with(&items));
+    let other = rust::items(dualv()?, &Ident::new("Mine", Span::call_site()));
     assert_eq!(normalised(other).replace("Mine", "DualV"), items);
     Ok(())
 }
@@ -191,7 +191,7 @@ fn small_generated_modules_are_fresh() -> Result<(), Failure> {
         let source = overact_tests::support::description(stem)?;
         let searched = Request::with_effort(Effort::Thorough);
         let compiled = compile_with(&source, &searched).map_err(|e| e.render_plain(&source))?;
-        let file = emission::file(&compiled.model, &source.name);
+        let file = rust::file(&compiled.model, &source.name);
         let module = repository(&format!("generated/src/{stem}.rs"));
         let difference = first_difference(&file, &fs::read_to_string(module)?);
         assert!(

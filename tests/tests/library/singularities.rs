@@ -10,7 +10,7 @@
 use nalgebra::DMatrix;
 use overact::Error;
 use overact_codegen::derivation::function_name;
-use overact_codegen::evaluation::Rows;
+use overact_codegen::interpreter::Rows;
 use overact_codegen::lowering::Condition;
 use overact_codegen::{Effort, Request, RobotModel, Source, compile_with};
 use overact_compiled::partitions;

@@ -3,7 +3,7 @@
 use super::{Arguments, Language};
 use crate::failure::{Failure, Problem};
 use overact_codegen::diagnostic::Code;
-use overact_codegen::{c, emission};
+use overact_codegen::{backends::c, backends::rust};
 use overact_robot::CompiledFile;
 use serde_json::{Value, json};
 use std::{
@@ -49,7 +49,7 @@ impl Module {
             Language::Rust => vec![Part {
                 name: format!("{}.rs", module_name(path)),
                 file: rust_file(path, arguments),
-                code: emission::file(&robot.model, &labels),
+                code: rust::file(&robot.model, &labels),
             }],
             Language::C => {
                 let files = c::files(&robot.model, &labels);

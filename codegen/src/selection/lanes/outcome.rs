@@ -2,7 +2,7 @@
 
 use crate::cas::InputElement;
 use crate::derivation::{BodyParameter, ROWS, SUMS};
-use crate::evaluation::Rows;
+use crate::interpreter::Rows;
 use crate::lowering::{Array, Column, Condition, Elements, Entry, Gathered, Lanes, LegRows};
 use crate::lowering::{Operand, Program, Sums};
 use crate::mechanism::states::{State, random_states};

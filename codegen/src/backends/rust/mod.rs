@@ -21,9 +21,9 @@ mod layout;
 mod model_impl;
 mod runtime;
 
+use crate::backends::writing::{labels::Labels, legend, operations, text};
 use crate::float::Float;
 use crate::model::RobotModel;
-use crate::writing::{labels::Labels, legend, operations, text};
 use function::Item;
 use layout::Sections;
 use proc_macro2::{Ident, Span, TokenStream};

@@ -5,12 +5,12 @@ use super::expression::{Writer, fails};
 use super::lines::documentation;
 use super::naming::Naming;
 use super::tables::number;
+use crate::backends::writing::body::Body;
+use crate::backends::writing::labels::Labels;
+use crate::backends::writing::operations;
+use crate::backends::writing::outline::{Outline, Table};
 use crate::lowering::Array;
 use crate::model::{CompiledFunction, RobotModel};
-use crate::writing::body::Body;
-use crate::writing::labels::Labels;
-use crate::writing::operations;
-use crate::writing::outline::{Outline, Table};
 use overact_core::Extent;
 
 /// A function as its parts.

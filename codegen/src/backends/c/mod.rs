@@ -35,9 +35,9 @@ mod runtime;
 mod single;
 mod tables;
 
+use crate::backends::writing::{labels::Labels, legend, text};
 use crate::float::Float;
 use crate::model::RobotModel;
-use crate::writing::{labels::Labels, legend, text};
 use function::Written;
 use naming::Naming;
 

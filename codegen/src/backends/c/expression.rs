@@ -4,10 +4,10 @@ use super::errors;
 use super::lines::{code, comment_text};
 use super::naming::Naming;
 use super::tables::number;
+use crate::backends::writing::body::Body;
+use crate::backends::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 use crate::lowering::{Array, Condition};
 use crate::model::RobotModel;
-use crate::writing::body::Body;
-use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 
 /// Indentation of a function's body.
 const INDENT: usize = 4;

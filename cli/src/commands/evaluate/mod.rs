@@ -17,7 +17,7 @@ use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     Effort, Request, RobotModel,
     derivation::{MotionInput, function_name},
-    evaluation::Rows,
+    interpreter::Rows,
     lowering::Program,
     mechanism::Mechanism,
     model_with,

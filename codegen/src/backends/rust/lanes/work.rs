@@ -3,7 +3,7 @@
 //! The vectors are chosen at run time, when the function is called.
 
 use super::{FEW, Loop};
-use crate::emission::expression::{array_type, ident};
+use crate::backends::rust::expression::{array_type, ident};
 use crate::float::Float;
 use crate::lowering::{Elements, Gathered, Lanes};
 use crate::model::CompiledFunction;
@@ -11,16 +11,16 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 /// The function as a type, and the call.
-pub(in crate::emission) struct Work {
+pub(in crate::backends::rust) struct Work {
     /// The type and its implementation.
-    pub(in crate::emission) item: TokenStream,
+    pub(in crate::backends::rust) item: TokenStream,
     /// The value of a call.
-    pub(in crate::emission) value: TokenStream,
+    pub(in crate::backends::rust) value: TokenStream,
 }
 
 impl Work {
     /// The type of a function in lanes.
-    pub(in crate::emission) fn new(
+    pub(in crate::backends::rust) fn new(
         function: &CompiledFunction,
         lanes: &Lanes,
         written: &Loop,

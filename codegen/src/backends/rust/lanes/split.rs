@@ -1,10 +1,10 @@
 //! Splits statements of a program in lanes into shared ones and those of a leg.
 
 use super::{Parts, home, unsuffixed};
-use crate::emission::expression::{Writer, magnitude, number};
+use crate::backends::rust::expression::{Writer, magnitude, number};
+use crate::backends::writing::statement::{Expression, Pair, Statement};
 use crate::float::Float;
 use crate::lowering::{Column, Condition, Elements, Lanes, OfLegs};
-use crate::writing::statement::{Expression, Pair, Statement};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use std::collections::HashSet;

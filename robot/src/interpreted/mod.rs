@@ -15,7 +15,7 @@ use overact::{
 use overact_codegen::{
     RobotModel,
     derivation::MotionInput,
-    evaluation::{Evaluator, Failed, Rows},
+    interpreter::{Evaluator, Failed, Rows},
     lowering::{Array, Condition, Program},
     mechanism::Mechanism,
 };

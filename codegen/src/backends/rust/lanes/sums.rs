@@ -5,13 +5,13 @@
 
 use super::split::{Split, is_zero};
 use super::{Parts, places, rows as rows_of, unsuffixed};
-use crate::emission::expression::{self, Writer};
+use crate::backends::rust::expression::{self, Writer};
+use crate::backends::writing::body::Body;
+use crate::backends::writing::labels::Labels;
+use crate::backends::writing::statement::Expression;
 use crate::float::Float;
 use crate::lowering::{LegRows, Sums};
 use crate::model::RobotModel;
-use crate::writing::body::Body;
-use crate::writing::labels::Labels;
-use crate::writing::statement::Expression;
 use proc_macro2::TokenStream;
 use quote::quote;
 

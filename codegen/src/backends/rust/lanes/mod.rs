@@ -10,11 +10,11 @@ mod work;
 
 use super::expression::{self, ident, number};
 use super::layout::Sections;
+use crate::backends::writing::body::Body;
+use crate::backends::writing::labels::Labels;
 use crate::float::Float;
 use crate::lowering::{Elements, Gathered, Lanes, Operand};
 use crate::model::{CompiledFunction, RobotModel};
-use crate::writing::body::Body;
-use crate::writing::labels::Labels;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use split::Split;

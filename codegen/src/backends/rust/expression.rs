@@ -1,9 +1,9 @@
 //! The body of a function as tokens.
 
+use crate::backends::writing::body::Body;
+use crate::backends::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 use crate::float::Float;
 use crate::lowering::{Array, Condition};
-use crate::writing::body::Body;
-use crate::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
 use overact_core::ActuatorGroup;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;

@@ -3,7 +3,7 @@
 use crate::Request;
 use crate::compile::compile_with;
 use crate::derivation::MotionInput;
-use crate::evaluation::Rows;
+use crate::interpreter::Rows;
 use crate::lowering::{Array, Entry, Operand, Program};
 use crate::mechanism::states::{State, random_states};
 use crate::model::RobotModel;
@@ -118,8 +118,8 @@ fn meanings(model: &RobotModel, state: &State) -> HashMap<String, f64> {
 #[test]
 fn names_are_true() {
     let robots = [
-        (include_str!("../../../robots/dualv.toml"), 150),
-        (include_str!("../../../robots/five_bar.toml"), 40),
+        (include_str!("../../../../robots/dualv.toml"), 150),
+        (include_str!("../../../../robots/five_bar.toml"), 40),
     ];
     for (text, least) in robots {
         let model = model(text);
