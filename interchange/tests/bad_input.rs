@@ -309,6 +309,23 @@ fn only_regular_files_are_included() {
     }
 }
 
+/// A pipe without a writer would block whoever opens it.
+#[cfg(unix)]
+#[test]
+fn a_pipe_next_to_a_urdf_is_not_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("other.yaml");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.expect("mkfifo").success());
+    let file = folder.path().join("robot.urdf");
+    let text = "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/>\
+                <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>\
+                <joint name='j' type='continuous'><parent link='a'/><child link='b'/>\
+                <axis xyz='0 0 1'/></joint></robot>";
+    fs::write(&file, text).expect("a file");
+    assert!(import(&file, &Options::default()).is_ok());
+}
+
 #[test]
 fn included_files_are_limited_together() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -26,8 +26,10 @@ pub(super) fn report(files: &Files, file: usize, tree: &Tree) {
         let other = folder.join(&name);
         let ending = other.extension().and_then(|ending| ending.to_str());
         let is_yaml = matches!(ending, Some("yaml" | "yml"));
-        let size = std::fs::metadata(&other).map_or(u64::MAX, |found| found.len());
-        if !is_yaml || other.file_stem() == path.file_stem() || size > LARGEST {
+        // Opening a pipe may block, and a device may have no end.
+        let is_small_file =
+            std::fs::metadata(&other).is_ok_and(|found| found.is_file() && found.len() <= LARGEST);
+        if !is_yaml || other.file_stem() == path.file_stem() || !is_small_file {
             continue;
         }
         let Ok(text) = std::fs::read_to_string(&other) else {
