@@ -80,7 +80,7 @@ impl Function {
                 .zip(&shared)
                 .zip(&widths)
                 .map(|((values, shared), width)| {
-                    if shared {
+                    if *shared {
                         values
                     } else {
                         &values[first * width..(first + count) * width]
@@ -308,7 +308,7 @@ impl Call<'_> {
         let rows = |(values, shared): (&&'v [f64], &bool)| {
             let values: &'v [f64] = values;
             let width = values.len() / samples.max(1);
-            if shared {
+            if *shared {
                 values
             } else {
                 &values[first * width..(first + count) * width]
