@@ -368,12 +368,15 @@ async fn page(own: Report) -> Result<(), String> {
         .map_err(|error| error.strip_backtrace())?;
     let charts = charts(&days.points, &rule);
     let outliers = outliers(&charts, report::BEYOND);
-    let html = report::page(
-        &days,
-        (&charts, &outliers),
-        (&rule, fleet.left_out()),
-        own.link.as_deref(),
-    );
+    let page = report::Page {
+        days: &days,
+        charts: &charts,
+        outliers: &outliers,
+        rule: &rule,
+        left_out: fleet.left_out(),
+        link: own.link.as_deref(),
+    };
+    let html = page.html();
     write_whole(&own.output, html.as_bytes())?;
     tell(&fleet, days.points.len(), [0.0, days.seconds]);
     Ok(())

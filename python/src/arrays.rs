@@ -28,7 +28,8 @@ impl<'py> Rows<'py> {
     pub(crate) fn new(
         value: &Bound<'py, PyAny>,
         name: &str,
-        (width, what): (usize, &str),
+        width: usize,
+        what: &str,
     ) -> PyResult<Self> {
         let array = match as_it_lies(value) {
             Some(array) => array,

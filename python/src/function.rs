@@ -205,7 +205,7 @@ impl Function {
                 return Err(self.misused(&format!("needs `{}`", one.name)));
             };
             let what = self.what(one);
-            inputs.push(Rows::new(&value, &one.name, (one.length, &what))?);
+            inputs.push(Rows::new(&value, &one.name, one.length, &what)?);
         }
         Ok(inputs)
     }
@@ -238,7 +238,7 @@ impl Function {
         if !self.form.follows() {
             return Err(self.misused("takes no `start`, since it finds no pose"));
         }
-        let rows = Rows::new(given, "start", (info.sizes.pose, ""))?;
+        let rows = Rows::new(given, "start", info.sizes.pose, "")?;
         if rows.is_shared() {
             Ok(rows.values()?.to_vec())
         } else {

@@ -18,7 +18,8 @@ impl Robot {
     /// Runs that cannot be used, or a description with settings that factors do not support.
     pub fn factors(
         &self,
-        (logs, origin): (&[Log], &Origin),
+        logs: &[Log],
+        origin: &Origin,
         settings: &Settings,
         equations: bool,
         progress: &dyn Fn(Progress<'_>),

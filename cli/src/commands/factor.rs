@@ -61,8 +61,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let settings = runs.settings(&robot, &found);
     let bar = Progress::new("factoring", as_json);
     let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
-    let identified = (found.identified.as_slice(), &origin);
-    let made = robot.factors(identified, &settings, arguments.equations, &tell)?;
+    let made = robot.factors(
+        &found.identified,
+        &origin,
+        &settings,
+        arguments.equations,
+        &tell,
+    )?;
     drop(bar);
     let bytes = write_factors(&made)?;
     let said = if as_json {

@@ -93,7 +93,8 @@ const fn kind(kind: ParameterKind) -> &'static str {
 /// Table of the changes.
 fn changes(estimated: &[CalibratedParameter]) -> String {
     let rows = estimated.iter().map(|one| {
-        let (change, interval) = with_interval(one.change, one.interval_95);
+        let [low, high] = one.interval_95;
+        let (change, interval) = with_interval(one.change, low, high);
         let degrees = (one.unit == "rad").then(|| one.change.to_degrees());
         vec![
             Cell::text(&one.name),

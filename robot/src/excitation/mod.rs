@@ -33,7 +33,7 @@ use crate::{
 };
 use course::Bench;
 use frame::Frame;
-use information::Question;
+use information::{Question, TorqueMeasurement};
 use nalgebra::DMatrix;
 use overact::{Function, Info, Model};
 use overact_codegen::diagnostic::Code;
@@ -190,7 +190,8 @@ impl<'a> Task<'a> {
             .as_ref()
             .map_or(SAMPLING, |e| e.sampling);
         let own = settings(description, &bench.info, sampling);
-        let question = Question::new(&bench, &frames, &own, truth.as_ref(), (noise, sampling))?;
+        let measurement = TorqueMeasurement { noise, sampling };
+        let question = Question::new(&bench, &frames, &own, truth.as_ref(), measurement)?;
         let mut task = Self {
             bench,
             limits,

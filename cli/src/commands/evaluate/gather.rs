@@ -37,7 +37,8 @@ impl std::convert::From<Problem> for Lack {
 pub(super) fn inputs(
     robot: &InterpretedRobot,
     program: &Program,
-    (from, parameters): (MotionInput, GivenParameters),
+    from: MotionInput,
+    parameters: GivenParameters,
     states: &States,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut gatherer = Gatherer {

@@ -128,7 +128,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         }
         None => GivenParameters::default(),
     };
-    let values = evaluate(&robot, &program, (from, given), &states)?;
+    let values = evaluate(&robot, &program, from, given, &states)?;
     let width = program.entries.len();
     let rows = (0..states.len()).map(|at| &values[at * width..(at + 1) * width]);
     let shape = program.output.shape.clone();
@@ -215,10 +215,11 @@ impl GivenParameters {
 fn evaluate(
     robot: &InterpretedRobot,
     program: &Program,
-    (from, parameters): (MotionInput, GivenParameters),
+    from: MotionInput,
+    parameters: GivenParameters,
     states: &States,
 ) -> Result<Vec<f64>, Failure> {
-    let inputs = gather::inputs(robot, program, (from, parameters), states)?;
+    let inputs = gather::inputs(robot, program, from, parameters, states)?;
     let rows: Vec<Rows<'_>> = inputs
         .iter()
         .map(|values| Rows {

@@ -111,7 +111,8 @@ fn bar(
     reference: f64,
 ) -> Bar {
     let percent = |value: f64| 100.0 * (value - reference) / reference.abs();
-    let (value, interval) = with_interval(one.value, one.interval_95);
+    let [low, high] = one.interval_95;
+    let (value, interval) = with_interval(one.value, low, high);
     Bar {
         look: look(estimate.model),
         value: percent(one.value),

@@ -43,8 +43,8 @@ pub(super) fn table(contents: &Contents<'_>) -> String {
     }
     let rows = names.iter().map(|name| {
         let mut row = vec![Cell::text(name)];
-        for pair in &pairs {
-            row.extend(cells(*pair, name));
+        for (own, other) in &pairs {
+            row.extend(cells(own, other, name));
         }
         row
     });
@@ -57,7 +57,7 @@ pub(super) fn table(contents: &Contents<'_>) -> String {
 }
 
 /// Own estimate, published estimate, and their difference.
-fn cells((own, other): (&Estimate, &PublishedEstimate), name: &str) -> Vec<Cell> {
+fn cells(own: &Estimate, other: &PublishedEstimate, name: &str) -> Vec<Cell> {
     let own = find(own, name);
     let other = other.parameters.get(name);
     let difference = own.zip(other).and_then(|(own, other)| {

@@ -145,7 +145,8 @@ fn estimated(parameter: Option<&ParameterEstimate>, truth: bool) -> Vec<Cell> {
     let Some(one) = parameter else {
         return vec![Cell::nothing(); 3];
     };
-    let (mut value, interval) = with_interval(one.value, one.interval_95);
+    let [low, high] = one.interval_95;
+    let (mut value, interval) = with_interval(one.value, low, high);
     if is_outside(one) {
         value.push('*');
     }
