@@ -38,10 +38,10 @@ pub(crate) struct Arguments {
     /// `pose[0],pose[1]`; `-` is stdin
     #[arg(long, value_name = "FILE")]
     states: PathBuf,
-    /// What to evaluate from [default: what the states hold]
+    /// Inputs to evaluate from [default: those of the states]
     #[arg(long, value_enum)]
     from: Option<Source>,
-    /// Which columns an identification model has, or which parameters dynamics take [default: standard]
+    /// Columns of an identification model, or parameters of dynamics [default: standard]
     #[arg(long, value_enum)]
     columns: Option<ColumnsOf>,
     /// Kept actuators of case 2 [default: those of the description]
