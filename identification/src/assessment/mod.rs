@@ -8,7 +8,7 @@
 //! - `positions`: positions that violate the closure, and corrections that restore it;
 //! - `torques`: torques that contradict the model, and the fault that explains them;
 //! - `whole`: faults of whole runs or of the model;
-//! - `suspects`: fault hypotheses tested on the residual;
+//! - `hypotheses`: fault hypotheses tested on the residual;
 //! - `explained`: hints at the cause of an error.
 
 pub(crate) mod assumptions;
@@ -16,8 +16,8 @@ pub(crate) mod check;
 pub(crate) mod checks;
 pub(crate) mod evidence;
 mod explained;
+pub(crate) mod hypotheses;
 mod positions;
-pub(crate) mod suspects;
 pub(crate) mod torques;
 pub(crate) mod verdict;
 mod whole;

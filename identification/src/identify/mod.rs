@@ -36,7 +36,7 @@ use crate::{
         self, Context, Watched,
         assumptions::{Found, assumptions, rests_on, unseen},
         check::{Check, Grade},
-        suspects::{Reach, scores},
+        hypotheses::{Reach, scores},
         verdict::verdicts,
     },
     data::Dataset,

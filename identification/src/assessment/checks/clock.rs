@@ -2,13 +2,13 @@
 
 use super::{
     Context,
+    fault_hypotheses::{harm, only, parabola},
     level::{level, origin},
-    suspected::{harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::Suspect,
+        hypotheses::FaultHypothesis,
     },
     error::Error,
     significant,
@@ -22,7 +22,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let found = only(scores, Suspect::Clock);
+    let found = only(scores, FaultHypothesis::Clock);
     let level = level(1);
     let checks = found.iter().map(|one| {
         let accused = &one.accused;

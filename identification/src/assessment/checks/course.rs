@@ -1,10 +1,10 @@
 //! Checks outliers, length of the motion and filters.
 
-use super::{Context, relative_error::times_the_noise, suspected::dry_friction};
+use super::{Context, fault_hypotheses::dry_friction, relative_error::times_the_noise};
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Grade},
-        suspects::Pace,
+        hypotheses::Pace,
     },
     error::Error,
     significant,

@@ -2,13 +2,13 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, parabola, tested, worst_harm},
     level::{level, origin},
-    suspected::{Tested, parabola, tested, worst_harm},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::{Group, Scores, Suspect},
+        hypotheses::{FaultHypothesis, Group, Scores},
     },
     error::Error,
     significant,
@@ -32,13 +32,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let mut whose = Vec::new();
     let mut found: Vec<Tested> = Vec::new();
-    for (place, suspect) in scores.suspects.iter().enumerate() {
-        let actuator = match *suspect {
-            Suspect::Delay => None,
-            Suspect::Late(actuator) => Some(actuator),
+    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
+        let actuator = match *hypothesis {
+            FaultHypothesis::Delay => None,
+            FaultHypothesis::DriveDelay(actuator) => Some(actuator),
             _ => continue,
         };
-        for one in tested(scores, std::iter::once(Group::suspect(place))) {
+        for one in tested(scores, std::iter::once(Group::hypothesis(place))) {
             whose.push(actuator);
             found.push(one);
         }

@@ -2,13 +2,13 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, guilty, parabola, tested, worst_harm},
     level::{level, origin},
-    suspected::{Tested, guilty, parabola, tested, worst_harm},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Detectable},
-        suspects::{Group, Scores, Suspect},
+        hypotheses::{FaultHypothesis, Group, Scores},
     },
     error::Error,
     significant,
@@ -25,11 +25,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let names = context.model.info().actuators;
     let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
     let (mut actuators, mut found, mut untold) = (Vec::new(), Vec::new(), Vec::new());
-    for (place, suspect) in scores.suspects.iter().enumerate() {
-        let Suspect::Gain(actuator) = *suspect else {
+    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
+        let FaultHypothesis::Gain(actuator) = *hypothesis else {
             continue;
         };
-        match tested(scores, std::iter::once(Group::suspect(place))).pop() {
+        match tested(scores, std::iter::once(Group::hypothesis(place))).pop() {
             Some(one) => {
                 actuators.push(actuator);
                 found.push(one);

@@ -8,6 +8,7 @@ mod consistency;
 mod course;
 mod delay;
 mod excitation;
+mod fault_hypotheses;
 mod gains;
 mod geometry;
 mod half_band;
@@ -25,15 +26,14 @@ mod residual_correlation;
 mod reversals;
 mod rotation;
 pub(super) mod smoothing;
-mod suspected;
 mod torque_faults;
 pub(crate) mod units;
 
 use overact::Model;
 
-pub(super) use suspected::HARMFUL;
+pub(super) use fault_hypotheses::HARMFUL;
 
-use super::{check::Check, suspects::Scores};
+use super::{check::Check, hypotheses::Scores};
 use crate::{
     called::with_joints,
     data::{Dataset, Log},

@@ -4,13 +4,13 @@ use overact::StandardParameter;
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, harm, tested},
     level::{level, origin},
-    suspected::{Tested, harm, tested},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Grade},
-        suspects::{Group, Scores},
+        hypotheses::{Group, Scores},
     },
     data::Log,
     error::Error,

@@ -10,7 +10,7 @@ use crate::{
     assessment::{
         check::{About, Check, CheckKind},
         evidence::{Axis, Curve, Evidence},
-        suspects::Correlation,
+        hypotheses::Correlation,
     },
     error::Error,
     estimation::intervals::distributions::student_quantile,

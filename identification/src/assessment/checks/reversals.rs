@@ -11,15 +11,15 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
     half_band::confirms,
     level::{level, origin},
     smoothing::{OF_MEAN, UNIT, harmless},
-    suspected::{Tested, dry_friction, harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::{Scores, Suspect},
+        hypotheses::{FaultHypothesis, Scores},
     },
     error::Error,
     significant,
@@ -35,8 +35,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         more: scores.narrower as f64,
         ..one
     };
-    let friction = only(scores, Suspect::Dulled).map(wider);
-    let all = only(scores, Suspect::Alike).map(wider);
+    let friction = only(scores, FaultHypothesis::FrictionSmoothing).map(wider);
+    let all = only(scores, FaultHypothesis::CommonFilter).map(wider);
     let tests = friction.iter().chain(&all).count();
     let told = Told {
         tests,
@@ -55,7 +55,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     if let Some(bent) = &bent {
         return Ok(vec![told.bent((context, scores), bent)]);
     }
-    let shown = only(scores, Suspect::Dulled).map(wider).or(all);
+    let shown = only(scores, FaultHypothesis::FrictionSmoothing)
+        .map(wider)
+        .or(all);
     let innocent = shown.map(|one| {
         let visible = one.accused.visible(told.level);
         told.check((context, scores), &one, format!(
@@ -82,7 +84,7 @@ fn filtered<'a>(
     };
     let (accused, harmless) = (&one.accused, harmless(context));
     let is_beyond = accused.size() > 0.0 && accused.probability_beyond(harmless) < level;
-    let is_there = is_beyond && confirms(context, Suspect::Alike, accused.size())?;
+    let is_there = is_beyond && confirms(context, FaultHypothesis::CommonFilter, accused.size())?;
     Ok(is_there.then_some(one))
 }
 

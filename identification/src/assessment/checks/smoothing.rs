@@ -11,14 +11,14 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
     half_band::confirms,
     level::{level, origin},
-    suspected::{Tested, dry_friction, harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::Suspect,
+        hypotheses::FaultHypothesis,
     },
     error::Error,
     significant,
@@ -45,11 +45,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let Some(one) = only(scores, Suspect::Smoothing) else {
+    let Some(one) = only(scores, FaultHypothesis::Smoothing) else {
         return Ok(Vec::new());
     };
     // Effect on all parameters, including dry friction, at the size found without dry friction.
-    let whole = only(scores, Suspect::Rounding).map(|whole| Tested {
+    let whole = only(scores, FaultHypothesis::SmoothingWithFriction).map(|whole| Tested {
         size: Some(one.accused.size()),
         ..whole
     });
@@ -88,7 +88,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             time(visible)
         ))]);
     }
-    if !confirms(context, Suspect::Smoothing, accused.size())? {
+    if !confirms(context, FaultHypothesis::Smoothing, accused.size())? {
         return Ok(vec![check(format!(
             "torques and motion are smoothed alike: what looks like a mean over {} ms is not there in half of the band, as where errors of the encoders make it",
             time(accused.size())

@@ -25,10 +25,10 @@ impl Scores {
         let beside = beside.as_ref()?;
         match group.run {
             // One request computes all hypotheses, since callers need them all.
-            None if group.block < self.suspects.len() => {
+            None if group.block < self.hypotheses.len() => {
                 let all = || {
-                    let groups = (0..self.suspects.len()).into_par_iter();
-                    let one = |number| self.tested(&Group::suspect(number), beside);
+                    let groups = (0..self.hypotheses.len()).into_par_iter();
+                    let one = |number| self.tested(&Group::hypothesis(number), beside);
                     groups.map(one).collect()
                 };
                 let all: &Vec<Option<Accused>> = self.own.accused.get_or_init(all);

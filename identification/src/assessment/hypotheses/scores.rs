@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{
     accused::Accused,
     beside::Beside,
-    columns::{Layout, Suspect, suspects},
+    columns::{FaultHypothesis, Layout, fault_hypotheses},
     pairs::{Correlation, correlations},
     pass::Pass,
     scaled::{Scaled, told},
@@ -45,7 +45,7 @@ const LEAST_EQUATIONS: usize = 4;
 #[derive(Debug, Clone)]
 pub(crate) struct Scores {
     /// Hypotheses, and names of the payload parameters, which are tested in each run.
-    pub(crate) suspects: Vec<Suspect>,
+    pub(crate) hypotheses: Vec<FaultHypothesis>,
     pub(crate) payload: Vec<String>,
     /// Column indices.
     pub(super) layout: Layout,
@@ -84,10 +84,10 @@ pub(crate) fn scores(
     (estimate, reaches): (&Estimate, &[Reach]),
     (settings, returns, times): (&Settings, &[Option<Return>], usize),
 ) -> Result<Scores, Error> {
-    let suspects = suspects(model, variants.len(), estimate.model);
+    let hypotheses = fault_hypotheses(model, variants.len(), estimate.model);
     let payload = model.info().payload_parameters;
     let friction = coulomb(columns, base);
-    let layout = Layout::new(base.len() + friction.len(), &suspects, payload.len());
+    let layout = Layout::new(base.len() + friction.len(), &hypotheses, payload.len());
     let mut values = vec![0.0; layout.base];
     for parameter in &estimate.parameters {
         values[parameter.column] = parameter.value;
@@ -105,7 +105,7 @@ pub(crate) fn scores(
         friction: &friction,
         kind: estimate.model,
         frame: Frame {
-            suspects: &suspects,
+            hypotheses: &hypotheses,
             layout: &layout,
             reaches,
             weights: &estimate.weights,
@@ -132,7 +132,7 @@ pub(crate) fn scores(
         means: means(&scores),
         narrower,
         runs: scores,
-        suspects,
+        hypotheses,
         own: Found::default(),
     })
 }
@@ -232,8 +232,8 @@ impl Scores {
     /// fraction `passed` of them.
     pub(crate) fn noise(&self, variances: &[Vec<f64>], passed: f64) -> f64 {
         let offset = |actuator: usize| {
-            let wanted = Suspect::Torque(actuator, Shape::Constant);
-            self.suspects.iter().position(|one| *one == wanted)
+            let wanted = FaultHypothesis::Torque(actuator, Shape::Constant);
+            self.hypotheses.iter().position(|one| *one == wanted)
         };
         let (mut noise, mut equations) = (0.0, 0);
         for (run, variances) in self.runs.iter().zip(variances) {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use overact::Function;
 
 use super::{
-    columns::{Sample, Suspect, moments, rates},
+    columns::{FaultHypothesis, Sample, moments, rates},
     misreading::Misreading,
     nearby::{Nearby, dot},
     pass::Pass,
@@ -85,8 +85,10 @@ impl<'a> Material<'a> {
         let actuators = moments((motion, Reversal::new(pass.settings)), signals);
         let torque_turns = rates(&torque_rates, n, frequency);
         let alike = nearby.alike(motion, [&torques, &torque_turns], jacobians, &actuators)?;
-        let suspects = pass.frame.suspects;
-        let moved = suspects.iter().any(|one| matches!(one, Suspect::Offset(_)));
+        let hypotheses = pass.frame.hypotheses;
+        let moved = hypotheses
+            .iter()
+            .any(|one| matches!(one, FaultHypothesis::Offset(_)));
         let misread = if moved {
             nearby.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?
         } else {
@@ -150,12 +152,12 @@ impl<'a> Material<'a> {
         }
         // Waves come last and are computed from decimated positions.
         let narrow = width - p - count - 1 - load;
-        let suspects = &pass.frame.suspects[..narrow];
+        let hypotheses = &pass.frame.hypotheses[..narrow];
         let mut factors = vec![0.0; narrow];
         for (place, sample) in samples.enumerate() {
             let here = self.sample(sample);
-            let all = factors.iter_mut().zip(suspects);
-            all.for_each(|(factor, suspect)| *factor = here.factor(*suspect));
+            let all = factors.iter_mut().zip(hypotheses);
+            all.for_each(|(factor, hypothesis)| *factor = here.factor(*hypothesis));
             let (block, inside) = (&self.base[sample / BLOCK], sample % BLOCK);
             for (line, rows) in lines.iter_mut().enumerate() {
                 let row = &mut rows[place * width..(place + 1) * width];
@@ -168,7 +170,7 @@ impl<'a> Material<'a> {
                     .for_each(|(to, rate)| *to = -rate);
                 row[0] = self.inputs[sample * r + line];
                 let (own, payload) = row[1..].split_at_mut(narrow);
-                here.entries(suspects, &factors, line, own);
+                here.entries(hypotheses, &factors, line, own);
                 payload.copy_from_slice(slice(&self.payload, load, sample * r + line, 1));
             }
         }

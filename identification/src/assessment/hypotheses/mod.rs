@@ -62,7 +62,7 @@ mod spread;
 mod test;
 
 pub(crate) use accused::Accused;
-pub(crate) use columns::Suspect;
+pub(crate) use columns::FaultHypothesis;
 pub(crate) use course::Pace;
 pub(crate) use group::Group;
 pub(crate) use misreading::Misreading;

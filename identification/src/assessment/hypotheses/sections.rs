@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
 
 use super::{
-    columns::{Layout, Suspect},
+    columns::{FaultHypothesis, Layout},
     pairs::Pairs,
     shapes::{Moment, Reach, Shape},
 };
@@ -155,7 +155,7 @@ impl RunScores {
 /// Parameters that convert decimated rows to equations.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame<'a> {
-    pub(super) suspects: &'a [Suspect],
+    pub(super) hypotheses: &'a [FaultHypothesis],
     pub(super) layout: &'a Layout,
     /// Position ranges of the actuators in all runs.
     pub(super) reaches: &'a [Reach],
@@ -184,9 +184,10 @@ pub(super) struct Sink<'a> {
 impl<'a> Sink<'a> {
     /// For this number of samples, with the phases of a periodic motion.
     pub(super) fn new(frame: Frame<'a>, instants: usize, phases: Option<Phases>) -> Self {
-        let constant = |one: &Suspect| matches!(one, Suspect::Torque(_, Shape::Constant));
-        let suspects = frame.suspects.iter().zip(&frame.layout.blocks);
-        let constants = suspects.filter(|(one, _)| constant(one));
+        let constant =
+            |one: &FaultHypothesis| matches!(one, FaultHypothesis::Torque(_, Shape::Constant));
+        let hypotheses = frame.hypotheses.iter().zip(&frame.layout.blocks);
+        let constants = hypotheses.filter(|(one, _)| constant(one));
         let constants: Vec<usize> = constants.map(|(_, block)| block.start).collect();
         let sections = (SECTIONS * cosines(instants)).min(instants).max(1);
         Self {
@@ -308,8 +309,8 @@ impl<'a> Sink<'a> {
     /// Fills in the waves of decimated positions, multiplied by the column of a constant torque.
     fn add_waves(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
         let n = self.constants.len();
-        for (suspect, block) in self.frame.suspects.iter().zip(&self.frame.layout.blocks) {
-            let Suspect::Torque(actuator, Shape::Waves) = *suspect else {
+        for (hypothesis, block) in self.frame.hypotheses.iter().zip(&self.frame.layout.blocks) {
+            let FaultHypothesis::Torque(actuator, Shape::Waves) = *hypothesis else {
                 continue;
             };
             let reach = self.frame.reaches[actuator];

@@ -13,7 +13,7 @@ pub(crate) struct Group {
 
 impl Group {
     /// The hypothesis with this number.
-    pub(crate) fn suspect(number: usize) -> Self {
+    pub(crate) fn hypothesis(number: usize) -> Self {
         Self {
             block: number,
             run: None,
@@ -23,7 +23,7 @@ impl Group {
     /// The payload parameters in one run.
     pub(crate) fn payload(scores: &Scores, run: usize) -> Self {
         Self {
-            block: scores.suspects.len(),
+            block: scores.hypotheses.len(),
             run: Some(run),
         }
     }

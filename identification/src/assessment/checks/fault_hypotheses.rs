@@ -5,7 +5,7 @@ use crate::{
     assessment::{
         check::{Check, Detectable, Grade},
         evidence::{Axis, Curve, Evidence},
-        suspects::{Accused, Group, Scores, Suspect},
+        hypotheses::{Accused, FaultHypothesis, Group, Scores},
     },
     result::{Estimate, ParameterEstimate, Stage},
 };
@@ -117,9 +117,9 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
 }
 
 /// Tests one hypothesis against the base parameters; `None` if absent or untestable.
-pub(super) fn only(scores: &Scores, wanted: Suspect) -> Option<Tested> {
-    let place = scores.suspects.iter().position(|one| *one == wanted)?;
-    tested(scores, std::iter::once(Group::suspect(place))).pop()
+pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<Tested> {
+    let place = scores.hypotheses.iter().position(|one| *one == wanted)?;
+    tested(scores, std::iter::once(Group::hypothesis(place))).pop()
 }
 
 /// The hypothesis that explains most of the residual, among those significant at `level`.

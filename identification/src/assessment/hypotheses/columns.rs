@@ -14,7 +14,7 @@ use crate::{
 
 /// A fault with one unknown size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Suspect {
+pub(crate) enum FaultHypothesis {
     /// All torques are delayed by this time (s).
     Delay,
     /// The torques are smoother than the motion, with s = ½ Σ w t² of a symmetric filter w(t) (s²).
@@ -22,15 +22,15 @@ pub(crate) enum Suspect {
     /// The column omits the effect on dry friction. It serves to find the fault.
     Smoothing,
     /// The same with the effect on dry friction, to compute the harm.
-    Rounding,
+    SmoothingWithFriction,
     /// Dry friction is smoother than the signs of the velocities, by s (s²).
-    Dulled,
+    FrictionSmoothing,
     /// All signals are smoothed by s (s²).
     ///
     /// Only terms that are nonlinear in the motion change, such as dry friction.
-    Alike,
+    CommonFilter,
     /// The torque of one actuator is delayed by this time (s).
-    Late(usize),
+    DriveDelay(usize),
     /// Relative error of the measured torque of one actuator.
     Gain(usize),
     /// Relative error of the sampling frequency.
@@ -53,7 +53,7 @@ pub(crate) enum Suspect {
     Force(usize, Shape),
 }
 
-impl Suspect {
+impl FaultHypothesis {
     /// Number of columns.
     const fn width(self) -> usize {
         match self {
@@ -83,17 +83,17 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn new(base: usize, suspects: &[Suspect], payload: usize) -> Self {
-        let narrow = suspects.iter().filter(|one| one.width() == 1).count();
+    pub(super) fn new(base: usize, hypotheses: &[FaultHypothesis], payload: usize) -> Self {
+        let narrow = hypotheses.iter().filter(|one| one.width() == 1).count();
         let decimated = base + narrow + payload;
         let (mut next, mut wide) = (base, decimated);
-        let place = |suspect: &Suspect| {
-            let width = suspect.width();
+        let place = |hypothesis: &FaultHypothesis| {
+            let width = hypothesis.width();
             let at = if width == 1 { &mut next } else { &mut wide };
             *at += width;
             *at - width..*at
         };
-        let mut blocks: Vec<Range<usize>> = suspects.iter().map(place).collect();
+        let mut blocks: Vec<Range<usize>> = hypotheses.iter().map(place).collect();
         blocks.push(base + narrow..decimated);
         let mut squares = 0;
         let place = |block: &Range<usize>| {
@@ -115,54 +115,58 @@ impl Layout {
 /// The fault hypotheses of a robot for the model `kind`, with this number of `lengths`.
 ///
 /// Waves come last.
-pub(super) fn suspects(model: &dyn Model, lengths: usize, kind: ModelKind) -> Vec<Suspect> {
+pub(super) fn fault_hypotheses(
+    model: &dyn Model,
+    lengths: usize,
+    kind: ModelKind,
+) -> Vec<FaultHypothesis> {
     let info = model.info();
     let sizes = info.sizes;
     let mut all = vec![
-        Suspect::Delay,
-        Suspect::Smoothing,
-        Suspect::Rounding,
-        Suspect::Dulled,
-        Suspect::Alike,
-        Suspect::Clock,
+        FaultHypothesis::Delay,
+        FaultHypothesis::Smoothing,
+        FaultHypothesis::SmoothingWithFriction,
+        FaultHypothesis::FrictionSmoothing,
+        FaultHypothesis::CommonFilter,
+        FaultHypothesis::Clock,
     ];
     // With a single drive, this equals the delay of all torques.
     if sizes.actuators > 1 {
-        all.extend((0..sizes.actuators).map(Suspect::Late));
+        all.extend((0..sizes.actuators).map(FaultHypothesis::DriveDelay));
     }
-    all.extend((0..sizes.actuators).map(Suspect::Gain));
+    all.extend((0..sizes.actuators).map(FaultHypothesis::Gain));
     // With n > r, the closure determines these errors better.
     if sizes.actuators == sizes.dof {
-        all.extend((0..sizes.actuators).map(Suspect::Offset));
-        all.extend((0..sizes.actuators).map(Suspect::Scale));
+        all.extend((0..sizes.actuators).map(FaultHypothesis::Offset));
+        all.extend((0..sizes.actuators).map(FaultHypothesis::Scale));
         if sizes.actuators > 1 {
-            all.push(Suspect::Scales);
+            all.push(FaultHypothesis::Scales);
         }
-        all.extend((0..sizes.actuators).map(Suspect::Play));
+        all.extend((0..sizes.actuators).map(FaultHypothesis::Play));
         let revolute =
             (0..sizes.actuators).filter(|&i| info.actuator_is_revolute.get(i) == Some(&true));
         all.extend(revolute.flat_map(|i| {
-            [Misreading::Sine, Misreading::Cosine].map(|error| Suspect::Eccentric(i, error))
+            [Misreading::Sine, Misreading::Cosine].map(|error| FaultHypothesis::Eccentric(i, error))
         }));
     }
-    all.extend((0..lengths).map(Suspect::Length));
+    all.extend((0..lengths).map(FaultHypothesis::Length));
     for actuator in 0..sizes.actuators {
         // A sine suits an unwrapped angle, where a spring does not; neither suits a length.
         let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
         let shapes = SHAPES
             .into_iter()
             .filter(|shape| revolute || !matches!(shape, Shape::Cosine | Shape::Sine));
-        all.extend(shapes.map(|shape| Suspect::Torque(actuator, shape)));
+        all.extend(shapes.map(|shape| FaultHypothesis::Torque(actuator, shape)));
     }
     if kind == ModelKind::Platform {
         for line in 0..sizes.dof {
-            all.push(Suspect::Force(line, Shape::Constant));
+            all.push(FaultHypothesis::Force(line, Shape::Constant));
             if sizes.pose == sizes.dof {
-                all.push(Suspect::Force(line, Shape::Position));
+                all.push(FaultHypothesis::Force(line, Shape::Position));
             }
         }
     }
-    all.extend((0..sizes.actuators).map(|i| Suspect::Torque(i, Shape::Waves)));
+    all.extend((0..sizes.actuators).map(|i| FaultHypothesis::Torque(i, Shape::Waves)));
     all
 }
 
@@ -195,12 +199,12 @@ pub(super) struct Sample<'a> {
 
 impl Sample<'_> {
     /// Factor that the entries of a hypothesis have in common in all lines of Γ¹.
-    pub(super) fn factor(&self, suspect: Suspect) -> f64 {
+    pub(super) fn factor(&self, hypothesis: FaultHypothesis) -> f64 {
         let shaped = |i: usize, shape: Shape| shape.value(self.actuators[i], self.reaches[i]);
-        match suspect {
-            Suspect::Play(i) => shaped(i, Shape::Sign),
-            Suspect::Torque(i, shape) => shaped(i, shape),
-            Suspect::Force(own, shape) => {
+        match hypothesis {
+            FaultHypothesis::Play(i) => shaped(i, Shape::Sign),
+            FaultHypothesis::Torque(i, shape) => shaped(i, shape),
+            FaultHypothesis::Force(own, shape) => {
                 let here = Moment {
                     position: self.pose.get(own).copied().unwrap_or(0.0),
                     ..Moment::default()
@@ -214,76 +218,76 @@ impl Sample<'_> {
     /// Entries of one-column hypotheses in a line of Γ¹, from their factors.
     pub(super) fn entries(
         &self,
-        suspects: &[Suspect],
+        hypotheses: &[FaultHypothesis],
         factors: &[f64],
         line: usize,
         entries: &mut [f64],
     ) {
         let r = self.jacobian.len() / self.torques.len();
-        let of_one = |one: &Suspect, next: &Suspect| match (one, next) {
-            (Suspect::Torque(i, _), Suspect::Torque(k, _)) => i == k,
+        let of_one = |one: &FaultHypothesis, next: &FaultHypothesis| match (one, next) {
+            (FaultHypothesis::Torque(i, _), FaultHypothesis::Torque(k, _)) => i == k,
             _ => false,
         };
         let mut first = 0;
         // Torque hypotheses of one actuator are adjacent.
-        for group in suspects.chunk_by(of_one) {
+        for group in hypotheses.chunk_by(of_one) {
             let places = first..first + group.len();
             first = places.end;
             let own = entries[places.clone()].iter_mut().zip(&factors[places]);
             match group {
-                [Suspect::Torque(i, _), ..] => {
+                [FaultHypothesis::Torque(i, _), ..] => {
                     let share = self.jacobian[i * r + line];
                     own.for_each(|(entry, factor)| *entry = share * factor);
                 }
-                _ => own.zip(group).for_each(|((entry, factor), suspect)| {
-                    *entry = self.entry(*suspect, *factor, line);
+                _ => own.zip(group).for_each(|((entry, factor), hypothesis)| {
+                    *entry = self.entry(*hypothesis, *factor, line);
                 }),
             }
         }
     }
 
     /// Entry of a hypothesis in a line of Γ¹, from its factor.
-    fn entry(&self, suspect: Suspect, factor: f64, line: usize) -> f64 {
+    fn entry(&self, hypothesis: FaultHypothesis, factor: f64, line: usize) -> f64 {
         let r = self.jacobian.len() / self.torques.len();
         let share = |actuator: usize| self.jacobian[actuator * r + line];
         let misread = |i: usize, error: Misreading| {
             let place = i * Misreading::ALL.len() + error as usize;
             self.misread[place * r + line]
         };
-        match suspect {
-            Suspect::Delay => {
+        match hypothesis {
+            FaultHypothesis::Delay => {
                 let rates = self.torque_rates.iter().enumerate();
                 -rates.map(|(i, rate)| share(i) * rate).sum::<f64>()
             }
-            Suspect::Smoothing | Suspect::Rounding => {
-                let bends = match suspect {
-                    Suspect::Smoothing => self.torque_bends,
+            FaultHypothesis::Smoothing | FaultHypothesis::SmoothingWithFriction => {
+                let bends = match hypothesis {
+                    FaultHypothesis::Smoothing => self.torque_bends,
                     _ => self.torque_turns,
                 };
                 let bends = bends.iter().enumerate();
                 bends.map(|(i, bend)| share(i) * bend).sum::<f64>()
             }
-            Suspect::Dulled => {
+            FaultHypothesis::FrictionSmoothing => {
                 let both = self.torque_turns.iter().zip(self.torque_bends);
                 let friction = both.enumerate().map(|(i, (all, rest))| (i, all - rest));
                 friction.map(|(i, bend)| share(i) * bend).sum::<f64>()
             }
-            Suspect::Alike => self.alike[line],
-            Suspect::Late(i) => -share(i) * self.torque_rates[i],
-            Suspect::Gain(i) => share(i) * self.torques[i],
-            Suspect::Clock => self.clock[line],
-            Suspect::Offset(i) => misread(i, Misreading::Offset),
-            Suspect::Eccentric(i, error) => misread(i, error),
-            Suspect::Scale(i) => misread(i, Misreading::Scale),
-            Suspect::Scales => {
+            FaultHypothesis::CommonFilter => self.alike[line],
+            FaultHypothesis::DriveDelay(i) => -share(i) * self.torque_rates[i],
+            FaultHypothesis::Gain(i) => share(i) * self.torques[i],
+            FaultHypothesis::Clock => self.clock[line],
+            FaultHypothesis::Offset(i) => misread(i, Misreading::Offset),
+            FaultHypothesis::Eccentric(i, error) => misread(i, error),
+            FaultHypothesis::Scale(i) => misread(i, Misreading::Scale),
+            FaultHypothesis::Scales => {
                 let all = 0..self.torques.len();
                 all.map(|i| misread(i, Misreading::Scale)).sum::<f64>()
             }
-            Suspect::Play(i) => factor * misread(i, Misreading::Offset),
-            Suspect::Length(length) => self.lengths[length * r + line],
-            Suspect::Torque(i, _) => share(i) * factor,
-            Suspect::Force(own, _) if own != line => 0.0,
-            Suspect::Force(..) => factor,
+            FaultHypothesis::Play(i) => factor * misread(i, Misreading::Offset),
+            FaultHypothesis::Length(length) => self.lengths[length * r + line],
+            FaultHypothesis::Torque(i, _) => share(i) * factor,
+            FaultHypothesis::Force(own, _) if own != line => 0.0,
+            FaultHypothesis::Force(..) => factor,
         }
     }
 }
