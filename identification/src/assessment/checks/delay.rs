@@ -47,10 +47,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let intervals = context.dataset.runs.iter();
     let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
     let harmless = intervals.fold(0.0, f64::max);
-    let beyond = |one: &&Tested| one.accused.probability_beyond(harmless) < level;
-    let guilty = found.iter().filter(beyond);
-    let guilty = guilty.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained));
-    let Some(shown) = guilty.or(found.first()) else {
+    let beyond = |one: &&Tested| one.wald.probability_beyond(harmless) < level;
+    let most_significant = found.iter().filter(beyond);
+    let most_significant =
+        most_significant.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained));
+    let Some(shown) = most_significant.or(found.first()) else {
         return Ok(Vec::new());
     };
     let told = Told {
@@ -59,15 +60,15 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         harmless,
     };
     let check = told.check((context, scores), shown);
-    let accused = &shown.accused;
-    let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
+    let wald = &shown.wald;
+    let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
     let number = |value: f64| significant(value, 3);
-    if guilty.is_none() {
+    if most_significant.is_none() {
         let words = format!(
             "torques and motion are of the same time: {} ± {} ms; a delay of {} ms would have been seen",
             number(size),
             number(deviation),
-            number(1e3 * (harmless + accused.visible(level)))
+            number(1e3 * (harmless + wald.visible(level)))
         );
         return Ok(vec![Check { words, ..check }]);
     }
@@ -81,7 +82,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     );
     let paces = scores.paces();
     let fastest = paces.iter().flatten().map(|pace| pace.frequency);
-    let is_far = accused.size().abs() * fastest.fold(0.0, f64::max) > LARGEST;
+    let is_far = wald.size().abs() * fastest.fold(0.0, f64::max) > LARGEST;
     let by = if is_far {
         String::from("far")
     } else {
@@ -137,13 +138,13 @@ struct Told {
 impl Told {
     /// The check of one delay, without words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
-        let accused = &one.accused;
-        let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
+        let wald = &one.wald;
+        let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
         let beyond = (size.abs() - 1e3 * self.harmless).max(0.0);
         Check::new(CheckKind::Delay, About::Model, "")
             .measured(beyond / deviation, "standard deviations")
             .against(
-                accused.quantile(self.level),
+                wald.quantile(self.level),
                 format!(
                     "{}, of what exceeds {HARMLESS} sampling intervals",
                     origin(self.tests)
@@ -152,10 +153,10 @@ impl Told {
             .detecting(vec![one.detectable(
                 of,
                 (String::new(), "s"),
-                self.harmless + accused.visible(self.level),
+                self.harmless + wald.visible(self.level),
             )])
             .shown_by(parabola(
-                accused,
+                wald,
                 "Residual for torques that are shifted in time",
                 ("delay of the torques", "ms", 1e3),
             ))

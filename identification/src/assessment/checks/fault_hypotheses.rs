@@ -5,7 +5,7 @@ use crate::{
     assessment::{
         check::{Check, Detectable, Grade},
         evidence::{Axis, Curve, Evidence},
-        hypotheses::{Accused, FaultHypothesis, Group, Scores},
+        hypotheses::{FaultHypothesis, Group, Scores, WaldTest},
     },
     result::{Estimate, ParameterEstimate, Stage},
 };
@@ -25,7 +25,7 @@ const HALF_WIDTH: f64 = 1.96;
 /// A tested fault hypothesis.
 pub(super) struct Tested {
     pub(super) group: Group,
-    pub(super) accused: Accused,
+    pub(super) wald: WaldTest,
     /// Size to use instead of the fitted one, if another test determines it better.
     pub(super) size: Option<f64>,
     /// Factor of the parameter shifts in the estimate, whose band is wider than the test's.
@@ -47,13 +47,13 @@ impl Tested {
             name,
             unit,
             is_length: false,
-            deviation: self.accused.deviation,
+            deviation: self.wald.deviation,
             size,
             parameter: base
                 .zip(most)
                 .map_or_else(String::new, |(base, (_, column))| self::name(base, *column)),
             moves: most.map_or(0.0, |(by, _)| {
-                let own = self.size.unwrap_or_else(|| self.accused.size());
+                let own = self.size.unwrap_or_else(|| self.wald.size());
                 by * size / own.abs().max(f64::MIN_POSITIVE)
             }),
         }
@@ -68,16 +68,16 @@ impl Tested {
         };
         let mut recommended = context.estimates_of(Stage::Recommended);
         let smaller = recommended.find(|one| one.model == base.model);
-        let of_size = |accused: &Accused| -> Vec<(usize, f64)> {
-            let factor = self.more * self.size.map_or(1.0, |size| size / accused.size());
-            let moves = accused.moves.iter();
-            moves.map(|(column, by)| (*column, by * factor)).collect()
+        let of_size = |wald: &WaldTest| -> Vec<(usize, f64)> {
+            let factor = self.more * self.size.map_or(1.0, |size| size / wald.size());
+            let shifts = wald.shifts.iter();
+            shifts.map(|(column, by)| (*column, by * factor)).collect()
         };
         let beside = smaller.and_then(|one| {
-            let accused = scores.test(&self.group, &one.columns())?;
-            Some((one, of_size(&accused)))
+            let wald = scores.test(&self.group, &one.columns())?;
+            Some((one, of_size(&wald)))
         });
-        let mut all = by_deviation(base, &of_size(&self.accused));
+        let mut all = by_deviation(base, &of_size(&self.wald));
         all.extend(
             beside
                 .iter()
@@ -104,11 +104,11 @@ pub(super) struct Harm {
 pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Vec<Tested> {
     groups
         .filter_map(|group| {
-            let accused = scores.test(&group, scores.selected())?;
+            let wald = scores.test(&group, scores.selected())?;
             let size = None;
             Some(Tested {
                 group,
-                accused,
+                wald,
                 size,
                 more: 1.0,
             })
@@ -123,9 +123,9 @@ pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<Tested> {
 }
 
 /// The hypothesis that explains most of the residual, among those significant at `level`.
-pub(super) fn guilty(all: &[Tested], level: f64) -> Option<&Tested> {
-    let beyond = all.iter().filter(|one| one.accused.probability < level);
-    beyond.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained))
+pub(super) fn most_significant(all: &[Tested], level: f64) -> Option<&Tested> {
+    let beyond = all.iter().filter(|one| one.wald.probability < level);
+    beyond.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))
 }
 
 /// Names of the base parameters of dry friction.
@@ -146,12 +146,12 @@ pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
 pub(super) fn worst_harm(
     context: &Context<'_>,
     scores: &Scores,
-    (all, guilty): (&[Tested], &Tested),
+    (all, most_significant): (&[Tested], &Tested),
     level: f64,
 ) -> Harm {
     let likely = all.iter().filter(|one| {
-        one.accused.probability < level
-            && one.accused.explained >= LIKELY * guilty.accused.explained
+        one.wald.probability < level
+            && one.wald.explained >= LIKELY * most_significant.wald.explained
     });
     let harms: Vec<Harm> = likely.map(|one| harm(context, scores, one)).collect();
     let count = context
@@ -170,7 +170,7 @@ pub(super) fn worst_harm(
         .unwrap_or_else(Harm::none);
     Harm {
         grade: Harm::grade(spoiled.len(), count),
-        explained: guilty.accused.explained,
+        explained: most_significant.wald.explained,
         spoiled,
         ..worst
     }
@@ -187,7 +187,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
     };
     let name = |column: usize| name(base, column);
     let mut harm = Harm {
-        explained: tested.accused.explained,
+        explained: tested.wald.explained,
         worst,
         parameter: name(column),
         ..Harm::none()
@@ -300,22 +300,16 @@ fn name(estimate: &Estimate, column: usize) -> String {
 /// Plot of the squared residual over the size of a fault.
 ///
 /// It is a parabola with its minimum at the fitted size.
-pub(super) fn parabola(accused: &Accused, title: &str, axis: (&str, &str, f64)) -> Evidence {
+pub(super) fn parabola(wald: &WaldTest, title: &str, axis: (&str, &str, f64)) -> Evidence {
     const POINTS: usize = 41;
     let (label, unit, scale) = axis;
-    let (size, reach) = (
-        accused.size(),
-        2.0 * accused.size().abs() + 6.0 * accused.deviation,
-    );
+    let (size, reach) = (wald.size(), 2.0 * wald.size().abs() + 6.0 * wald.deviation);
     let x: Vec<f64> = (0..POINTS)
         .map(|i| reach * (2.0 * i as f64 / (POINTS - 1) as f64 - 1.0))
         .collect();
     let remaining = |at: f64| {
         let off = if size == 0.0 { 0.0 } else { 1.0 - at / size };
-        100.0
-            * (1.0 - accused.explained * (1.0 - off * off))
-                .max(0.0)
-                .sqrt()
+        100.0 * (1.0 - wald.explained * (1.0 - off * off)).max(0.0).sqrt()
     };
     let y: Vec<f64> = x.iter().map(|at| remaining(*at)).collect();
     let x: Vec<f64> = x.iter().map(|at| scale * at).collect();

@@ -2,7 +2,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Tested, guilty, parabola, tested, worst_harm},
+    fault_hypotheses::{Tested, most_significant, parabola, tested, worst_harm},
     level::{level, origin},
 };
 use crate::{
@@ -43,13 +43,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let level = level(found.len() + untold.len());
     let told = actuators.iter().zip(&found).map(|(actuator, one)| {
         let own = (name(*actuator).to_owned(), "");
-        one.detectable((context, scores), own, one.accused.visible(level))
+        one.detectable((context, scores), own, one.wald.visible(level))
     });
     let hidden = untold
         .iter()
         .map(|actuator| Detectable::never(name(*actuator)));
     let detectable: Vec<Detectable> = told.chain(hidden).collect();
-    let worst = guilty(&found, level);
+    let worst = most_significant(&found, level);
     let said = worst.map_or_else(
         || innocent(&found, &detectable),
         |worst| {
@@ -58,9 +58,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             unlike((context, scores), (&found, worst), actuator, level)
         },
     );
-    let limit = worst
-        .or(found.first())
-        .map(|one| one.accused.quantile(level));
+    let limit = worst.or(found.first()).map(|one| one.wald.quantile(level));
     let count = found.len() + untold.len();
     Ok(vec![
         said.against(limit.unwrap_or_default(), origin(count))
@@ -96,7 +94,7 @@ fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
     );
     let largest = found
         .iter()
-        .map(|one| one.accused.size().abs() / one.accused.deviation)
+        .map(|one| one.wald.size().abs() / one.wald.deviation)
         .fold(0.0, f64::max);
     Check::new(CheckKind::WrongGain, About::Model, words).measured(largest, "standard deviations")
 }
@@ -109,7 +107,7 @@ fn unlike(
     level: f64,
 ) -> Check {
     let harm = worst_harm(context, scores, (found, worst), level);
-    let size = worst.accused.size();
+    let size = worst.wald.size();
     let by = match size {
         // The first-order test has no valid size for large errors.
         size if size.abs() > LARGEST => String::from("unlike"),
@@ -118,15 +116,15 @@ fn unlike(
     };
     let words = format!(
         "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant, its gear ratio and whether it is filtered unlike the others",
-        percent(worst.accused.deviation),
+        percent(worst.wald.deviation),
         harm.words()
     );
     Check::new(CheckKind::WrongGain, About::Model, words)
         .of_actuator(actuator)
-        .measured(size.abs() / worst.accused.deviation, "standard deviations")
+        .measured(size.abs() / worst.wald.deviation, "standard deviations")
         .because(&harm)
         .shown_by(parabola(
-            &worst.accused,
+            &worst.wald,
             &format!("Residual for other gains of {actuator}"),
             ("error of the gain", "%", 100.0),
         ))

@@ -4,7 +4,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{HARMFUL, Tested, guilty, harm, parabola, tested, worst_harm},
+    fault_hypotheses::{HARMFUL, Tested, harm, most_significant, parabola, tested, worst_harm},
     level::{level, origin},
 };
 use crate::{
@@ -51,7 +51,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     }
     let level = level(tests);
-    let Some(worst) = guilty(&found, level) else {
+    let Some(worst) = most_significant(&found, level) else {
         return Ok(vec![nothing(
             (context, scores),
             (&hypotheses, &found),
@@ -65,8 +65,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let hypothesis = hypotheses[place];
     let harm = worst_harm(context, scores, (&found, worst), level);
     let (name, unit) = (name(context, hypothesis), unit(context, hypothesis));
-    let size = significant(worst.accused.size().abs(), 3);
-    let deviation = significant(worst.accused.deviation, 2);
+    let size = significant(worst.wald.size().abs(), 3);
+    let deviation = significant(worst.wald.deviation, 2);
     let spread = format!("(standard deviation {deviation} {unit}); {}", harm.words());
     let zero = match hypothesis {
         FaultHypothesis::Eccentric(..) => {
@@ -79,7 +79,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let (kind, words, title, axis) = match hypothesis {
         FaultHypothesis::Length(_) => {
-            let sense = if worst.accused.size() > 0.0 {
+            let sense = if worst.wald.size() > 0.0 {
                 "large"
             } else {
                 "small"
@@ -95,9 +95,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 FaultHypothesis::Scales => String::from("all drives"),
                 _ => format!("`{name}`"),
             };
-            let [size, deviation] = [worst.accused.size(), worst.accused.deviation]
+            let [size, deviation] = [worst.wald.size(), worst.wald.deviation]
                 .map(|part| significant(100.0 * part.abs(), 3));
-            let sense = if worst.accused.size() > 0.0 {
+            let sense = if worst.wald.size() > 0.0 {
                 "large"
             } else {
                 "small"
@@ -133,8 +133,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let check = Check::new(kind, About::Model, words)
         .measured(ratio(worst), "standard deviations")
-        .against(worst.accused.quantile(level), origin(tests))
-        .shown_by(parabola(&worst.accused, &title, (axis, unit, 1.0)))
+        .against(worst.wald.quantile(level), origin(tests))
+        .shown_by(parabola(&worst.wald, &title, (axis, unit, 1.0)))
         .because(&harm);
     let detectable = detectable((context, scores), (&hypotheses, &found), level).into_iter();
     let check = check.detecting(detectable.map(|(_, one)| one).collect());
@@ -175,7 +175,7 @@ fn nothing(
     let largest = found.iter().map(ratio).fold(0.0, f64::max);
     let threshold = found
         .first()
-        .map_or(f64::NAN, |one| one.accused.quantile(level));
+        .map_or(f64::NAN, |one| one.wald.quantile(level));
     Check::new(CheckKind::EncoderOffset, About::Model, words.join("; "))
         .measured(largest, "standard deviations")
         .against(threshold, origin(found.len()))
@@ -197,7 +197,7 @@ fn detectable(
     });
     let one = |(&hypothesis, one): (&FaultHypothesis, &Tested)| {
         let (name, unit) = (name(context, hypothesis), unit(context, hypothesis));
-        let visible = one.accused.visible(level);
+        let visible = one.wald.visible(level);
         let own = one.detectable((context, scores), (name, unit), visible);
         let is_length = matches!(hypothesis, FaultHypothesis::Length(_));
         (hypothesis, Detectable { is_length, ..own })
@@ -206,7 +206,7 @@ fn detectable(
 }
 
 fn ratio(one: &Tested) -> f64 {
-    one.accused.size().abs() / one.accused.deviation
+    one.wald.size().abs() / one.wald.deviation
 }
 
 /// Name of the actuator or the length.

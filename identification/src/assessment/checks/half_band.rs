@@ -34,7 +34,7 @@ pub(super) fn confirms(
     let Some(one) = only(&narrow, hypothesis) else {
         return Ok(true);
     };
-    Ok(remains(size, one.accused.size()))
+    Ok(remains(size, one.wald.size()))
 }
 
 /// Whether enough of the size remains in half the band.

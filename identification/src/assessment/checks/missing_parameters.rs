@@ -4,7 +4,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Harm, Tested, guilty, harm, tested, worst_harm},
+    fault_hypotheses::{Harm, Tested, harm, most_significant, tested, worst_harm},
     level::{level, origin},
 };
 use crate::{
@@ -28,9 +28,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     }
     let (tests, level) = (found.len(), level(found.len()));
-    let ratio = |one: &Tested| one.accused.strength();
-    let worst = guilty(&found, level);
-    let limit = worst.unwrap_or(&found[0]).accused.quantile(level);
+    let ratio = |one: &Tested| one.wald.strength();
+    let worst = most_significant(&found, level);
+    let limit = worst.unwrap_or(&found[0]).wald.quantile(level);
     let check = Check::new(CheckKind::MissingParameter, About::Model, "").shown_by(evidence(
         &hypotheses,
         &found,
@@ -56,7 +56,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }
     let rest = format!(
         "which explains {} % of the residual's square; {}{}",
-        significant(100.0 * worst.accused.explained, 2),
+        significant(100.0 * worst.wald.explained, 2),
         harm.words(),
         too(&others)
     );
@@ -104,8 +104,8 @@ fn words(
     };
     let told = Told {
         what: format!("{what} {}", called(name.copied().unwrap_or_default())),
-        size: worst.accused.largest(),
-        strength: worst.accused.strength(),
+        size: worst.wald.largest(),
+        strength: worst.wald.strength(),
         rest,
     };
     match hypothesis {
@@ -141,9 +141,9 @@ fn others(
     places.retain(|one| *one != own);
     let worst_of = |at: (usize, usize)| {
         let all = hypotheses.iter().zip(found);
-        let beyond = all
-            .filter(|((one, _), tested)| place(*one) == at && tested.accused.probability < level);
-        let explained = |one: &Tested| one.accused.explained;
+        let beyond =
+            all.filter(|((one, _), tested)| place(*one) == at && tested.wald.probability < level);
+        let explained = |one: &Tested| one.wald.explained;
         let (_, tested) = beyond.max_by(|a, b| explained(a.1).total_cmp(&explained(b.1)))?;
         let harm = harm(context, scores, tested);
         let names = match at.0 {
@@ -254,7 +254,7 @@ fn evidence(hypotheses: &[(FaultHypothesis, Shape)], found: &[Tested], limit: f6
         curve.x.push((number + 1) as f64);
         curve
             .y
-            .push(one.accused.strength() * one.accused.largest().signum());
+            .push(one.wald.strength() * one.wald.largest().signum());
     }
     Evidence {
         title: String::from("What the model may lack"),

@@ -95,18 +95,18 @@ fn of_run(
     one: &Tested,
     level: f64,
 ) -> Check {
-    let accused = &one.accused;
+    let wald = &one.wald;
     let check = Check::new(CheckKind::PayloadLabel, About::Model, "")
         .in_run(log.name())
-        .measured(accused.probability, "probability")
+        .measured(wald.probability, "probability")
         .against(level, origin(runs));
     let label = if log.payload() { "with" } else { "without" };
-    if accused.probability >= level {
+    if wald.probability >= level {
         let words = format!("the run is one {label} the payload, as its label says");
         return Check { words, ..check };
     }
     let harm = harm(context, scores, one);
-    let differences: Vec<String> = accused
+    let differences: Vec<String> = wald
         .sizes
         .iter()
         .filter_map(|(place, size)| {
@@ -120,7 +120,7 @@ fn of_run(
         harm.words()
     );
     let check = Check { words, ..check }.because(&harm);
-    if accused.explained > WRONG {
+    if wald.explained > WRONG {
         return check.found().allowing(Grade::DoNotUse);
     }
     check

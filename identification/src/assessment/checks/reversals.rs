@@ -42,9 +42,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         tests,
         level: level(tests),
     };
-    let bent = friction.filter(|one| one.accused.probability < told.level);
+    let bent = friction.filter(|one| one.wald.probability < told.level);
     if let Some(found) = filtered(context, all.as_ref(), told.level)? {
-        let explains = |one: &Tested| one.accused.explained;
+        let explains = |one: &Tested| one.wald.explained;
         if bent
             .as_ref()
             .is_none_or(|one| explains(one) <= explains(found))
@@ -59,7 +59,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .map(wider)
         .or(all);
     let innocent = shown.map(|one| {
-        let visible = one.accused.visible(told.level);
+        let visible = one.wald.visible(told.level);
         told.check((context, scores), &one, format!(
             "dry friction changes where velocities change their signs; a mean of all signals over {} ms would have been seen",
             time(visible)
@@ -82,9 +82,9 @@ fn filtered<'a>(
     let Some(one) = all else {
         return Ok(None);
     };
-    let (accused, harmless) = (&one.accused, harmless(context));
-    let is_beyond = accused.size() > 0.0 && accused.probability_beyond(harmless) < level;
-    let is_there = is_beyond && confirms(context, FaultHypothesis::CommonFilter, accused.size())?;
+    let (wald, harmless) = (&one.wald, harmless(context));
+    let is_beyond = wald.size() > 0.0 && wald.probability_beyond(harmless) < level;
+    let is_there = is_beyond && confirms(context, FaultHypothesis::CommonFilter, wald.size())?;
     Ok(is_there.then_some(one))
 }
 
@@ -97,20 +97,17 @@ struct Told {
 impl Told {
     /// A check with its words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested, words: String) -> Check {
-        let accused = &one.accused;
+        let wald = &one.wald;
         Check::new(CheckKind::Reversals, About::Model, words)
-            .measured(
-                accused.size().abs() / accused.deviation,
-                "standard deviations",
-            )
-            .against(accused.quantile(self.level), origin(self.tests))
+            .measured(wald.size().abs() / wald.deviation, "standard deviations")
+            .against(wald.quantile(self.level), origin(self.tests))
             .detecting(vec![one.detectable(
                 of,
                 (String::new(), UNIT),
-                accused.visible(self.level),
+                wald.visible(self.level),
             )])
             .shown_by(parabola(
-                accused,
+                wald,
                 "Residual for dry friction that is smoothed",
                 ("half of the mean square of the filter's time", "ms²", 1e6),
             ))
@@ -123,7 +120,7 @@ impl Told {
         harm.spoil(dry_friction(of.0));
         let words = format!(
             "positions and torques look filtered alike, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without, or with a cutoff far above the motion",
-            time(one.accused.size()),
+            time(one.wald.size()),
             harm.words()
         );
         self.check(of, one, words).because(&harm)
@@ -132,10 +129,10 @@ impl Told {
     /// The failed check of dry friction that differs around reversals.
     fn bent(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
         let harm = harm(of.0, of.1, one);
-        let words = if one.accused.size() > 0.0 {
+        let words = if one.wald.size() > 0.0 {
             format!(
                 "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. So it is where positions and torques have passed the same filter before they were logged, or where friction bends before it slides: log without filters, or leave out equations near standstill (`standstill_velocity`)",
-                time(one.accused.size()),
+                time(one.wald.size()),
                 harm.words()
             )
         } else {

@@ -41,9 +41,8 @@
 //! - `scaled`: normal equations of columns with different units;
 //! - `spread`: covariance of the scores;
 //! - `group`: columns that are tested together;
-//! - `test`: sizes, standard deviations, p-values; `accused`: their result.
+//! - `test`: sizes, standard deviations, p-values; `wald_test`: their result.
 
-mod accused;
 mod beside;
 mod columns;
 mod course;
@@ -60,8 +59,8 @@ mod sections;
 mod shapes;
 mod spread;
 mod test;
+mod wald_test;
 
-pub(crate) use accused::Accused;
 pub(crate) use columns::FaultHypothesis;
 pub(crate) use course::Pace;
 pub(crate) use group::Group;
@@ -69,3 +68,4 @@ pub(crate) use misreading::Misreading;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
 pub(crate) use shapes::{Reach, Shape};
+pub(crate) use wald_test::WaldTest;

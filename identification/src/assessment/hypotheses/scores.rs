@@ -7,7 +7,6 @@ use overact::Model;
 use rayon::prelude::*;
 
 use super::{
-    accused::Accused,
     beside::Beside,
     columns::{FaultHypothesis, Layout, fault_hypotheses},
     pairs::{Correlation, correlations},
@@ -15,6 +14,7 @@ use super::{
     scaled::{Scaled, told},
     sections::{Frame, RunScores},
     shapes::{Reach, Shape},
+    wald_test::WaldTest,
 };
 use crate::{
     data::{Log, Variant, periods::Return},
@@ -67,7 +67,7 @@ pub(crate) struct Scores {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Found {
     pub(super) beside: OnceLock<Option<Beside>>,
-    pub(super) accused: OnceLock<Vec<Option<Accused>>>,
+    pub(super) wald_tests: OnceLock<Vec<Option<WaldTest>>>,
 }
 
 /// Reads the runs and computes the scores with an estimate of all base parameters.

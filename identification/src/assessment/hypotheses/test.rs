@@ -4,12 +4,12 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::{
-    accused::Accused,
     beside::Beside,
     group::Group,
     scaled::{Scaled, told},
     scores::Scores,
     spread::{Freed, Share, Spread, score},
+    wald_test::WaldTest,
 };
 use crate::estimation::intervals::distributions::Hotelling;
 
@@ -17,7 +17,7 @@ impl Scores {
     /// Tests a group with the base parameter columns `selected` in the model.
     ///
     /// `None` if the data do not separate the group from them.
-    pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<Accused> {
+    pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<WaldTest> {
         if selected != self.selected {
             return self.tested(group, &self.beside(selected)?);
         }
@@ -31,7 +31,7 @@ impl Scores {
                     let one = |number| self.tested(&Group::hypothesis(number), beside);
                     groups.map(one).collect()
                 };
-                let all: &Vec<Option<Accused>> = self.own.accused.get_or_init(all);
+                let all: &Vec<Option<WaldTest>> = self.own.wald_tests.get_or_init(all);
                 all.get(group.block)?.clone()
             }
             _ => self.tested(group, beside),
@@ -48,7 +48,7 @@ impl Scores {
     }
 
     /// Tests a group with these columns in the model.
-    fn tested(&self, group: &Group, beside: &Beside) -> Option<Accused> {
+    fn tested(&self, group: &Group, beside: &Beside) -> Option<WaldTest> {
         let layout = &self.layout;
         let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
         let inside = |run: usize| group.run.is_none_or(|own| own == run);
@@ -81,11 +81,16 @@ impl Scores {
         let shares: Vec<Share> = runs
             .map(|(number, run)| freed.share((number, run), inside(number)))
             .collect();
-        self.accused(&freed, &shares, &off.select_columns(&told))
+        self.wald_test(&freed, &shares, &off.select_columns(&told))
     }
 
     /// Result from the contributions of all runs; `off` is B for the estimate's own columns.
-    fn accused(&self, freed: &Freed<'_>, shares: &[Share], off: &DMatrix<f64>) -> Option<Accused> {
+    fn wald_test(
+        &self,
+        freed: &Freed<'_>,
+        shares: &[Share],
+        off: &DMatrix<f64>,
+    ) -> Option<WaldTest> {
         let width = freed.told.len();
         let score = score(shares, width);
         let Spread {
@@ -104,9 +109,9 @@ impl Scores {
         let first = freed.white.column(0);
         let variance = (first.transpose() * &covariance * first)[(0, 0)];
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
-        let moves = off * &sizes;
+        let shifts = off * &sizes;
         let selected = freed.beside.selected.iter().copied();
-        Some(Accused {
+        Some(WaldTest {
             deviation: variance.max(0.0).sqrt(),
             freedom,
             probability: test.probability,
@@ -117,7 +122,7 @@ impl Scores {
                 .copied()
                 .zip(sizes.iter().copied())
                 .collect(),
-            moves: selected.zip(moves.iter().copied()).collect(),
+            shifts: selected.zip(shifts.iter().copied()).collect(),
         })
     }
 

@@ -10,7 +10,7 @@ const LEAST_PROBABILITY: f64 = 1e-30;
 
 /// Wald test of a group of columns against the residual.
 #[derive(Debug, Clone)]
-pub(crate) struct Accused {
+pub(crate) struct WaldTest {
     /// δ of each separable column, with its place in the group.
     pub(crate) sizes: Vec<(usize, f64)>,
     /// Standard deviation of the first δ.
@@ -22,10 +22,10 @@ pub(crate) struct Accused {
     /// Fraction of the squared residual that the group explains.
     pub(crate) explained: f64,
     /// B δ for each base parameter of the estimate: place and shift.
-    pub(crate) moves: Vec<(usize, f64)>,
+    pub(crate) shifts: Vec<(usize, f64)>,
 }
 
-impl Accused {
+impl WaldTest {
     /// δ of the first column.
     pub(crate) fn size(&self) -> f64 {
         self.sizes.first().map_or(0.0, |(_, size)| *size)
