@@ -37,18 +37,18 @@
 //! - `course`: residual and motion over time;
 //! - `pass`: inputs of a pass over a run; `material`: data of the rows; `run`: the pass;
 //! - `scores`: result of all passes;
-//! - `beside`: the model's columns in a test;
+//! - `model_columns`: the model's columns in a test;
 //! - `scaled`: normal equations of columns with different units;
 //! - `spread`: covariance of the scores;
 //! - `group`: columns that are tested together;
 //! - `test`: sizes, standard deviations, p-values; `wald_test`: their result.
 
-mod beside;
 mod columns;
 mod course;
 mod group;
 mod material;
 mod misreading;
+mod model_columns;
 mod nearby;
 mod pairs;
 mod pass;

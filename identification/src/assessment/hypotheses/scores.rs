@@ -7,8 +7,8 @@ use overact::Model;
 use rayon::prelude::*;
 
 use super::{
-    beside::Beside,
     columns::{FaultHypothesis, Layout, fault_hypotheses},
+    model_columns::ModelColumns,
     pairs::{Correlation, correlations},
     pass::Pass,
     scaled::{Scaled, told},
@@ -60,13 +60,13 @@ pub(crate) struct Scores {
     /// Ratio of the estimate's band to that of the equations.
     pub(crate) narrower: usize,
     /// Cached tests with the estimate's own columns.
-    pub(super) own: Found,
+    pub(super) own: CachedTests,
 }
 
 /// Products and results of the tests with the estimate's own columns, computed on demand.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Found {
-    pub(super) beside: OnceLock<Option<Beside>>,
+pub(super) struct CachedTests {
+    pub(super) model_columns: OnceLock<Option<ModelColumns>>,
     pub(super) wald_tests: OnceLock<Vec<Option<WaldTest>>>,
 }
 
@@ -133,7 +133,7 @@ pub(crate) fn scores(
         narrower,
         runs: scores,
         hypotheses,
-        own: Found::default(),
+        own: CachedTests::default(),
     })
 }
 

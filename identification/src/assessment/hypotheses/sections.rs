@@ -128,7 +128,7 @@ impl RunScores {
     }
 
     /// Products of some base parameter columns with some of all columns, over cosine m.
-    pub(super) fn beside(
+    pub(super) fn cross_products(
         &self,
         layout: &Layout,
         m: usize,

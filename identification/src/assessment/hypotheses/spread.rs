@@ -5,14 +5,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{beside::Beside, columns::Layout, group::Group, sections::RunScores};
+use super::{columns::Layout, group::Group, model_columns::ModelColumns, sections::RunScores};
 use crate::estimation::returning::{Mean, Stray};
 
 /// Orthonormal columns of a group outside the model's columns: z⊥ = (z - W B) Mᵀ.
 pub(super) struct Freed<'a> {
     pub(super) layout: &'a Layout,
     /// Columns of the model.
-    pub(super) beside: &'a Beside,
+    pub(super) model_columns: &'a ModelColumns,
     /// The group, and its independent columns by place in the block.
     pub(super) group: Group,
     pub(super) told: &'a [usize],
@@ -50,14 +50,14 @@ impl Freed<'_> {
         let columns: Vec<usize> = self.columns().collect();
         let turned = self.white.transpose();
         let (p, width) = self.solved.shape();
-        let selected = self.beside.selected.as_slice();
-        for (m, products) in self.beside.products[number].iter().enumerate() {
+        let selected = self.model_columns.selected.as_slice();
+        for (m, products) in self.model_columns.products[number].iter().enumerate() {
             let mut fitted = -(products * self.solved);
             let mut own = DMatrix::zeros(width, width);
             let all = run.scores().column(m);
             let mut score = DVector::zeros(width);
             if inside {
-                let cross = run.beside(self.layout, m, (selected, &columns));
+                let cross = run.cross_products(self.layout, m, (selected, &columns));
                 own -= cross.tr_mul(self.solved);
                 fitted += cross;
                 let block = run.own(self.layout, self.group.block, m);
@@ -130,11 +130,11 @@ impl Freed<'_> {
         let width = sizes.len();
         let mut all = vec![Stray::default(); width];
         let turned = self.white.transpose();
-        let beside = -(self.solved * &turned);
-        for ((runs, mean), left) in means.iter().zip(&self.beside.left) {
+        let model_part = -(self.solved * &turned);
+        for ((runs, mean), left) in means.iter().zip(&self.model_columns.left) {
             let mut combinations = DMatrix::zeros(self.layout.columns, width);
-            for (row, column) in self.beside.selected.iter().enumerate() {
-                combinations.set_row(*column, &beside.row(row));
+            for (row, column) in self.model_columns.selected.iter().enumerate() {
+                combinations.set_row(*column, &model_part.row(row));
             }
             let inside = self.group.run.is_none_or(|own| runs.contains(&own));
             if inside && self.group.run.is_some() && runs.len() > 1 {
@@ -163,7 +163,10 @@ impl Freed<'_> {
                 (1..=count).map(|b| all[b].column(i).scale(root)).collect();
             DMatrix::from_columns(&columns)
         };
-        let (model, group) = (self.beside.gram.white(&of(&share.fitted)), of(&share.own));
+        let (model, group) = (
+            self.model_columns.gram.white(&of(&share.fitted)),
+            of(&share.own),
+        );
         let taken = model.tr_mul(&model) + group.tr_mul(&group);
         let spectrum = |m: usize| share.own[m][(i, i)];
         DMatrix::from_fn(count, count, |a, b| {

@@ -4,8 +4,8 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::{
-    beside::Beside,
     group::Group,
+    model_columns::ModelColumns,
     scaled::{Scaled, told},
     scores::Scores,
     spread::{Freed, Share, Spread, score},
@@ -19,28 +19,31 @@ impl Scores {
     /// `None` if the data do not separate the group from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<WaldTest> {
         if selected != self.selected {
-            return self.tested(group, &self.beside(selected)?);
+            return self.tested(group, &self.model_columns(selected)?);
         }
-        let beside = self.own.beside.get_or_init(|| self.beside(selected));
-        let beside = beside.as_ref()?;
+        let model_columns = self
+            .own
+            .model_columns
+            .get_or_init(|| self.model_columns(selected));
+        let model_columns = model_columns.as_ref()?;
         match group.run {
             // One request computes all hypotheses, since callers need them all.
             None if group.block < self.hypotheses.len() => {
                 let all = || {
                     let groups = (0..self.hypotheses.len()).into_par_iter();
-                    let one = |number| self.tested(&Group::hypothesis(number), beside);
+                    let one = |number| self.tested(&Group::hypothesis(number), model_columns);
                     groups.map(one).collect()
                 };
                 let all: &Vec<Option<WaldTest>> = self.own.wald_tests.get_or_init(all);
                 all.get(group.block)?.clone()
             }
-            _ => self.tested(group, beside),
+            _ => self.tested(group, model_columns),
         }
     }
 
     /// The base parameter columns `selected`, with the products that all tests share.
-    fn beside(&self, selected: &[usize]) -> Option<Beside> {
-        Beside::new(
+    fn model_columns(&self, selected: &[usize]) -> Option<ModelColumns> {
+        ModelColumns::new(
             &self.layout,
             (&self.runs, &self.means),
             (selected, &self.late),
@@ -48,22 +51,22 @@ impl Scores {
     }
 
     /// Tests a group with these columns in the model.
-    fn tested(&self, group: &Group, beside: &Beside) -> Option<WaldTest> {
+    fn tested(&self, group: &Group, model_columns: &ModelColumns) -> Option<WaldTest> {
         let layout = &self.layout;
         let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
         let inside = |run: usize| group.run.is_none_or(|own| own == run);
-        let selected = beside.selected.as_slice();
+        let selected = model_columns.selected.as_slice();
         let mut cross = DMatrix::zeros(selected.len(), columns.len());
         let mut square = DMatrix::zeros(columns.len(), columns.len());
         for (number, run) in self.runs.iter().enumerate() {
             if inside(number) {
-                cross += run.beside(layout, 0, (selected, &columns));
+                cross += run.cross_products(layout, 0, (selected, &columns));
                 square += run.own(layout, group.block, 0);
             }
         }
         // The estimate has no friction rates, so its parameters shift as without them.
-        let off = beside.estimated(&cross);
-        let solved = beside.gram.solve(&cross);
+        let off = model_columns.estimated(&cross);
+        let solved = model_columns.gram.solve(&cross);
         let outside = &square - cross.tr_mul(&solved);
         let told = told(&outside, &square);
         let solved = solved.select_columns(&told);
@@ -71,7 +74,7 @@ impl Scores {
         let white = factor.white(&DMatrix::identity(told.len(), told.len()));
         let freed = Freed {
             layout,
-            beside,
+            model_columns,
             group: *group,
             told: &told,
             solved: &solved,
@@ -110,7 +113,7 @@ impl Scores {
         let variance = (first.transpose() * &covariance * first)[(0, 0)];
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
         let shifts = off * &sizes;
-        let selected = freed.beside.selected.iter().copied();
+        let selected = freed.model_columns.selected.iter().copied();
         Some(WaldTest {
             deviation: variance.max(0.0).sqrt(),
             freedom,

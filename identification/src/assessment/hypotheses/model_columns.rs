@@ -7,7 +7,7 @@ use crate::estimation::returning::Mean;
 
 /// Columns of base parameters, and rates of the dry friction columns.
 #[derive(Debug, Clone)]
-pub(super) struct Beside {
+pub(super) struct ModelColumns {
     pub(super) selected: Vec<usize>,
     /// Number of base parameters among them.
     count: usize,
@@ -20,7 +20,7 @@ pub(super) struct Beside {
     pub(super) left: Vec<Vec<f64>>,
 }
 
-impl Beside {
+impl ModelColumns {
     /// The base parameter columns `selected`, followed by the friction rates `late`.
     ///
     /// `None` if these columns are linearly dependent.
@@ -35,7 +35,7 @@ impl Beside {
             .iter()
             .map(|run| {
                 let both = (selected.as_slice(), selected.as_slice());
-                let over = |m| run.beside(layout, m, both);
+                let over = |m| run.cross_products(layout, m, both);
                 (0..=2 * run.cosines).map(over).collect()
             })
             .collect();
