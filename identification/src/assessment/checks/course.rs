@@ -134,8 +134,8 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
 /// Checks that regressor and torques pass the same filter.
 fn unlike_filters(context: &Context<'_>) -> Option<Check> {
     let settings = context.settings;
-    let unlike = settings.decimation <= 1 && !settings.filter_equations;
-    unlike.then(|| {
+    let are_torques_unfiltered = settings.decimation <= 1 && !settings.filter_equations;
+    are_torques_unfiltered.then(|| {
         let words = "positions are filtered and torques are not: without `decimation`, whose filter both pass, the columns are smoother than the torques, which biases friction. Set `decimation` to more than one, or `filter_equations = true`";
         Check::new(CheckKind::Filters, About::Data, words).found()
     })

@@ -54,12 +54,12 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(shown) = most_significant.or(found.first()) else {
         return Ok(Vec::new());
     };
-    let told = Told {
+    let limits = TestLimits {
         tests: found.len(),
         level,
         harmless,
     };
-    let check = told.check((context, scores), shown);
+    let check = limits.check((context, scores), shown);
     let wald = &shown.wald;
     let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
     let number = |value: f64| significant(value, 3);
@@ -128,14 +128,14 @@ fn shifted(delay: f64, context: &Context<'_>) -> String {
 }
 
 /// Number of tests, level and threshold of the delay tests.
-struct Told {
+struct TestLimits {
     tests: usize,
     level: f64,
     /// Harmless delay, s.
     harmless: f64,
 }
 
-impl Told {
+impl TestLimits {
     /// The check of one delay, without words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
         let wald = &one.wald;

@@ -38,7 +38,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         }
     }
     if found.is_empty() {
-        return Ok(none_told(names).into_iter().collect());
+        return Ok(none_separable(names).into_iter().collect());
     }
     let level = level(found.len() + untold.len());
     let told = actuators.iter().zip(&found).map(|(actuator, one)| {
@@ -51,11 +51,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let detectable: Vec<Detectable> = told.chain(hidden).collect();
     let worst = most_significant(&found, level);
     let said = worst.map_or_else(
-        || innocent(&found, &detectable),
+        || passed_check(&found, &detectable),
         |worst| {
             let place = found.iter().position(|one| std::ptr::eq(one, worst));
             let actuator = place.map_or("", |place| name(actuators[place]));
-            unlike((context, scores), (&found, worst), actuator, level)
+            failed_check((context, scores), (&found, worst), actuator, level)
         },
     );
     let limit = worst.or(found.first()).map(|one| one.wald.quantile(level));
@@ -72,7 +72,7 @@ fn percent(value: f64) -> String {
 }
 
 /// The passed check, with its detection limits.
-fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
+fn passed_check(found: &[Tested], detectable: &[Detectable]) -> Check {
     let visible: Vec<String> = detectable
         .iter()
         .map(|one| {
@@ -100,7 +100,7 @@ fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
 }
 
 /// The failed check of one drive.
-fn unlike(
+fn failed_check(
     (context, scores): (&Context<'_>, &Scores),
     (found, worst): (&[Tested], &Tested),
     actuator: &str,
@@ -133,7 +133,7 @@ fn unlike(
 /// The check if no gain can be separated from the drive's own parameters.
 ///
 /// A single drive has only a common gain, so there is no check.
-fn none_told(names: &[&str]) -> Option<Check> {
+fn none_separable(names: &[&str]) -> Option<Check> {
     let words = "nothing in these data tells whether the gain of one drive is unlike the others'";
     let check = || Check::new(CheckKind::WrongGain, About::Model, words);
     let never = names.iter().map(|name| Detectable::never(name)).collect();

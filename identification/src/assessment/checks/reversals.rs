@@ -38,34 +38,34 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let friction = only(scores, FaultHypothesis::FrictionSmoothing).map(wider);
     let all = only(scores, FaultHypothesis::CommonFilter).map(wider);
     let tests = friction.iter().chain(&all).count();
-    let told = Told {
+    let limits = TestLimits {
         tests,
         level: level(tests),
     };
-    let bent = friction.filter(|one| one.wald.probability < told.level);
-    if let Some(found) = filtered(context, all.as_ref(), told.level)? {
+    let bent = friction.filter(|one| one.wald.probability < limits.level);
+    if let Some(found) = filtered(context, all.as_ref(), limits.level)? {
         let explains = |one: &Tested| one.wald.explained;
         if bent
             .as_ref()
             .is_none_or(|one| explains(one) <= explains(found))
         {
-            return Ok(vec![told.filtered((context, scores), found)]);
+            return Ok(vec![limits.filtered((context, scores), found)]);
         }
     }
     if let Some(bent) = &bent {
-        return Ok(vec![told.bent((context, scores), bent)]);
+        return Ok(vec![limits.bent((context, scores), bent)]);
     }
     let shown = only(scores, FaultHypothesis::FrictionSmoothing)
         .map(wider)
         .or(all);
-    let innocent = shown.map(|one| {
-        let visible = one.wald.visible(told.level);
-        told.check((context, scores), &one, format!(
+    let passed_check = shown.map(|one| {
+        let visible = one.wald.visible(limits.level);
+        limits.check((context, scores), &one, format!(
             "dry friction changes where velocities change their signs; a mean of all signals over {} ms would have been seen",
             time(visible)
         ))
     });
-    Ok(innocent.into_iter().collect())
+    Ok(passed_check.into_iter().collect())
 }
 
 /// Length of the moving average with the same smoothing, ms.
@@ -89,12 +89,12 @@ fn filtered<'a>(
 }
 
 /// Number and level of the tests.
-struct Told {
+struct TestLimits {
     tests: usize,
     level: f64,
 }
 
-impl Told {
+impl TestLimits {
     /// A check with its words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested, words: String) -> Check {
         let wald = &one.wald;

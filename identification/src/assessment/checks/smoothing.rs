@@ -98,13 +98,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     harm.explained = wald.explained;
     // The test omits reversals, but the filter rounds them, too.
     harm.spoil(dry_friction(context));
-    let (what, beside) = if wald.size() > 0.0 {
+    let (what, reference) = if wald.size() > 0.0 {
         ("the torques are", "the motion")
     } else {
         ("the motion is", "the torques")
     };
     let words = format!(
-        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without",
+        "{what} smoother than {reference}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without",
         time(wald.size()),
         harm.words()
     );
