@@ -5,7 +5,6 @@
 mod clock;
 mod closure;
 mod consistency;
-mod course;
 mod delay;
 mod excitation;
 mod fault_hypotheses;
@@ -15,6 +14,7 @@ mod half_band;
 mod held_out;
 pub(crate) mod level;
 mod missing_parameters;
+mod motion_length;
 mod negative_parameters;
 mod partition;
 mod payload_labels;
@@ -120,7 +120,7 @@ const CHECKS: [Function; 22] = [
     units::check,
     repeated::check,
     excitation::check,
-    course::check,
+    motion_length::check,
     closure::check,
     torque_faults::check,
     delay::check,

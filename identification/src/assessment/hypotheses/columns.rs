@@ -192,7 +192,7 @@ pub(super) struct Sample<'a> {
     /// Derivative of the residual with respect to a smoothing of all signals, r entries.
     ///
     /// Then follow the derivatives with respect to position errors, n × errors × r, and to lengths.
-    pub(super) alike: &'a [f64],
+    pub(super) common_filter: &'a [f64],
     pub(super) misread: &'a [f64],
     pub(super) lengths: &'a [f64],
 }
@@ -272,7 +272,7 @@ impl Sample<'_> {
                 let friction = both.enumerate().map(|(i, (all, rest))| (i, all - rest));
                 friction.map(|(i, bend)| share(i) * bend).sum::<f64>()
             }
-            FaultHypothesis::CommonFilter => self.alike[line],
+            FaultHypothesis::CommonFilter => self.common_filter[line],
             FaultHypothesis::DriveDelay(i) => -share(i) * self.torque_rates[i],
             FaultHypothesis::Gain(i) => share(i) * self.torques[i],
             FaultHypothesis::Clock => self.clock[line],

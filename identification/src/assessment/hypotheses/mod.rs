@@ -31,11 +31,11 @@
 //! - `shapes`: dependence of a missing torque on the motion;
 //! - `columns`: hypotheses and their columns;
 //! - `misreading`: dependence of an encoder error on the position;
-//! - `nearby`: prediction for a slightly different motion;
+//! - `prediction`: prediction for a slightly different motion;
 //! - `sections`: products of columns and residual, by section of the time;
 //! - `pairs`: correlated residuals of actuators;
-//! - `course`: residual and motion over time;
-//! - `pass`: inputs of a pass over a run; `material`: data of the rows; `run`: the pass;
+//! - `pace`: residual and motion over time;
+//! - `pass`: inputs of a pass over a run; `motion_data`: data of the rows; `run`: the pass;
 //! - `scores`: result of all passes;
 //! - `model_columns`: the model's columns in a test;
 //! - `scaled`: normal equations of columns with different units;
@@ -44,14 +44,14 @@
 //! - `test`: sizes, standard deviations, p-values; `wald_test`: their result.
 
 mod columns;
-mod course;
 mod group;
-mod material;
 mod misreading;
 mod model_columns;
-mod nearby;
+mod motion_data;
+mod pace;
 mod pairs;
 mod pass;
+mod prediction;
 mod run;
 mod scaled;
 mod scores;
@@ -62,9 +62,9 @@ mod test;
 mod wald_test;
 
 pub(crate) use columns::FaultHypothesis;
-pub(crate) use course::Pace;
 pub(crate) use group::Group;
 pub(crate) use misreading::Misreading;
+pub(crate) use pace::Pace;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
 pub(crate) use shapes::{Reach, Shape};

@@ -3,7 +3,7 @@
 use overact::Function;
 
 use super::{
-    material::Material,
+    motion_data::MotionData,
     pass::Pass,
     sections::{RunScores, Sink, Tempo},
 };
@@ -54,12 +54,12 @@ impl Pass<'_> {
                 motion.samples,
             );
             let jacobians = jacobians.map_err(|error| motion.outside(error.sample, error.error))?;
-            let material = Material::new(self, &motion, &jacobians)?;
-            tempo.take(&material.actuators);
+            let motion_data = MotionData::new(self, &motion, &jacobians)?;
+            tempo.take(&motion_data.actuators);
             let mut kept: Vec<Vec<f64>> = vec![Vec::new(); lines];
             for first in (0..motion.samples).step_by(TOGETHER) {
                 let count = TOGETHER.min(motion.samples - first);
-                material.rows(first..first + count, &mut rows);
+                motion_data.rows(first..first + count, &mut rows);
                 let jacobians = slice(&jacobians, size, first, count);
                 let projected = self.projected(&rows, choice.as_ref(), jacobians);
                 let rows = projected.as_ref().unwrap_or(&rows);
@@ -67,7 +67,7 @@ impl Pass<'_> {
                 all.for_each(|((stream, kept), rows)| stream.push(rows, kept));
             }
             let mut at = Vec::new();
-            places.push(&material.positions, &mut at);
+            places.push(&motion_data.positions, &mut at);
             sink.take(&kept, &at);
         }
         Ok(sink.told(tempo))

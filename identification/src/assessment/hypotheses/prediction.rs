@@ -28,7 +28,7 @@ const INSTANT: f64 = 1e-6;
 const SQUARE: f64 = 1e-6;
 
 /// An estimate that predicts torques for a motion.
-pub(super) struct Nearby<'a> {
+pub(super) struct Prediction<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) columns: &'a ColumnSet,
     pub(super) base: &'a [usize],
@@ -36,7 +36,7 @@ pub(super) struct Nearby<'a> {
     pub(super) values: &'a [f64],
 }
 
-impl<'a> Nearby<'a> {
+impl<'a> Prediction<'a> {
     /// The same parameters for another robot.
     fn of(&self, model: &'a dyn Model) -> Self {
         Self { model, ..*self }
@@ -213,7 +213,7 @@ impl<'a> Nearby<'a> {
     /// `checks::smoothing`. Terms that are linear in the motion do not change. `torques` are the
     /// actuator torques and their second derivatives. The result is zero if the change leaves the
     /// workspace.
-    pub(super) fn alike(
+    pub(super) fn common_filter(
         &self,
         motion: &Motion,
         torques: [&[f64]; 2],

@@ -7,8 +7,8 @@ use overact::Function;
 use super::{
     columns::{FaultHypothesis, Sample, moments, rates},
     misreading::Misreading,
-    nearby::{Nearby, dot},
     pass::Pass,
+    prediction::{Prediction, dot},
     shapes::Moment,
 };
 use crate::{
@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Data of a motion; samples are consecutive.
-pub(super) struct Material<'a> {
+pub(super) struct MotionData<'a> {
     pass: &'a Pass<'a>,
     /// J_p^inv, n × r.
     jacobians: &'a [f64],
@@ -39,7 +39,7 @@ pub(super) struct Material<'a> {
     torque_turns: Vec<f64>,
     pub(super) actuators: Vec<Moment>,
     clock: Vec<f64>,
-    alike: Vec<f64>,
+    common_filter: Vec<f64>,
     misread: Vec<f64>,
     lengths: Vec<f64>,
     /// Payload columns, r rows per sample.
@@ -54,7 +54,7 @@ struct Explained {
     dry: Vec<f64>,
 }
 
-impl<'a> Material<'a> {
+impl<'a> MotionData<'a> {
     /// Collects the data of a motion.
     pub(super) fn new(
         pass: &'a Pass<'a>,
@@ -72,25 +72,26 @@ impl<'a> Material<'a> {
         let base = base(pass, motion)?;
         let explained = explained(pass, &base);
         let inputs = measured(motion, jacobians, (n, sizes.dof));
-        let [torques, smooth] = freed(motion, jacobians, (&inputs, &explained));
+        let [torques, smooth] = torques_without_residual(motion, jacobians, (&inputs, &explained));
         let torque_rates = rates(&torques, n, frequency);
-        let nearby = Nearby {
+        let prediction = Prediction {
             model: pass.model,
             columns: pass.columns,
             base: pass.base,
             values: pass.frame.values,
         };
-        let [velocities, accelerations] = nearby.actuators(motion, jacobians)?;
+        let [velocities, accelerations] = prediction.actuators(motion, jacobians)?;
         let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
         let actuators = moments((motion, Reversal::new(pass.settings)), signals);
         let torque_turns = rates(&torque_rates, n, frequency);
-        let alike = nearby.alike(motion, [&torques, &torque_turns], jacobians, &actuators)?;
+        let common_filter =
+            prediction.common_filter(motion, [&torques, &torque_turns], jacobians, &actuators)?;
         let hypotheses = pass.frame.hypotheses;
         let moved = hypotheses
             .iter()
             .any(|one| matches!(one, FaultHypothesis::Offset(_)));
         let misread = if moved {
-            nearby.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?
+            prediction.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?
         } else {
             Vec::new()
         };
@@ -102,9 +103,9 @@ impl<'a> Material<'a> {
             friction: friction(pass, &base, frequency),
             torque_turns,
             torque_bends: rates(&rates(&smooth, n, frequency), n, frequency),
-            alike,
-            clock: nearby.clock(motion, &explained.all)?,
-            lengths: nearby.lengths(motion, pass.variants, &explained.all)?,
+            common_filter,
+            clock: prediction.clock(motion, &explained.all)?,
+            lengths: prediction.lengths(motion, pass.variants, &explained.all)?,
             pose: &motion.pose,
             pass,
             jacobians,
@@ -134,7 +135,7 @@ impl<'a> Material<'a> {
             reaches: self.pass.frame.reaches,
             pose: part(self.pose, sizes.pose),
             clock: part(&self.clock, r),
-            alike: part(&self.alike, r),
+            common_filter: part(&self.common_filter, r),
             misread: part(&self.misread, Misreading::ALL.len() * n * r),
             lengths: part(&self.lengths, self.pass.variants.len() * r),
         }
@@ -230,7 +231,7 @@ fn measured(motion: &Motion, jacobians: &[f64], (n, r): (usize, usize)) -> Vec<f
 }
 
 /// Torques without the residual, and torques without residual and dry friction.
-fn freed(
+fn torques_without_residual(
     motion: &Motion,
     jacobians: &[f64],
     (inputs, explained): (&[f64], &Explained),
