@@ -36,7 +36,7 @@ use crate::{
         self, Context, Watched,
         assumptions::{Found, assumptions, rests_on, unseen},
         check::{Check, Grade},
-        hypotheses::{Reach, scores},
+        hypotheses::{PositionRange, scores},
         verdict::verdicts,
     },
     data::Dataset,
@@ -133,13 +133,13 @@ pub fn identify_after(
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
     let scores_of = |(_, base): &(usize, Estimate), times: usize| {
         let columns = (&prepared.columns, prepared.base.columns.as_slice());
-        let reaches = reaches(&watched[..dataset.runs.len()]);
+        let position_ranges = position_ranges(&watched[..dataset.runs.len()]);
         let runs = (dataset.runs, dataset.variants);
         scores(
             model,
             runs,
             columns,
-            (base, &reaches),
+            (base, &position_ranges),
             (settings, &prepared.returns, times),
         )
     };
@@ -224,13 +224,13 @@ pub(crate) fn estimates_of(
 }
 
 /// Position ranges and speeds of the actuators in all runs.
-fn reaches(watched: &[Watched]) -> Vec<Reach> {
-    let of_run = |one: &Watched| -> Vec<Reach> {
+fn position_ranges(watched: &[Watched]) -> Vec<PositionRange> {
+    let of_run = |one: &Watched| -> Vec<PositionRange> {
         let bounds = one.monitor.bounds().into_iter();
         let speeds = one.monitor.speeds();
         bounds
             .zip(speeds)
-            .map(|((low, high), speed)| Reach { low, high, speed })
+            .map(|((low, high), speed)| PositionRange { low, high, speed })
             .collect()
     };
     let all = watched.iter().map(of_run);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use overact::Model;
 
 use super::misreading::Misreading;
-use super::shapes::{Moment, Reach, SHAPES, Shape, WAVES};
+use super::shapes::{ActuatorState, PositionRange, SHAPES, Shape, WAVES};
 use crate::{
     filters::central_differences,
     kinematics::Motion,
@@ -182,9 +182,9 @@ pub(super) struct Sample<'a> {
     /// Second derivatives of the torques without the residual.
     pub(super) torque_turns: &'a [f64],
     /// Motion of the actuators.
-    pub(super) actuators: &'a [Moment],
+    pub(super) actuators: &'a [ActuatorState],
     /// Position ranges and largest speeds of the actuators.
-    pub(super) reaches: &'a [Reach],
+    pub(super) position_ranges: &'a [PositionRange],
     /// Pose.
     pub(super) pose: &'a [f64],
     /// Derivative of the residual with respect to the clock, r entries; empty if not requested.
@@ -200,16 +200,17 @@ pub(super) struct Sample<'a> {
 impl Sample<'_> {
     /// Factor that the entries of a hypothesis have in common in all lines of Γ¹.
     pub(super) fn factor(&self, hypothesis: FaultHypothesis) -> f64 {
-        let shaped = |i: usize, shape: Shape| shape.value(self.actuators[i], self.reaches[i]);
+        let shaped =
+            |i: usize, shape: Shape| shape.value(self.actuators[i], self.position_ranges[i]);
         match hypothesis {
             FaultHypothesis::Play(i) => shaped(i, Shape::Sign),
             FaultHypothesis::Torque(i, shape) => shaped(i, shape),
             FaultHypothesis::Force(own, shape) => {
-                let here = Moment {
+                let here = ActuatorState {
                     position: self.pose.get(own).copied().unwrap_or(0.0),
-                    ..Moment::default()
+                    ..ActuatorState::default()
                 };
-                shape.value(here, Reach::default())
+                shape.value(here, PositionRange::default())
             }
             _ => 1.0,
         }
@@ -296,15 +297,15 @@ impl Sample<'_> {
 ///
 /// The inputs are positions, velocities, accelerations and torques. Velocity signs follow the dry
 /// friction columns.
-pub(super) fn moments(
+pub(super) fn actuator_states(
     (motion, reversal): (&Motion, Reversal),
     [positions, velocities, accelerations, torques]: [&[f64]; 4],
-) -> Vec<Moment> {
+) -> Vec<ActuatorState> {
     let n = positions.len() / motion.samples.max(1);
-    let moment = |place: usize| {
+    let actuator_state = |place: usize| {
         let (velocity, acceleration) = (velocities[place], accelerations[place]);
         let step = acceleration / motion.sampling_frequency;
-        Moment {
+        ActuatorState {
             position: positions[place],
             velocity,
             sign: reversal.sign(velocity, step).unwrap_or(0.0),
@@ -313,7 +314,7 @@ pub(super) fn moments(
             time: motion.time(place / n),
         }
     };
-    (0..positions.len()).map(moment).collect()
+    (0..positions.len()).map(actuator_state).collect()
 }
 
 /// Derivatives of `width` interleaved signals by central differences.

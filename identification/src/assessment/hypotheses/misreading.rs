@@ -1,6 +1,6 @@
 //! Position dependence of encoder errors.
 
-use super::shapes::Moment;
+use super::shapes::ActuatorState;
 
 /// Dependence of a position error on the position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,8 +24,8 @@ impl Misreading {
     }
 
     /// Error e(q) of unit size, and its time derivatives e' q̇ and e'' q̇² + e' q̈.
-    pub(super) fn at(self, motion: Moment) -> [f64; 3] {
-        let Moment {
+    pub(super) fn at(self, motion: ActuatorState) -> [f64; 3] {
+        let ActuatorState {
             position,
             velocity,
             acceleration,

@@ -67,5 +67,5 @@ pub(crate) use misreading::Misreading;
 pub(crate) use pace::Pace;
 pub(crate) use pairs::Correlation;
 pub(crate) use scores::{Scores, scores};
-pub(crate) use shapes::{Reach, Shape};
+pub(crate) use shapes::{PositionRange, Shape};
 pub(crate) use wald_test::WaldTest;

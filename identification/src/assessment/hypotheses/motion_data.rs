@@ -5,11 +5,11 @@ use std::ops::Range;
 use overact::Function;
 
 use super::{
-    columns::{FaultHypothesis, Sample, moments, rates},
+    columns::{FaultHypothesis, Sample, actuator_states, rates},
     misreading::Misreading,
     pass::Pass,
     prediction::{Prediction, dot},
-    shapes::Moment,
+    shapes::ActuatorState,
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},
@@ -37,7 +37,7 @@ pub(super) struct MotionData<'a> {
     torque_rates: Vec<f64>,
     torque_bends: Vec<f64>,
     torque_turns: Vec<f64>,
-    pub(super) actuators: Vec<Moment>,
+    pub(super) actuators: Vec<ActuatorState>,
     clock: Vec<f64>,
     common_filter: Vec<f64>,
     misread: Vec<f64>,
@@ -82,7 +82,7 @@ impl<'a> MotionData<'a> {
         };
         let [velocities, accelerations] = prediction.actuators(motion, jacobians)?;
         let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
-        let actuators = moments((motion, Reversal::new(pass.settings)), signals);
+        let actuators = actuator_states((motion, Reversal::new(pass.settings)), signals);
         let torque_turns = rates(&torque_rates, n, frequency);
         let common_filter =
             prediction.common_filter(motion, [&torques, &torque_turns], jacobians, &actuators)?;
@@ -132,7 +132,7 @@ impl<'a> MotionData<'a> {
             torque_bends: part(&self.torque_bends, n),
             torque_turns: part(&self.torque_turns, n),
             actuators: &self.actuators[sample * n..(sample + 1) * n],
-            reaches: self.pass.frame.reaches,
+            position_ranges: self.pass.frame.position_ranges,
             pose: part(self.pose, sizes.pose),
             clock: part(&self.clock, r),
             common_filter: part(&self.common_filter, r),

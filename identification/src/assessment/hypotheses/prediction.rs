@@ -4,7 +4,7 @@
 
 use overact::{Function, Model};
 
-use super::{columns::rates, misreading::Misreading, shapes::Moment};
+use super::{columns::rates, misreading::Misreading, shapes::ActuatorState};
 use crate::{
     blocks::{BLOCK, evaluate, slice},
     data::Variant,
@@ -166,7 +166,7 @@ impl<'a> Prediction<'a> {
         &self,
         motion: &Motion,
         (torques, jacobians): (&[f64], &[f64]),
-        actuators: &[Moment],
+        actuators: &[ActuatorState],
         errors: &[Misreading],
     ) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
@@ -218,7 +218,7 @@ impl<'a> Prediction<'a> {
         motion: &Motion,
         torques: [&[f64]; 2],
         jacobians: &[f64],
-        actuators: &[Moment],
+        actuators: &[ActuatorState],
     ) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);

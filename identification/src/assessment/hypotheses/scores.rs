@@ -13,7 +13,7 @@ use super::{
     pass::Pass,
     scaled::{Scaled, told},
     sections::{Frame, RunScores},
-    shapes::{Reach, Shape},
+    shapes::{PositionRange, Shape},
     wald_test::WaldTest,
 };
 use crate::{
@@ -72,7 +72,7 @@ pub(super) struct CachedTests {
 
 /// Reads the runs and computes the scores with an estimate of all base parameters.
 ///
-/// `reaches` are those of the actuators. The band is `times` narrower than usual, as far as enough
+/// `position_ranges` are those of the actuators. The band is `times` narrower than usual, as far as enough
 /// equations remain.
 ///
 /// # Errors
@@ -81,7 +81,7 @@ pub(crate) fn scores(
     model: &dyn Model,
     (runs, variants): (&[Log], &[Variant<'_>]),
     (columns, base): (&ColumnSet, &[usize]),
-    (estimate, reaches): (&Estimate, &[Reach]),
+    (estimate, position_ranges): (&Estimate, &[PositionRange]),
     (settings, returns, times): (&Settings, &[Option<Return>], usize),
 ) -> Result<Scores, Error> {
     let hypotheses = fault_hypotheses(model, variants.len(), estimate.model);
@@ -107,7 +107,7 @@ pub(crate) fn scores(
         frame: Frame {
             hypotheses: &hypotheses,
             layout: &layout,
-            reaches,
+            position_ranges,
             weights: &estimate.weights,
             values: &values,
         },

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
 use super::{
     columns::{FaultHypothesis, Layout},
     pairs::Pairs,
-    shapes::{Moment, Reach, Shape},
+    shapes::{ActuatorState, PositionRange, Shape},
 };
 use crate::{
     estimation::intervals::scores::cosines,
@@ -65,7 +65,7 @@ pub(super) struct Tempo {
 
 impl Tempo {
     /// Adds velocities and accelerations of all actuators, sample by sample.
-    pub(super) fn take(&mut self, actuators: &[Moment]) {
+    pub(super) fn take(&mut self, actuators: &[ActuatorState]) {
         let n = self.velocities.len().max(1);
         for row in actuators.chunks_exact(n) {
             let sums = self.velocities.iter_mut().zip(&mut self.accelerations);
@@ -158,7 +158,7 @@ pub(super) struct Frame<'a> {
     pub(super) hypotheses: &'a [FaultHypothesis],
     pub(super) layout: &'a Layout,
     /// Position ranges of the actuators in all runs.
-    pub(super) reaches: &'a [Reach],
+    pub(super) position_ranges: &'a [PositionRange],
     /// Weight of each line, and estimate of each base parameter.
     pub(super) weights: &'a [f64],
     pub(super) values: &'a [f64],
@@ -313,10 +313,10 @@ impl<'a> Sink<'a> {
             let FaultHypothesis::Torque(actuator, Shape::Waves) = *hypothesis else {
                 continue;
             };
-            let reach = self.frame.reaches[actuator];
+            let position_range = self.frame.position_ranges[actuator];
             for row in 0..all.nrows() {
                 let share = all[(row, self.constants[actuator])];
-                let waves = reach.waves(positions[row * n + actuator]);
+                let waves = position_range.waves(positions[row * n + actuator]);
                 for (column, wave) in block.clone().zip(waves) {
                     all[(row, column)] = share * wave;
                 }

@@ -64,7 +64,7 @@ pub(super) const SHAPES: [Shape; 16] = [
 
 /// Motion of an actuator or a coordinate at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Moment {
+pub(super) struct ActuatorState {
     pub(super) position: f64,
     pub(super) velocity: f64,
     /// Sign of the velocity, as the dry friction columns define it around reversals.
@@ -77,7 +77,7 @@ pub(super) struct Moment {
 
 /// Position range and largest speed of an actuator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Reach {
+pub(crate) struct PositionRange {
     /// Smallest and largest position (m, rad).
     pub(crate) low: f64,
     pub(crate) high: f64,
@@ -88,7 +88,7 @@ pub(crate) struct Reach {
 /// Fraction of the largest speed at which Stribeck friction has fallen to 1/e.
 const STRIBECK: f64 = 0.1;
 
-impl Reach {
+impl PositionRange {
     /// The union of two ranges.
     pub(crate) fn united(self, other: Self) -> Self {
         Self {
@@ -176,8 +176,8 @@ impl Shape {
     }
 
     /// Value at a motion. Waves have no single value: they are added after decimation.
-    pub(super) fn value(self, motion: Moment, reach: Reach) -> f64 {
-        let Moment {
+    pub(super) fn value(self, motion: ActuatorState, position_range: PositionRange) -> f64 {
+        let ActuatorState {
             position,
             velocity,
             sign,
@@ -191,8 +191,8 @@ impl Shape {
             Self::Sign => sign,
             Self::Speed => velocity.abs(),
             Self::Drag => velocity * velocity.abs(),
-            Self::Stribeck if reach.speed > 0.0 => {
-                sign * (-velocity.abs() / (STRIBECK * reach.speed)).exp()
+            Self::Stribeck if position_range.speed > 0.0 => {
+                sign * (-velocity.abs() / (STRIBECK * position_range.speed)).exp()
             }
             Self::Load => sign * torque.abs(),
             Self::Magnitude => torque.abs(),
