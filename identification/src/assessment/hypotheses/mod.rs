@@ -39,7 +39,7 @@
 //! - `scores`: result of all passes;
 //! - `model_columns`: the model's columns in a test;
 //! - `scaled`: normal equations of columns with different units;
-//! - `spread`: covariance of the scores;
+//! - `score_covariance`: covariance of the scores;
 //! - `group`: columns that are tested together;
 //! - `test`: sizes, standard deviations, p-values; `wald_test`: their result.
 
@@ -54,10 +54,10 @@ mod pass;
 mod prediction;
 mod run;
 mod scaled;
+mod score_covariance;
 mod scores;
 mod sections;
 mod shapes;
-mod spread;
 mod test;
 mod wald_test;
 

@@ -110,13 +110,14 @@ pub(super) fn correlations<'a>(
         .filter(|(_, (k, l))| k == l)
         .map(|(place, _)| place)
         .collect();
-    let told = places().filter(|(_, (k, l))| k != l);
-    told.filter_map(|(place, &actuators)| {
-        let mut chosen = own.clone();
-        chosen.push(place);
-        correlation(actuators, &chosen, (runs.clone(), returning(actuators)))
-    })
-    .collect()
+    let off_diagonal = places().filter(|(_, (k, l))| k != l);
+    off_diagonal
+        .filter_map(|(place, &actuators)| {
+            let mut chosen = own.clone();
+            chosen.push(place);
+            correlation(actuators, &chosen, (runs.clone(), returning(actuators)))
+        })
+        .collect()
 }
 
 /// Correlation of a pair, which is the last of the `chosen` indices.
@@ -152,8 +153,8 @@ fn correlation<'a>(
     let strength = sizes[count - 1].abs() / variance.sqrt();
     let freedom = variance * variance / squares;
     let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
-    let is_told = by_chance <= LARGEST_DEVIATION * scale;
-    (sound && is_told).then(|| Correlation {
+    let is_determined = by_chance <= LARGEST_DEVIATION * scale;
+    (sound && is_determined).then(|| Correlation {
         actuators,
         value: sizes[count - 1] / scale,
         strength,

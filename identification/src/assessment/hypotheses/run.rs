@@ -70,7 +70,7 @@ impl Pass<'_> {
             places.push(&motion_data.positions, &mut at);
             sink.take(&kept, &at);
         }
-        Ok(sink.told(tempo))
+        Ok(sink.into_scores(tempo))
     }
 
     /// Rows of Γ¹ in the projection of the estimate's model; `None` for the platform projection.

@@ -45,16 +45,16 @@ impl Scaled {
 }
 
 /// Indices of the columns that are independent of the model's and of earlier ones.
-pub(super) fn told(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
+pub(super) fn independent_columns(outside: &DMatrix<f64>, square: &DMatrix<f64>) -> Vec<usize> {
     let mut rest = outside.clone();
-    let mut told = Vec::new();
+    let mut independent = Vec::new();
     for i in 0..rest.nrows() {
         let left = rest[(i, i)];
         if left > LEAST_OUTSIDE * square[(i, i)] {
-            told.push(i);
+            independent.push(i);
             let column = rest.column(i).clone_owned();
             rest.ger(-1.0 / left, &column, &column, 1.0);
         }
     }
-    told
+    independent
 }

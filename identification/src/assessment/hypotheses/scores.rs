@@ -11,7 +11,7 @@ use super::{
     model_columns::ModelColumns,
     pairs::{Correlation, correlations},
     pass::Pass,
-    scaled::{Scaled, told},
+    scaled::{Scaled, independent_columns},
     sections::{Frame, RunScores},
     shapes::{PositionRange, Shape},
     wald_test::WaldTest,
@@ -205,7 +205,7 @@ fn late(layout: &Layout, runs: &[RunScores], (selected, base): (&[usize], usize)
     };
     let (cross, square) = (sum(selected, &late), sum(&late, &late));
     let outside = &square - cross.tr_mul(&gram.solve(&cross));
-    let places = told(&outside, &square).into_iter();
+    let places = independent_columns(&outside, &square).into_iter();
     places.map(|place| late[place]).collect()
 }
 

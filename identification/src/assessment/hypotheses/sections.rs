@@ -206,7 +206,7 @@ impl<'a> Sink<'a> {
     }
 
     /// The scores of the run with this timing.
-    pub(super) fn told(self, tempo: Tempo) -> RunScores {
+    pub(super) fn into_scores(self, tempo: Tempo) -> RunScores {
         let sections = self.products.scores.ncols();
         let cosines = cosines(self.expected).min(sections / 2).max(1);
         let waves = DMatrix::from_fn(sections, 2 * cosines + 1, |k, m| {

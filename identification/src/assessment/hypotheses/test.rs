@@ -6,9 +6,9 @@ use rayon::prelude::*;
 use super::{
     group::Group,
     model_columns::ModelColumns,
-    scaled::{Scaled, told},
+    scaled::{Scaled, independent_columns},
+    score_covariance::{OrthogonalColumns, RunContribution, ScoreCovariance, score},
     scores::Scores,
-    spread::{Freed, Share, Spread, score},
     wald_test::WaldTest,
 };
 use crate::estimation::intervals::distributions::Hotelling;
@@ -68,38 +68,46 @@ impl Scores {
         let off = model_columns.estimated(&cross);
         let solved = model_columns.gram.solve(&cross);
         let outside = &square - cross.tr_mul(&solved);
-        let told = told(&outside, &square);
-        let solved = solved.select_columns(&told);
-        let factor = Scaled::new(&outside.select_rows(&told).select_columns(&told))?;
-        let white = factor.white(&DMatrix::identity(told.len(), told.len()));
-        let freed = Freed {
+        let independent = independent_columns(&outside, &square);
+        let solved = solved.select_columns(&independent);
+        let factor = Scaled::new(
+            &outside
+                .select_rows(&independent)
+                .select_columns(&independent),
+        )?;
+        let white = factor.white(&DMatrix::identity(independent.len(), independent.len()));
+        let orthogonal = OrthogonalColumns {
             layout,
             model_columns,
             group: *group,
-            told: &told,
+            independent: &independent,
             solved: &solved,
             white: &white,
         };
         let runs = self.runs.iter().enumerate();
-        let shares: Vec<Share> = runs
-            .map(|(number, run)| freed.share((number, run), inside(number)))
+        let contributions: Vec<RunContribution> = runs
+            .map(|(number, run)| orthogonal.contribution((number, run), inside(number)))
             .collect();
-        self.wald_test(&freed, &shares, &off.select_columns(&told))
+        self.wald_test(
+            &orthogonal,
+            &contributions,
+            &off.select_columns(&independent),
+        )
     }
 
     /// Result from the contributions of all runs; `off` is B for the estimate's own columns.
     fn wald_test(
         &self,
-        freed: &Freed<'_>,
-        shares: &[Share],
+        orthogonal: &OrthogonalColumns<'_>,
+        contributions: &[RunContribution],
         off: &DMatrix<f64>,
     ) -> Option<WaldTest> {
-        let width = freed.told.len();
-        let score = score(shares, width);
-        let Spread {
+        let width = orthogonal.independent.len();
+        let score = score(contributions, width);
+        let ScoreCovariance {
             covariance,
             freedom,
-        } = freed.spread(shares, &self.means, &score)?;
+        } = orthogonal.score_covariance(contributions, &self.means, &score)?;
         let count = width as f64;
         if width == 0 || freedom - count < 0.0 {
             return None;
@@ -108,19 +116,19 @@ impl Scores {
         let distance = Scaled::new(&covariance)?.solve(&as_column);
         let test = Hotelling::new(score.dot(&distance.column(0)), count, freedom);
         // z⊥ is orthonormal, so the scores are its sizes.
-        let sizes = freed.white.tr_mul(&score);
-        let first = freed.white.column(0);
+        let sizes = orthogonal.white.tr_mul(&score);
+        let first = orthogonal.white.column(0);
         let variance = (first.transpose() * &covariance * first)[(0, 0)];
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
         let shifts = off * &sizes;
-        let selected = freed.model_columns.selected.iter().copied();
+        let selected = orthogonal.model_columns.selected.iter().copied();
         Some(WaldTest {
             deviation: variance.max(0.0).sqrt(),
             freedom,
             probability: test.probability,
             explained: score.norm_squared() / total.max(f64::MIN_POSITIVE),
-            sizes: freed
-                .told
+            sizes: orthogonal
+                .independent
                 .iter()
                 .copied()
                 .zip(sizes.iter().copied())

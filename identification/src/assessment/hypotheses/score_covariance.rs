@@ -9,13 +9,13 @@ use super::{columns::Layout, group::Group, model_columns::ModelColumns, sections
 use crate::estimation::returning::{Mean, Stray};
 
 /// Orthonormal columns of a group outside the model's columns: z⊥ = (z - W B) Mᵀ.
-pub(super) struct Freed<'a> {
+pub(super) struct OrthogonalColumns<'a> {
     pub(super) layout: &'a Layout,
     /// Columns of the model.
     pub(super) model_columns: &'a ModelColumns,
     /// The group, and its independent columns by place in the block.
     pub(super) group: Group,
-    pub(super) told: &'a [usize],
+    pub(super) independent: &'a [usize],
     /// B, columns of the model × columns of the group.
     pub(super) solved: &'a DMatrix<f64>,
     /// M.
@@ -23,7 +23,7 @@ pub(super) struct Freed<'a> {
 }
 
 /// Contribution of one run, as sums over cosines.
-pub(super) struct Share {
+pub(super) struct RunContribution {
     /// Wᵀ z⊥, z⊥ᵀ z⊥ and z⊥ᵀ ρ for each cosine.
     fitted: Vec<DMatrix<f64>>,
     own: Vec<DMatrix<f64>>,
@@ -32,16 +32,20 @@ pub(super) struct Share {
 }
 
 /// Covariance of the scores, and its degrees of freedom.
-pub(super) struct Spread {
+pub(super) struct ScoreCovariance {
     pub(super) covariance: DMatrix<f64>,
     pub(super) freedom: f64,
 }
 
-impl Freed<'_> {
+impl OrthogonalColumns<'_> {
     /// Contribution of a run; the columns are zero unless `inside`.
-    pub(super) fn share(&self, (number, run): (usize, &RunScores), inside: bool) -> Share {
+    pub(super) fn contribution(
+        &self,
+        (number, run): (usize, &RunScores),
+        inside: bool,
+    ) -> RunContribution {
         let count = 2 * run.cosines + 1;
-        let mut share = Share {
+        let mut contribution = RunContribution {
             fitted: Vec::with_capacity(count),
             own: Vec::with_capacity(count),
             scores: Vec::with_capacity(count),
@@ -61,46 +65,48 @@ impl Freed<'_> {
                 own -= cross.tr_mul(self.solved);
                 fitted += cross;
                 let block = run.own(self.layout, self.group.block, m);
-                own += block.select_rows(self.told).select_columns(self.told);
+                own += block
+                    .select_rows(self.independent)
+                    .select_columns(self.independent);
                 score += all.select_rows(&columns);
             }
             own -= self.solved.tr_mul(&fitted);
             score -= self.solved.tr_mul(&all.select_rows(selected));
             debug_assert_eq!(fitted.nrows(), p);
-            share.fitted.push(fitted * &turned);
-            share.own.push(self.white * own * &turned);
-            share.scores.push(self.white * score);
+            contribution.fitted.push(fitted * &turned);
+            contribution.own.push(self.white * own * &turned);
+            contribution.scores.push(self.white * score);
         }
-        share
+        contribution
     }
 
     /// Columns of the group among all columns.
     fn columns(&self) -> impl Iterator<Item = usize> {
         let first = self.layout.blocks[self.group.block].start;
-        self.told.iter().map(move |column| first + column)
+        self.independent.iter().map(move |column| first + column)
     }
 
     /// Covariance of all runs' scores if the faults had these `sizes`.
-    pub(super) fn spread(
+    pub(super) fn score_covariance(
         &self,
-        shares: &[Share],
+        contributions: &[RunContribution],
         means: &[(Vec<usize>, Mean)],
         sizes: &DVector<f64>,
-    ) -> Option<Spread> {
+    ) -> Option<ScoreCovariance> {
         let width = sizes.len();
         let mut covariance = DMatrix::zeros(width, width);
         let mut moments = vec![(0.0, 0.0); width];
-        for share in shares {
-            let count = share.cosines;
+        for contribution in contributions {
+            let count = contribution.cosines;
             let sums = DMatrix::from_columns(
                 &(1..=count)
-                    .map(|b| &share.scores[b] - &share.own[b] * sizes)
+                    .map(|b| &contribution.scores[b] - &contribution.own[b] * sizes)
                     .collect::<Vec<_>>(),
             );
             // The cosines of the covariance have the mean square 1.
             covariance += 2.0 * &sums * sums.transpose() / count as f64;
             for (i, (expected, squares)) in moments.iter_mut().enumerate() {
-                let white = self.under_white_noise(share, i);
+                let white = self.under_white_noise(contribution, i);
                 *expected += white.trace() / count as f64;
                 *squares += white.norm_squared() / (count * count) as f64;
             }
@@ -116,11 +122,11 @@ impl Freed<'_> {
         }
         let freedoms = moments.iter().map(|(mean, squares)| mean * mean / squares);
         let freedom = freedoms.fold(f64::INFINITY, f64::min);
-        let spread = Spread {
+        let score_covariance = ScoreCovariance {
             covariance,
             freedom,
         };
-        Some(spread.enlarged(&self.strays(means, sizes)))
+        Some(score_covariance.enlarged(&self.strays(means, sizes)))
     }
 
     /// Variances of the scores from periodic residuals, if the faults had these `sizes`.
@@ -155,8 +161,8 @@ impl Freed<'_> {
     /// C of column i: covariance of its cosine sums for a white residual of unit variance.
     ///
     /// The residual is taken before the fit.
-    fn under_white_noise(&self, share: &Share, i: usize) -> DMatrix<f64> {
-        let count = share.cosines;
+    fn under_white_noise(&self, contribution: &RunContribution, i: usize) -> DMatrix<f64> {
+        let count = contribution.cosines;
         let root = std::f64::consts::SQRT_2;
         let of = |all: &[DMatrix<f64>]| {
             let columns: Vec<DVector<f64>> =
@@ -164,18 +170,18 @@ impl Freed<'_> {
             DMatrix::from_columns(&columns)
         };
         let (model, group) = (
-            self.model_columns.gram.white(&of(&share.fitted)),
-            of(&share.own),
+            self.model_columns.gram.white(&of(&contribution.fitted)),
+            of(&contribution.own),
         );
         let taken = model.tr_mul(&model) + group.tr_mul(&group);
-        let spectrum = |m: usize| share.own[m][(i, i)];
+        let spectrum = |m: usize| contribution.own[m][(i, i)];
         DMatrix::from_fn(count, count, |a, b| {
             spectrum(a.abs_diff(b)) + spectrum(a + b + 2) - taken[(a, b)]
         })
     }
 }
 
-impl Spread {
+impl ScoreCovariance {
     /// Increases the covariance to that of periodic residuals, if that is larger.
     ///
     /// Periodic residuals are equal in every period, so slow variations of the scores miss them.
@@ -197,9 +203,9 @@ impl Spread {
 }
 
 /// Scores of all runs together.
-pub(super) fn score(shares: &[Share], width: usize) -> DVector<f64> {
+pub(super) fn score(contributions: &[RunContribution], width: usize) -> DVector<f64> {
     let start = DVector::zeros(width);
-    shares
+    contributions
         .iter()
-        .fold(start, |sum, share| sum + &share.scores[0])
+        .fold(start, |sum, contribution| sum + &contribution.scores[0])
 }
