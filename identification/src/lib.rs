@@ -57,7 +57,7 @@ mod widest;
 pub use assessment::{
     check::{About, Check, CheckKind, Detectable, Grade},
     evidence::{Axis, Curve, Evidence},
-    verdict::{Objections, StageVerdict, Verdict, objections},
+    verdict::{FailedChecks, StageVerdict, Verdict, failed_checks},
 };
 pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
