@@ -17,7 +17,7 @@ use crate::{
 
 /// Quantities estimated before the parameters, which are therefore no assumptions.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Found {
+pub(crate) struct PreviouslyIdentified {
     /// Whether the gains of the drives were estimated.
     pub gains: bool,
     /// Whether the direction of gravity was estimated.
@@ -31,7 +31,7 @@ pub(crate) fn assumptions(
     model: &dyn Model,
     columns: &ColumnSet,
     models: &[ModelKind],
-    before: Found,
+    before: PreviouslyIdentified,
 ) -> Vec<String> {
     let gains = if before.gains {
         "the parameters that are stated as known are exact: gains and all other parameters are in proportion to them"
@@ -88,7 +88,7 @@ fn lengths_are_untold(model: &dyn Model) -> bool {
 }
 
 /// The assumptions that are violated most often, as a sentence for the verdict.
-pub(crate) fn rests_on(model: &dyn Model, before: Found) -> Option<String> {
+pub(crate) fn rests_on(model: &dyn Model, before: PreviouslyIdentified) -> Option<String> {
     let what = match (lengths_are_untold(model), before.gains) {
         (true, false) => {
             "the lengths and the unit and constants of the torques are right as stated: nothing in data of this robot tells"

@@ -34,7 +34,7 @@ use prepare::{check_runs, prepared_warnings};
 use crate::{
     assessment::{
         self, Context, Watched,
-        assumptions::{Found, assumptions, rests_on, unseen},
+        assumptions::{PreviouslyIdentified, assumptions, rests_on, unseen},
         check::{Check, Grade},
         hypotheses::{PositionRange, scores},
         verdict::verdicts,
@@ -94,7 +94,7 @@ pub fn identify_after(
     check_runs(model, dataset.validation, settings)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let mut prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
-    let found = Found {
+    let found = PreviouslyIdentified {
         gains: matches!(before, Before::Gains(_)),
         gravity: matches!(before, Before::Gravity(_)),
     };
