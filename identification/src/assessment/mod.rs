@@ -7,7 +7,7 @@
 //! - `assumptions`: what no data can test;
 //! - `positions`: positions that violate the closure, and corrections that restore it;
 //! - `torques`: torques that contradict the model, and the fault that explains them;
-//! - `whole`: faults of whole runs or of the model;
+//! - `run_level_faults`: faults of whole runs or of the model;
 //! - `hypotheses`: fault hypotheses tested on the residual;
 //! - `explained`: hints at the cause of an error.
 
@@ -18,9 +18,9 @@ pub(crate) mod evidence;
 mod explained;
 pub(crate) mod hypotheses;
 mod positions;
+mod run_level_faults;
 pub(crate) mod torques;
 pub(crate) mod verdict;
-mod whole;
 
 pub(crate) use checks::{Context, Watched, checks, raw_numbers::suspicious};
 pub(crate) use explained::explained;

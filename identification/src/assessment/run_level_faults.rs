@@ -23,7 +23,7 @@ const EXPLAINED_BEHIND_LOOPS: f64 = 0.1;
 
 /// Possible faults of positions in all runs, or of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Whole {
+pub(super) enum RunLevelFault {
     /// Positions alone.
     Positions(positions::Fault),
     /// Two actuators are swapped, positions and torques.
@@ -34,7 +34,7 @@ pub(super) enum Whole {
     Weightless,
 }
 
-impl Whole {
+impl RunLevelFault {
     /// All such faults of a robot.
     pub(super) fn all(model: &dyn Model) -> Vec<Self> {
         let n = model.info().sizes.actuators;

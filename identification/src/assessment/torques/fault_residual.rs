@@ -69,29 +69,29 @@ impl Columns {
     }
 
     /// Reads runs and factorises their equations.
-    pub(super) fn doubt(
+    pub(super) fn fault_residual(
         &self,
         (model, runs): (&dyn Model, &[Log]),
         settings: &Settings,
-        way: Way,
-    ) -> Result<Doubt<'_>, Error> {
+        options: EquationOptions,
+    ) -> Result<FaultResidual<'_>, Error> {
         let loaded = !model.info().payload_parameters.is_empty();
         let factors = |log: &Log| {
             let log = log.clone().with_payload(loaded);
-            run_factors(model, &log, settings, self, way)
+            run_factors(model, &log, settings, self, options)
         };
-        Ok(Doubt {
+        Ok(FaultResidual {
             columns: self,
             factors: runs.iter().map(factors).collect::<Result<_, _>>()?,
             labels: runs.iter().map(Log::payload).collect(),
             actuators: model.info().sizes.actuators,
-            drives: way.drives,
+            drives: options.drives,
         })
     }
 }
 
 /// R factors of all runs.
-pub(super) struct Doubt<'a> {
+pub(super) struct FaultResidual<'a> {
     columns: &'a Columns,
     /// For each run and line, the factor of W and of the drives' columns.
     factors: Vec<Vec<Factor>>,
@@ -101,7 +101,7 @@ pub(super) struct Doubt<'a> {
     drives: Drives,
 }
 
-impl Doubt<'_> {
+impl FaultResidual<'_> {
     /// Coefficients of the drives' columns that give the inputs after correcting a fault.
     fn share(&self, fault: Option<Fault>) -> DVector<f64> {
         let n = self.actuators;
@@ -195,13 +195,13 @@ enum Drives {
 
 /// Options of the equations.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Way {
+pub(super) struct EquationOptions {
     drives: Drives,
     /// Multiple of the gravity terms to subtract: 1 to remove gravity, 2 to reverse it.
     without_gravity: f64,
 }
 
-impl Way {
+impl EquationOptions {
     pub(super) const ONE_BY_ONE: Self = Self {
         drives: Drives::OneByOne,
         without_gravity: 0.0,
@@ -226,10 +226,10 @@ fn run_factors(
     log: &Log,
     settings: &Settings,
     Columns { columns, base, .. }: &Columns,
-    Way {
+    EquationOptions {
         drives,
         without_gravity,
-    }: Way,
+    }: EquationOptions,
 ) -> Result<Vec<Factor>, Error> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
