@@ -154,8 +154,9 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         let is_length = kind.check == CheckKind::Length;
         let all =
             all.filter(|one| one.unit.is_empty() == kind.is_part && one.is_length == is_length);
-        let harmful = all.filter(|one| one.moves > HARMFUL && one.moves.is_finite());
-        harmful.max_by(|a, b| a.moves.total_cmp(&b.moves))
+        let harmful =
+            all.filter(|one| one.shift_deviations > HARMFUL && one.shift_deviations.is_finite());
+        harmful.max_by(|a, b| a.shift_deviations.total_cmp(&b.shift_deviations))
     };
     let told = KINDS.iter().filter_map(|kind| {
         if let Some(never) = never(checks, kind) {
@@ -169,7 +170,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         };
         // A relative size above 100 % has no meaning.
         let most = if kind.is_part { WHOLE } else { f64::INFINITY };
-        let moves = worst.moves * (most / worst.size).min(1.0);
+        let shift_deviations = worst.shift_deviations * (most / worst.size).min(1.0);
         let size = match worst.unit {
             "" => format!("{} %", significant(100.0 * worst.size.min(most), 2)),
             "s" => format!("{} ms", significant(1e3 * worst.size, 2)),
@@ -181,7 +182,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         };
         Some(format!(
             "{}: {size}{of} would move `{}` by {:.0} deviations",
-            kind.name, worst.parameter, moves
+            kind.name, worst.parameter, shift_deviations
         ))
     });
     told.collect()
@@ -195,7 +196,7 @@ fn never(checks: &[Check], kind: &Kind) -> Option<String> {
     let hidden = own
         .filter(|one| one.kind == CheckKind::WrongGain)
         .flat_map(|one| &one.detectable)
-        .filter(|one| one.size >= WHOLE && one.moves > HARMFUL);
+        .filter(|one| one.size >= WHOLE && one.shift_deviations > HARMFUL);
     let names: Vec<String> = hidden.map(|one| format!("`{}`", one.name)).collect();
     (!names.is_empty()).then(|| {
         format!(
@@ -212,15 +213,16 @@ mod tests {
     use crate::assessment::check::{About, Check, CheckKind, Detectable};
 
     fn check(kind: CheckKind, faults: &[(&str, &'static str, f64, f64)]) -> Check {
-        let fault = |&(name, unit, size, moves): &(&str, &'static str, f64, f64)| Detectable {
-            name: name.to_owned(),
-            unit,
-            deviation: size / 5.0,
-            size,
-            parameter: String::from("zz_1"),
-            moves,
-            is_length: false,
-        };
+        let fault =
+            |&(name, unit, size, shift_deviations): &(&str, &'static str, f64, f64)| Detectable {
+                name: name.to_owned(),
+                unit,
+                deviation: size / 5.0,
+                size,
+                parameter: String::from("zz_1"),
+                shift_deviations,
+                is_length: false,
+            };
         let all = faults.iter().map(fault).collect();
         Check::new(kind, About::Model, "nothing").detecting(all)
     }

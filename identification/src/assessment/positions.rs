@@ -149,7 +149,7 @@ impl Fault {
         };
         let check = Check::new(kind, About::Model, format!("{message}; {so}"))
             .in_run(run)
-            .allowing(Grade::DoNotUse);
+            .with_grade(Grade::DoNotUse);
         let check = match self {
             Self::Degrees => check.in_unit(Signal::Angles.name(), 180.0 / PI),
             Self::Unit(slip, _) => check.in_unit(slip.signal.name(), slip.factor),

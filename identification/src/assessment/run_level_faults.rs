@@ -79,7 +79,7 @@ impl RunLevelFault {
         let names = model.info().actuators;
         let name = |index: usize| names.get(index).copied().unwrap_or_default();
         let told = |kind, message: String| {
-            Check::new(kind, About::Model, format!("{message}; {so}")).allowing(Grade::DoNotUse)
+            Check::new(kind, About::Model, format!("{message}; {so}")).with_grade(Grade::DoNotUse)
         };
         match self {
             Self::Positions(fault) => Check {

@@ -54,7 +54,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 percent(wald.size().abs()),
                 harm.words()
             ) };
-        Check { words, ..check }.because(&harm)
+        Check { words, ..check }.with_harm(&harm)
     });
     Ok(checks.collect())
 }

@@ -99,7 +99,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             format!("{}, ", shifted(size, context))
         }
     );
-    let check = Check { words, ..check }.because(&harm);
+    let check = Check { words, ..check }.with_harm(&harm);
     Ok(vec![match name {
         Some(name) => check.of_actuator(name),
         None => check,

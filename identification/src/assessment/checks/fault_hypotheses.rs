@@ -29,7 +29,7 @@ pub(super) struct Tested {
     /// Size to use instead of the fitted one, if another test determines it better.
     pub(super) size: Option<f64>,
     /// Factor of the parameter shifts in the estimate, whose band is wider than the test's.
-    pub(super) more: f64,
+    pub(super) band_factor: f64,
 }
 
 impl Tested {
@@ -40,7 +40,7 @@ impl Tested {
         (name, unit): (String, &'static str),
         size: f64,
     ) -> Detectable {
-        let all = self.moves(context, scores);
+        let all = self.shift_deviations(context, scores);
         let most = all.iter().find(|(by, _)| by.is_finite());
         let base = context.estimates_of(Stage::Base).next();
         Detectable {
@@ -52,7 +52,7 @@ impl Tested {
             parameter: base
                 .zip(most)
                 .map_or_else(String::new, |(base, (_, column))| self::name(base, *column)),
-            moves: most.map_or(0.0, |(by, _)| {
+            shift_deviations: most.map_or(0.0, |(by, _)| {
                 let own = self.size.unwrap_or_else(|| self.wald.size());
                 by * size / own.abs().max(f64::MIN_POSITIVE)
             }),
@@ -62,26 +62,26 @@ impl Tested {
     /// Shifts of base and recommended parameters of the first model, with their columns.
     ///
     /// In standard deviations, largest first.
-    fn moves(&self, context: &Context<'_>, scores: &Scores) -> Vec<(f64, usize)> {
+    fn shift_deviations(&self, context: &Context<'_>, scores: &Scores) -> Vec<(f64, usize)> {
         let Some(base) = context.estimates_of(Stage::Base).next() else {
             return Vec::new();
         };
         let mut recommended = context.estimates_of(Stage::Recommended);
         let smaller = recommended.find(|one| one.model == base.model);
         let of_size = |wald: &WaldTest| -> Vec<(usize, f64)> {
-            let factor = self.more * self.size.map_or(1.0, |size| size / wald.size());
+            let factor = self.band_factor * self.size.map_or(1.0, |size| size / wald.size());
             let shifts = wald.shifts.iter();
             shifts.map(|(column, by)| (*column, by * factor)).collect()
         };
-        let beside = smaller.and_then(|one| {
+        let recommended_shifts = smaller.and_then(|one| {
             let wald = scores.test(&self.group, &one.columns())?;
             Some((one, of_size(&wald)))
         });
         let mut all = by_deviation(base, &of_size(&self.wald));
         all.extend(
-            beside
+            recommended_shifts
                 .iter()
-                .flat_map(|(one, moves)| by_deviation(one, moves)),
+                .flat_map(|(one, shifts)| by_deviation(one, shifts)),
         );
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         all
@@ -110,7 +110,7 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
                 group,
                 wald,
                 size,
-                more: 1.0,
+                band_factor: 1.0,
             })
         })
         .collect()
@@ -181,7 +181,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Harm::none();
     };
-    let all = tested.moves(context, scores);
+    let all = tested.shift_deviations(context, scores);
     let Some(&(worst, column)) = all.first() else {
         return Harm::none();
     };
@@ -207,8 +207,10 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
 
 impl Check {
     /// Sets the grade that the harm allows.
-    pub(super) fn because(self, harm: &Harm) -> Self {
-        let mut check = self.allowing(harm.grade).spoiling(harm.spoiled.clone());
+    pub(super) fn with_harm(self, harm: &Harm) -> Self {
+        let mut check = self
+            .with_grade(harm.grade)
+            .with_unusable_parameters(harm.spoiled.clone());
         check.explained = Some(harm.explained);
         if harm.counts() { check.found() } else { check }
     }
@@ -280,14 +282,14 @@ impl Harm {
 }
 
 /// Absolute parameter shifts of an estimate in standard deviations, each with its column.
-fn by_deviation(estimate: &Estimate, moves: &[(usize, f64)]) -> Vec<(f64, usize)> {
+fn by_deviation(estimate: &Estimate, shifts: &[(usize, f64)]) -> Vec<(f64, usize)> {
     let deviation = |column: usize| {
         let own = estimate.parameters.iter().find(|one| one.column == column);
         let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
         half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
     };
-    let moves = moves.iter();
-    moves
+    let shifts = shifts.iter();
+    shifts
         .map(|(column, by)| (by.abs() / deviation(*column), *column))
         .collect()
 }

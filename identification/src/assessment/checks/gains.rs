@@ -122,7 +122,7 @@ fn failed_check(
     Check::new(CheckKind::WrongGain, About::Model, words)
         .of_actuator(actuator)
         .measured(size.abs() / worst.wald.deviation, "standard deviations")
-        .because(&harm)
+        .with_harm(&harm)
         .shown_by(parabola(
             &worst.wald,
             &format!("Residual for other gains of {actuator}"),

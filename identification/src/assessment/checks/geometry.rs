@@ -135,7 +135,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .measured(ratio(worst), "standard deviations")
         .against(worst.wald.quantile(level), origin(tests))
         .shown_by(parabola(&worst.wald, &title, (axis, unit, 1.0)))
-        .because(&harm);
+        .with_harm(&harm);
     let detectable = detectable((context, scores), (&hypotheses, &found), level).into_iter();
     let check = check.detecting(detectable.map(|(_, one)| one).collect());
     Ok(vec![match hypothesis {

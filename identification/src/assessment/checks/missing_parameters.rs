@@ -64,7 +64,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let check = Check { words, ..check }
         .measured(ratio(worst), "standard deviations")
         .against(limit, origin(tests))
-        .because(&harm);
+        .with_harm(&harm);
     let actuator = match hypotheses[place].0 {
         FaultHypothesis::Torque(actuator, _) => context.model.info().actuators.get(actuator),
         _ => None,

@@ -18,7 +18,7 @@ mod motion_length;
 mod negative_parameters;
 mod partition;
 mod payload_labels;
-pub(crate) mod raw_numbers;
+pub(crate) mod raw_samples;
 mod regressor_errors;
 mod relative_error;
 mod repeated;
@@ -116,7 +116,7 @@ type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order of the report.
 const CHECKS: [Function; 22] = [
-    raw_numbers::check,
+    raw_samples::check,
     units::check,
     repeated::check,
     excitation::check,

@@ -93,7 +93,7 @@ fn length(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
             "the runs are short: `{name}` moves at about {frequency} Hz and goes through {periods} of its periods only. Noise can't be told from motion there, so neither the estimates nor their intervals are sure; record at least {FEWEST_PERIODS:.0} periods, better ten"
         ))
         .of_actuator(name)
-        .allowing(Grade::DoNotUse),
+        .with_grade(Grade::DoNotUse),
     )
 }
 
@@ -127,7 +127,9 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     Some(if dry.is_empty() {
         check.found()
     } else {
-        check.allowing(Grade::UseListed).spoiling(dry)
+        check
+            .with_grade(Grade::UseListed)
+            .with_unusable_parameters(dry)
     })
 }
 

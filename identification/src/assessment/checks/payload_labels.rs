@@ -71,7 +71,7 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
             mass.unit
         );
         let check = Check::new(CheckKind::PayloadLabel, About::Model, words);
-        return Some(check.found().allowing(Grade::DoNotUse));
+        return Some(check.found().with_grade(Grade::DoNotUse));
     }
     if of_load.is_empty() || !of_load.iter().all(holds_zero) {
         return None;
@@ -119,9 +119,9 @@ fn of_run(
         differences.join(", "),
         harm.words()
     );
-    let check = Check { words, ..check }.because(&harm);
+    let check = Check { words, ..check }.with_harm(&harm);
     if wald.explained > WRONG {
-        return check.found().allowing(Grade::DoNotUse);
+        return check.found().with_grade(Grade::DoNotUse);
     }
     check
 }

@@ -57,7 +57,9 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
             check
         }
     } else {
-        check.allowing(Grade::UseListed).spoiling(spoiled)
+        check
+            .with_grade(Grade::UseListed)
+            .with_unusable_parameters(spoiled)
     }
 }
 

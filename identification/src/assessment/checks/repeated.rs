@@ -58,7 +58,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                     100.0 * HARMLESS,
                     "intervals that are too narrow by a fortieth",
                 );
-            found.push(check.found().allowing(grade));
+            found.push(check.found().with_grade(grade));
         }
     }
     Ok(found)

@@ -32,7 +32,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     // Smoothing a step w removes s Σ ẇ²/Σ w² of it, and Σ ẇ² grows with the bandwidth.
     let wider = |one: Tested| Tested {
-        more: scores.narrower as f64,
+        band_factor: scores.narrower as f64,
         ..one
     };
     let friction = only(scores, FaultHypothesis::FrictionSmoothing).map(wider);
@@ -123,7 +123,7 @@ impl TestLimits {
             time(one.wald.size()),
             harm.words()
         );
-        self.check(of, one, words).because(&harm)
+        self.check(of, one, words).with_harm(&harm)
     }
 
     /// The failed check of dry friction that differs around reversals.
@@ -141,6 +141,6 @@ impl TestLimits {
                 harm.words()
             )
         };
-        self.check(of, one, words).because(&harm)
+        self.check(of, one, words).with_harm(&harm)
     }
 }

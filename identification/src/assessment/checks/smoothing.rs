@@ -108,5 +108,5 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         time(wald.size()),
         harm.words()
     );
-    Ok(vec![check(words).because(&harm)])
+    Ok(vec![check(words).with_harm(&harm)])
 }

@@ -225,6 +225,6 @@ fn told(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
     Check {
         run,
         actuator: actuator.map(|index| name(index).to_owned()),
-        ..Check::new(kind, About::Model, format!("{message}; {so}")).allowing(Grade::DoNotUse)
+        ..Check::new(kind, About::Model, format!("{message}; {so}")).with_grade(Grade::DoNotUse)
     }
 }

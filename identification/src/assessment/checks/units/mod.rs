@@ -118,7 +118,7 @@ impl Finding {
 
     /// The finding as a check.
     fn check(&self) -> Check {
-        let check = words::check(self).allowing(Grade::DoNotUse);
+        let check = words::check(self).with_grade(Grade::DoNotUse);
         match &self.actuator {
             Some(actuator) => check.of_actuator(actuator),
             None => check,

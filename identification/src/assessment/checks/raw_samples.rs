@@ -118,7 +118,7 @@ fn told(run: &str, suspicion: Suspicion) -> Check {
         .measured(suspicion.statistic, suspicion.unit)
         .against(suspicion.threshold, origin)
         .found()
-        .allowing(grade);
+        .with_grade(grade);
     match suspicion.actuator {
         Some(actuator) => check.of_actuator(&actuator),
         None => check,
