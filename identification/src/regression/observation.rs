@@ -92,7 +92,7 @@ impl Observer<'_> {
             equations,
             budget / (lines * width * self.projections.len()).max(1),
         )
-        .returning(returns.and_then(|motion| Phases::new(motion, self.settings.decimation)));
+        .with_phases(returns.and_then(|motion| Phases::new(motion, self.settings.decimation)));
         let mut sinks = self.sinks(&plan, (&decimator, samples), companion.is_some())?;
         let mut torques = decimator.stream(info.sizes.actuators, samples)?;
         let mut decimated_torques = Vec::new();

@@ -48,7 +48,7 @@ impl Plan {
     }
 
     /// Sets the phases of a periodic motion.
-    pub(crate) fn returning(self, phases: Option<Phases>) -> Self {
+    pub(crate) fn with_phases(self, phases: Option<Phases>) -> Self {
         Self { phases, ..self }
     }
 

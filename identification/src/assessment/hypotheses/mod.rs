@@ -23,7 +23,7 @@
 //!   friction column w therefore has a column -ẇ in the model, as for a delay of its own.
 //! - Some errors are equal in each period of the motion: friction at reversals, steps of an
 //!   encoder. Slow variations of the scores do not show them. In periodic motion, the standard
-//!   deviation is at least that of the mean over all periods (`estimation::returning`).
+//!   deviation is at least that of the mean over all periods (`estimation::periodic_variance`).
 //!
 //! Columns made of torques use τ - J (Jᵀ J)^-1 ρ, the torques without the residual. Measured
 //! torques contain the noise of the residual, which would make every drive appear faulty.

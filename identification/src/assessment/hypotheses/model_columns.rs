@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::{columns::Layout, scaled::Scaled, sections::RunScores};
-use crate::estimation::returning::Mean;
+use crate::estimation::periodic_variance::Mean;
 
 /// Columns of base parameters, and rates of the dry friction columns.
 #[derive(Debug, Clone)]

@@ -95,12 +95,12 @@ impl Pairs {
 
 /// Correlations of all pairs that the motion determines; each run has its number of cosines.
 ///
-/// Each pair is fitted separately, together with the variances σ_kk. For a pair, `returning` is the
+/// Each pair is fitted separately, together with the variances σ_kk. For a pair, `periodic_variance` is the
 /// variance that periodic residuals add to the mean of a product. Its second value is the square of
 /// that by its degrees of freedom.
 pub(super) fn correlations<'a>(
     runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
-    returning: &dyn Fn((usize, usize)) -> [f64; 2],
+    periodic_variance: &dyn Fn((usize, usize)) -> [f64; 2],
 ) -> Vec<Correlation> {
     let Some((first, _)) = runs.clone().next() else {
         return Vec::new();
@@ -115,7 +115,11 @@ pub(super) fn correlations<'a>(
         .filter_map(|(place, &actuators)| {
             let mut chosen = own.clone();
             chosen.push(place);
-            correlation(actuators, &chosen, (runs.clone(), returning(actuators)))
+            correlation(
+                actuators,
+                &chosen,
+                (runs.clone(), periodic_variance(actuators)),
+            )
         })
         .collect()
 }
@@ -124,7 +128,10 @@ pub(super) fn correlations<'a>(
 fn correlation<'a>(
     actuators: (usize, usize),
     chosen: &[usize],
-    (runs, [returning, scatter]): (impl Iterator<Item = (&'a Pairs, usize)> + Clone, [f64; 2]),
+    (runs, [periodic_variance, scatter]): (
+        impl Iterator<Item = (&'a Pairs, usize)> + Clone,
+        [f64; 2],
+    ),
 ) -> Option<Correlation> {
     let count = chosen.len();
     let of = |run: &Pairs, m: usize| run.gram(m).select_rows(chosen).select_columns(chosen);
@@ -148,7 +155,7 @@ fn correlation<'a>(
         squares += share * share / cosines as f64;
     }
     let by_chance = variance.sqrt();
-    (variance, squares) = (variance + returning, squares + scatter);
+    (variance, squares) = (variance + periodic_variance, squares + scatter);
     let scale = (sizes[actuators.0] * sizes[actuators.1]).sqrt();
     let strength = sizes[count - 1].abs() / variance.sqrt();
     let freedom = variance * variance / squares;

@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{columns::Layout, group::Group, model_columns::ModelColumns, sections::RunScores};
-use crate::estimation::returning::{Mean, Stray};
+use crate::estimation::periodic_variance::{Mean, SumVariance};
 
 /// Orthonormal columns of a group outside the model's columns: z⊥ = (z - W B) Mᵀ.
 pub(super) struct OrthogonalColumns<'a> {
@@ -126,15 +126,19 @@ impl OrthogonalColumns<'_> {
             covariance,
             freedom,
         };
-        Some(score_covariance.enlarged(&self.strays(means, sizes)))
+        Some(score_covariance.enlarged(&self.sum_variances(means, sizes)))
     }
 
     /// Variances of the scores from periodic residuals, if the faults had these `sizes`.
     ///
     /// Empty if the group is confined to one of several runs of a motion.
-    fn strays(&self, means: &[(Vec<usize>, Mean)], sizes: &DVector<f64>) -> Vec<Stray> {
+    fn sum_variances(
+        &self,
+        means: &[(Vec<usize>, Mean)],
+        sizes: &DVector<f64>,
+    ) -> Vec<SumVariance> {
         let width = sizes.len();
-        let mut all = vec![Stray::default(); width];
+        let mut all = vec![SumVariance::default(); width];
         let turned = self.white.transpose();
         let model_part = -(self.solved * &turned);
         for ((runs, mean), left) in means.iter().zip(&self.model_columns.left) {
@@ -151,7 +155,7 @@ impl OrthogonalColumns<'_> {
                     combinations.set_row(column, &turned.row(row));
                 }
             }
-            let own = mean.strays(&combinations, left, Some(sizes));
+            let own = mean.sum_variances(&combinations, left, Some(sizes));
             let both = all.iter_mut().zip(own);
             both.for_each(|(all, own)| *all = all.and(own));
         }
@@ -185,16 +189,16 @@ impl ScoreCovariance {
     /// Increases the covariance to that of periodic residuals, if that is larger.
     ///
     /// Periodic residuals are equal in every period, so slow variations of the scores miss them.
-    fn enlarged(mut self, strays: &[Stray]) -> Self {
-        let all = strays.iter().copied().reduce(Stray::and);
+    fn enlarged(mut self, sum_variances: &[SumVariance]) -> Self {
+        let all = sum_variances.iter().copied().reduce(SumVariance::and);
         let Some(all) = all.filter(|all| all.square > 0.0) else {
             return self;
         };
         // The columns are orthonormal.
-        let (ratio, freedom) = all.by(self.covariance.trace(), strays.len() as f64);
+        let (ratio, freedom) = all.by(self.covariance.trace(), sum_variances.len() as f64);
         if ratio > 1.0 && ratio.is_finite() {
             self.covariance *= ratio;
-            if strays.len() == 1 {
+            if sum_variances.len() == 1 {
                 self.freedom = 1.0 / (1.0 / self.freedom + 1.0 / freedom);
             }
         }

@@ -19,7 +19,7 @@ use super::{
 use crate::{
     data::{Log, Variant, periods::Return},
     error::Error,
-    estimation::returning::Mean,
+    estimation::periodic_variance::Mean,
     filters::DECIMATION_PADDING,
     regression::{
         columns::ColumnSet,
@@ -216,14 +216,14 @@ impl Scores {
         let lines = self.runs.first().map_or(0, |run| run.lines);
         let equations: usize = self.runs.iter().map(|run| run.equations).sum();
         let instants = equations as f64 / lines.max(1) as f64;
-        let returning = |(first, second): (usize, usize)| {
+        let periodic_variance = |(first, second): (usize, usize)| {
             let means = self.means.iter().map(|(_, mean)| mean);
             let sums = means.map(|mean| mean.product(first, second));
             let [sum, scatter] = sums.fold([0.0; 2], |all, own| [all[0] + own[0], all[1] + own[1]]);
             [sum / instants.powi(2), scatter / instants.powi(4)]
         };
         let runs = self.runs.iter().map(|run| (&run.pairs, run.cosines));
-        correlations(runs, &returning)
+        correlations(runs, &periodic_variance)
     }
 
     /// Mean of λ² e² over all equations for white torque noise.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::scores::Context;
 use crate::{
-    estimation::returning::{Mean, Stray},
+    estimation::periodic_variance::{Mean, SumVariance},
     regression::system::System,
 };
 
@@ -25,7 +25,7 @@ pub(super) fn ratios(
         combinations += influence.columns(p, p).transpose();
     }
     let places: Vec<usize> = (0..p).collect();
-    let mut strays = vec![Stray::default(); p];
+    let mut sum_variances = vec![SumVariance::default(); p];
     for folds in &system.folds {
         let weighted = |line: usize, rows: DMatrix<f64>| {
             let weight = context.estimation.weights[line];
@@ -39,8 +39,8 @@ pub(super) fn ratios(
             continue;
         };
         let left = mean.left(&places, &context.inverse);
-        let own = mean.strays(&combinations, &left, None);
-        for (all, own) in strays.iter_mut().zip(own) {
+        let own = mean.sum_variances(&combinations, &left, None);
+        for (all, own) in sum_variances.iter_mut().zip(own) {
             *all = all.and(own);
         }
     }
@@ -48,11 +48,11 @@ pub(super) fn ratios(
         return vec![(1.0, f64::INFINITY); p];
     }
     let squares = context.inverse.diagonal();
-    let each = strays.iter().zip(variances).zip(squares.iter());
+    let each = sum_variances.iter().zip(variances).zip(squares.iter());
     let told = each
         .zip(freedoms)
-        .map(|(((stray, variance), square), own)| {
-            let (ratio, freedom) = stray.by(*variance, *square);
+        .map(|(((sum_variance, variance), square), own)| {
+            let (ratio, freedom) = sum_variance.by(*variance, *square);
             Told::new(ratio, freedom, *own)
         });
     enlarged(&told.collect::<Vec<_>>())

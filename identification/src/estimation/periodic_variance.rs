@@ -38,7 +38,7 @@ struct Line {
 
 /// Variance estimate of a weighted residual sum, with its degrees of freedom.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Stray {
+pub(crate) struct SumVariance {
     /// V.
     pub(crate) variance: f64,
     /// Σ z² over the motion.
@@ -87,12 +87,12 @@ impl Mean {
     ///
     /// `left` is 1 - h of each harmonic. `sizes` of the combinations are first subtracted from the
     /// residual.
-    pub(crate) fn strays(
+    pub(crate) fn sum_variances(
         &self,
         combinations: &DMatrix<f64>,
         left: &[f64],
         sizes: Option<&DVector<f64>>,
-    ) -> Vec<Stray> {
+    ) -> Vec<SumVariance> {
         let combined = |line: &Line| {
             let columns = line.columns.each_ref().map(|part| part * combinations);
             let rest = |part: usize| match sizes {
@@ -104,7 +104,8 @@ impl Mean {
         };
         let lines: Vec<Line> = self.lines.iter().map(combined).collect();
         let sums = 0..combinations.ncols();
-        sums.map(|sum| self.stray(&lines, left, sum)).collect()
+        sums.map(|sum| self.sum_variance(&lines, left, sum))
+            .collect()
     }
 
     /// Variance of Σ_t ρ_k ρ_l of two lines with independent periodic residuals, Σ_f |ρ_k|²
@@ -131,9 +132,9 @@ impl Mean {
     }
 
     /// Variance of sum number `sum`, for lines whose columns belong to the sums.
-    fn stray(&self, lines: &[Line], left: &[f64], sum: usize) -> Stray {
+    fn sum_variance(&self, lines: &[Line], left: &[f64], sum: usize) -> SumVariance {
         let last = left.len() - 1;
-        let mut stray = Stray::default();
+        let mut sum_variance = SumVariance::default();
         // Coefficient of the squared residual at each harmonic and line, for independent lines.
         let mut counts = vec![0.0; (last + 1) * lines.len()];
         let twice = |harmonic: usize| {
@@ -159,18 +160,18 @@ impl Mean {
                     imaginary += a * d - b * c;
                     counts[g * lines.len() + number] += factor * (a * a + b * b);
                 }
-                stray.variance += factor * (real * real + imaginary * imaginary);
+                sum_variance.variance += factor * (real * real + imaginary * imaginary);
             }
             for [a, b] in lines.iter().map(z) {
-                stray.square += twice(f) * (a * a + b * b) / self.phases as f64;
+                sum_variance.square += twice(f) * (a * a + b * b) / self.phases as f64;
             }
         }
         let total: f64 = counts.iter().sum();
         let squares = counts.iter().enumerate();
         let squares = squares.map(|(place, count)| count * count / twice(place / lines.len()));
         let scatter = squares.sum::<f64>() / (total * total).max(f64::MIN_POSITIVE);
-        stray.scatter = scatter * stray.variance.powi(2);
-        stray
+        sum_variance.scatter = scatter * sum_variance.variance.powi(2);
+        sum_variance
     }
 }
 
@@ -186,7 +187,7 @@ fn folded(place: isize, last: usize) -> (usize, f64) {
     }
 }
 
-impl Stray {
+impl SumVariance {
     /// Sum over independent motions.
     pub(crate) fn and(self, other: Self) -> Self {
         Self {
@@ -209,7 +210,7 @@ impl Stray {
 
 #[cfg(test)]
 mod tests {
-    use super::{Mean, Stray};
+    use super::{Mean, SumVariance};
     use crate::{
         data::periods::Return,
         regression::fold::{Fold, Phases},
@@ -225,7 +226,7 @@ mod tests {
     ///
     /// z is the sine of the fifth harmonic. The residual has noise of variance 1, and a periodic
     /// error of variance `returning`.
-    fn drawn(seed: u64, periods: usize, returning: f64) -> (Stray, f64) {
+    fn drawn(seed: u64, periods: usize, returning: f64) -> (SumVariance, f64) {
         let mut generator = Pcg64::seed_from_u64(seed);
         let mut white = || {
             let all = (0..12).map(|_| generator.random_range(-0.5..0.5));
@@ -250,7 +251,10 @@ mod tests {
         };
         let mean = Mean::new(&vec![fold], split).expect("every phase");
         let all = vec![1.0; PERIOD / 2 + 1];
-        (mean.strays(&DMatrix::identity(1, 1), &all, None)[0], sum)
+        (
+            mean.sum_variances(&DMatrix::identity(1, 1), &all, None)[0],
+            sum,
+        )
     }
 
     #[test]
@@ -258,10 +262,10 @@ mod tests {
         for (periods, returning) in [(1, 0.0), (10, 0.0), (10, 1.0), (40, 0.5)] {
             let (mut told, mut squares, mut freedom) = (0.0, 0.0, 0.0);
             for seed in 0..DRAWS {
-                let (stray, sum) = drawn(seed, periods, returning);
-                told += stray.variance / DRAWS as f64;
+                let (sum_variance, sum) = drawn(seed, periods, returning);
+                told += sum_variance.variance / DRAWS as f64;
                 squares += sum * sum / DRAWS as f64;
-                freedom = stray.by(1.0, stray.square).1;
+                freedom = sum_variance.by(1.0, sum_variance.square).1;
             }
             // Σ z² over all periods with independent noise; the periodic error adds up before
             // squaring.
@@ -278,10 +282,10 @@ mod tests {
     }
 
     #[test]
-    fn what_a_suspect_explains_is_no_part_of_the_variance() {
-        let (stray, _) = drawn(1, 10, 0.0);
+    fn what_a_hypothesis_explains_is_no_part_of_the_variance() {
+        let (sum_variance, _) = drawn(1, 10, 0.0);
         let half = 0.5 * (10 * PERIOD) as f64;
-        assert!((stray.square - half).abs() < 1e-9 * half);
+        assert!((sum_variance.square - half).abs() < 1e-9 * half);
         // The same with the sine itself in the residual; subtracting its size removes it.
         let motion = Return {
             samples: PERIOD,
@@ -299,7 +303,7 @@ mod tests {
         let mean = Mean::new(&vec![fold], split).expect("every phase");
         let all = vec![1.0; PERIOD / 2 + 1];
         let sizes = DVector::from_element(1, 3.0);
-        let freed = mean.strays(&DMatrix::identity(1, 1), &all, Some(&sizes))[0];
-        assert!(freed.variance < 1e-20, "{}", freed.variance);
+        let without_fault = mean.sum_variances(&DMatrix::identity(1, 1), &all, Some(&sizes))[0];
+        assert!(without_fault.variance < 1e-20, "{}", without_fault.variance);
     }
 }
