@@ -102,7 +102,7 @@ fn words(
         FaultHypothesis::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
         _ => ("", None),
     };
-    let told = Told {
+    let finding = Finding {
         what: format!("{what} {}", called(name.copied().unwrap_or_default())),
         size: worst.wald.largest(),
         strength: worst.wald.strength(),
@@ -110,13 +110,13 @@ fn words(
     };
     match hypothesis {
         FaultHypothesis::Torque(actuator, Shape::Stribeck) => {
-            told.near_standstill(context, actuator)
+            finding.near_standstill(context, actuator)
         }
         FaultHypothesis::Torque(actuator, _) => {
             let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
-            told.words(shape, shape.unit(revolute))
+            finding.words(shape, shape.unit(revolute))
         }
-        _ => told.words(shape, ""),
+        _ => finding.words(shape, ""),
     }
 }
 
@@ -167,7 +167,7 @@ fn too(others: &[(String, Harm)]) -> String {
 }
 
 /// Data for the words of a finding.
-struct Told {
+struct Finding {
     /// The dependent torque or force.
     what: String,
     /// δ, with its sign.
@@ -178,7 +178,7 @@ struct Told {
     rest: String,
 }
 
-impl Told {
+impl Finding {
     /// Sentence for a shape whose size has a unit.
     fn words(&self, shape: Shape, unit: &str) -> String {
         let size = format!(", by {} {unit}", significant(self.size, 3));

@@ -21,7 +21,7 @@ const LEAST_LEFT: f64 = 0.5;
 
 /// Contribution of a piece for one parameter.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Share {
+pub(super) struct PieceContribution {
     /// Part of Q_i.
     pub(super) own: f64,
     /// Part of Q'_i.
@@ -82,11 +82,11 @@ impl Line {
 }
 
 /// Contributions of the lines of a piece, each with its weight, for each parameter.
-pub(super) fn shares<'a>(
+pub(super) fn contributions<'a>(
     context: &Context<'_>,
     views: impl Iterator<Item = (View<'a>, f64)>,
     signs: &Drawn<'_>,
-) -> Vec<Share> {
+) -> Vec<PieceContribution> {
     let (mut lines, mut spectra, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
     let views: Vec<_> = views.collect();
     let count = views.first().map_or(0, |(rows, _)| rows.nrows());
@@ -123,8 +123,8 @@ fn summed(
     lines: &[Line],
     (powers, bins): ([&Powers; FORMS], usize),
     padding: f64,
-) -> Vec<Share> {
-    let mut shares = vec![Share::default(); parameters];
+) -> Vec<PieceContribution> {
+    let mut contributions = vec![PieceContribution::default(); parameters];
     let mut sums = [const { Vec::new() }; FORMS];
     sums.iter_mut().for_each(|own| own.resize(parameters, 0.0));
     for bin in 0..bins {
@@ -138,8 +138,8 @@ fn summed(
             vectors: &c,
             sums: &mut sums,
         };
-        forms.tell();
-        for (i, share) in shares.iter_mut().enumerate() {
+        forms.evaluate();
+        for (i, contribution) in contributions.iter_mut().enumerate() {
             let plain: f64 = c.iter().flatten().map(|part| part[i] * part[i]).sum();
             let [taken, own, around, drawn, drawn_around] = sums.each_ref().map(|sum| sum[i]);
             let left = 1.0 - taken / plain.max(f64::MIN_POSITIVE);
@@ -150,18 +150,18 @@ fn summed(
                 [own, mean].map(|part| twice * part)
             };
             let [square, mean] = filled(own, around);
-            share.own += square;
-            share.around += mean;
+            contribution.own += square;
+            contribution.around += mean;
             // With zero padding, `padding` frequencies carry one independent value. The fit removes
             // either of the two degrees of freedom of a frequency; a filled-in part does not vary.
             let varies = (factor * left).powi(2) * (1.0 / left.max(LEAST_LEFT));
-            share.squares += padding * mean.powi(2) * varies;
+            contribution.squares += padding * mean.powi(2) * varies;
             let [square, mean] = filled(drawn, drawn_around);
-            share.drawn.own += square;
-            share.drawn.around += mean;
+            contribution.drawn.own += square;
+            contribution.drawn.around += mean;
         }
     }
-    shares
+    contributions
 }
 
 /// H/N of all pairs of lines.

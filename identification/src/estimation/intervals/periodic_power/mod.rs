@@ -29,7 +29,7 @@ use rayon::prelude::*;
 
 use super::scores::Context;
 use crate::{estimation::correlation::pieces, regression::system::System};
-use piece::{Share, shares};
+use piece::{PieceContribution, contributions};
 use signs::{DRAWS, Signs};
 
 /// Q_i/Q'_i of each parameter, and the degrees of freedom of Q_i.
@@ -40,22 +40,25 @@ pub(crate) fn ratios(system: &System, context: &Context<'_>) -> Vec<(f64, f64)> 
     let pieces: Vec<_> = stretches
         .flat_map(|(number, stretch)| pieces(stretch).map(move |piece| (number, piece)))
         .collect();
-    let shares: Vec<Vec<Share>> = pieces
+    let contributions: Vec<Vec<PieceContribution>> = pieces
         .par_iter()
         .map(|&(number, (stretch, first, count))| {
             let signs = signs.of(number, first, count);
             let lines = stretch.lines.iter().zip(&context.estimation.weights);
             let views = lines.map(|(line, weight)| (line.rows(first, count), *weight));
-            shares(context, views, &signs)
+            contributions(context, views, &signs)
         })
         .collect();
     (0..p)
         .map(|i| {
-            let sum = |of: fn(&Share) -> f64| -> f64 { shares.iter().map(|all| of(&all[i])).sum() };
-            let around = sum(|share| share.around);
-            let ratio = sum(|share| share.own) / around;
-            let by_chance = sum(|share| share.drawn.own) / sum(|share| share.drawn.around);
-            let freedom = 2.0 * around * around / sum(|share| share.squares);
+            let sum = |of: fn(&PieceContribution) -> f64| -> f64 {
+                contributions.iter().map(|all| of(&all[i])).sum()
+            };
+            let around = sum(|contribution| contribution.around);
+            let ratio = sum(|contribution| contribution.own) / around;
+            let by_chance = sum(|contribution| contribution.drawn.own)
+                / sum(|contribution| contribution.drawn.around);
+            let freedom = 2.0 * around * around / sum(|contribution| contribution.squares);
             // The ratio for random signs also scatters, like the mean of `DRAWS` residuals.
             (ratio / by_chance, freedom / (1.0 + 1.0 / DRAWS as f64))
         })

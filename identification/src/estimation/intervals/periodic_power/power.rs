@@ -76,7 +76,7 @@ pub(super) struct Forms<'a> {
 
 impl Forms<'_> {
     /// Writes the forms to `sums`.
-    pub(super) fn tell(self) {
+    pub(super) fn evaluate(self) {
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = pulp::x86::V3::try_new() {
             simd.vectorize(self);
@@ -315,7 +315,7 @@ mod tests {
                 vectors: &vectors,
                 sums: &mut sums,
             };
-            forms.tell();
+            forms.evaluate();
             let found = sums[0][0];
             assert!(sums.iter().all(|own| own[..] == [found]), "{sums:?}");
             assert!((found - sum.norm_sqr()).abs() < 1e-12 * sum.norm_sqr());
