@@ -197,14 +197,14 @@ impl SumVariance {
         }
     }
 
-    /// Ratio of the variance to `told`, and its degrees of freedom.
+    /// Ratio of the variance to `other`, and its degrees of freedom.
     ///
-    /// `told` is the variance estimate of all equations, and `whole` their Σ z². The part of the
-    /// equations without periodic motion keeps the variance `told`.
-    pub(crate) fn by(self, told: f64, whole: f64) -> (f64, f64) {
-        let rest = (1.0 - self.square / whole).clamp(0.0, 1.0);
+    /// `other` is the variance estimate of all equations, and `total` their Σ z². The part of the
+    /// equations without periodic motion keeps the variance `other`.
+    pub(crate) fn by(self, other: f64, total: f64) -> (f64, f64) {
+        let rest = (1.0 - self.square / total).clamp(0.0, 1.0);
         let freedom = self.variance.powi(2) / self.scatter;
-        (self.variance / told + rest, freedom)
+        (self.variance / other + rest, freedom)
     }
 }
 
@@ -260,10 +260,10 @@ mod tests {
     #[test]
     fn the_variance_of_a_sum_holds_noise_and_what_returns() {
         for (periods, returning) in [(1, 0.0), (10, 0.0), (10, 1.0), (40, 0.5)] {
-            let (mut told, mut squares, mut freedom) = (0.0, 0.0, 0.0);
+            let (mut estimated, mut squares, mut freedom) = (0.0, 0.0, 0.0);
             for seed in 0..DRAWS {
                 let (sum_variance, sum) = drawn(seed, periods, returning);
-                told += sum_variance.variance / DRAWS as f64;
+                estimated += sum_variance.variance / DRAWS as f64;
                 squares += sum * sum / DRAWS as f64;
                 freedom = sum_variance.by(1.0, sum_variance.square).1;
             }
@@ -271,7 +271,10 @@ mod tests {
             // squaring.
             let half = 0.5 * (periods * PERIOD) as f64;
             let expected = half * (1.0 + periods as f64 * returning);
-            assert!((told / expected - 1.0).abs() < 0.05, "{told} {expected}");
+            assert!(
+                (estimated / expected - 1.0).abs() < 0.05,
+                "{estimated} {expected}"
+            );
             assert!(
                 (squares / expected - 1.0).abs() < 0.25,
                 "{squares} {expected}"

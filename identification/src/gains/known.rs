@@ -12,7 +12,7 @@ use crate::{
     data::Log,
     error::{Error, Problem, suggestion},
     estimation::base::{
-        BaseParameters, Combination, PayloadUse, base_parameters_beside, payload_names,
+        BaseParameters, Combination, PayloadUse, base_parameters_with_known, payload_names,
     },
     regression::columns::ColumnSet,
     settings::Settings,
@@ -56,7 +56,7 @@ impl Split {
         let known = found(model, &columns, settings)?;
         let places: Vec<usize> = known.iter().map(|(column, _)| *column).collect();
         let all = (&columns, payload);
-        let (base, combinations) = base_parameters_beside(model, all, &places, settings.seed)?;
+        let (base, combinations) = base_parameters_with_known(model, all, &places, settings.seed)?;
         let fixes = known
             .iter()
             .zip(&combinations)

@@ -12,7 +12,7 @@ use crate::regression::{
 
 /// Folds of a system.
 #[derive(Debug, Clone)]
-pub(crate) struct HeldOut {
+pub(crate) struct CrossValidationFolds {
     folds: Vec<Fold>,
     /// ||Y|| of all folds.
     measured: f64,
@@ -27,7 +27,7 @@ struct Fold {
     others: Factor,
 }
 
-impl HeldOut {
+impl CrossValidationFolds {
     /// Folds of a system with these line weights.
     ///
     /// `None` if the columns `selected` are not determined without one of the folds.
