@@ -2,7 +2,7 @@
 //!
 //! - `columns`: columns of the model: standard parameters, payload, split friction;
 //! - `friction`, `states`: joint of each friction parameter, and random states to find it;
-//! - `gathering`: numbers of the model in rows;
+//! - `collect_rows`: numbers of the model in rows;
 //! - `chunk`, `observation`: successive samples as equations; the pass over a run;
 //! - `instruments`: equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
@@ -13,15 +13,15 @@
 //! - `shares`: effect of the uncertainty of previous identifications on estimates;
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: linearly dependent columns;
-//! - `turned`: rows of numbers as a matrix.
+//! - `transpose`: rows of numbers as a matrix.
 
 pub(crate) mod chunk;
+mod collect_rows;
 pub(crate) mod columns;
 pub(crate) mod elimination;
 pub(crate) mod factor;
 pub(crate) mod fold;
 mod friction;
-mod gathering;
 mod instruments;
 pub(crate) mod observation;
 pub(crate) mod points;
@@ -30,7 +30,7 @@ pub(crate) mod shares;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;
-mod turned;
+mod transpose;
 mod update;
 
 pub(crate) use chunk::Chunk;

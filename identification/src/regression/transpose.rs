@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 const TOGETHER: usize = 16;
 
 /// The matrix of successive rows of `width` numbers.
-pub(super) fn turned(rows: &[f64], width: usize) -> DMatrix<f64> {
+pub(super) fn transpose(rows: &[f64], width: usize) -> DMatrix<f64> {
     let count = rows.len() / width;
     let mut matrix = DMatrix::zeros(count, width);
     for (number, rows) in rows.chunks(TOGETHER * width).enumerate() {
@@ -22,14 +22,17 @@ pub(super) fn turned(rows: &[f64], width: usize) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::turned;
+    use super::transpose;
     use nalgebra::DMatrix;
 
     #[test]
     fn rows_are_those_of_the_matrix() {
         for count in [0, 1, 16, 37] {
             let rows: Vec<f64> = (0..5 * count).map(|k| k as f64).collect();
-            assert_eq!(turned(&rows, 5), DMatrix::from_row_slice(count, 5, &rows));
+            assert_eq!(
+                transpose(&rows, 5),
+                DMatrix::from_row_slice(count, 5, &rows)
+            );
         }
     }
 }

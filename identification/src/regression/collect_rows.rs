@@ -1,11 +1,11 @@
 //! Collects numbers of a model's functions in the rows of a line.
 
 /// Numbers of all samples and lines, count per line, and pairs of place in the row and number.
-pub(super) type Gathering<'a> = (&'a [f64], usize, Vec<(usize, usize)>);
+pub(super) type RowSource<'a> = (&'a [f64], usize, Vec<(usize, usize)>);
 
 /// Rows of `width` values of one line for all samples; zero by default, sums for repeated places.
-pub(super) fn gathered(
-    sources: &[Gathering<'_>; 2],
+pub(super) fn collect_rows(
+    sources: &[RowSource<'_>; 2],
     (line, lines): (usize, usize),
     (samples, width): (usize, usize),
 ) -> Vec<f64> {
@@ -47,7 +47,7 @@ pub(super) fn gathered(
 
 #[cfg(test)]
 mod tests {
-    use super::gathered;
+    use super::collect_rows;
 
     #[test]
     fn numbers_go_to_their_places_line_by_line() {
@@ -56,9 +56,9 @@ mod tests {
         let more = [0.5, 0.25, -0.5, -0.25];
         let places = vec![(0, 2), (3, 0), (3, 1)];
         let sources = [(&robot[..], 3, places), (&more[..], 1, vec![(1, 0)])];
-        let first = gathered(&sources, (0, 2), (2, 5));
+        let first = collect_rows(&sources, (0, 2), (2, 5));
         assert_eq!(first, [2.0, 0.5, 0.0, 1.0, 0.0, 8.0, -0.5, 0.0, 13.0, 0.0]);
-        let second = gathered(&sources, (1, 2), (2, 5));
+        let second = collect_rows(&sources, (1, 2), (2, 5));
         assert_eq!(
             second,
             [5.0, 0.25, 0.0, 7.0, 0.0, 11.0, -0.25, 0.0, 19.0, 0.0]
