@@ -384,7 +384,10 @@ fn covariance_before(
     projection: usize,
     estimate: (&[usize], &[f64]),
 ) -> Option<DMatrix<f64>> {
-    prepared.shares.as_ref()?.covariance(projection, estimate)
+    prepared
+        .propagated_uncertainty
+        .as_ref()?
+        .covariance(projection, estimate)
 }
 
 /// Base parameters that the data separate, with their names; warns of the others.

@@ -16,7 +16,7 @@ use crate::{
         base::{BaseParameters, PayloadUse, base_parameters, payload_names},
         column_noise::ColumnNoise,
     },
-    gains::{Gains, drive_shares},
+    gains::{Gains, propagate_gain_uncertainty},
     gravity::GravityDirection,
     kinematics,
     prior::Prior,
@@ -25,8 +25,8 @@ use crate::{
         factor::Factor,
         observation::{Observer, Seen},
         projection::Projection,
-        shares::Shares,
         system::{Observed, System},
+        uncertainty_propagation::PropagatedUncertainty,
     },
     result::{Estimate, RunSummary},
     settings::{Settings, check_partition},
@@ -60,7 +60,7 @@ pub struct Prepared {
     /// Periodic motion of each run, if it has one.
     pub(super) returns: Vec<Option<Return>>,
     /// Effect of the uncertainty of previous identifications.
-    pub(super) shares: Option<Shares>,
+    pub(super) propagated_uncertainty: Option<PropagatedUncertainty>,
 }
 
 impl Prepared {
@@ -81,7 +81,7 @@ impl Prepared {
             points: Vec::new(),
             companions: Companions::default(),
             returns: Vec::new(),
-            shares: None,
+            propagated_uncertainty: None,
         }
     }
 
@@ -99,7 +99,7 @@ impl Prepared {
             projections: &self.projections,
             settings,
         };
-        self.shares = Some(drive_shares(&observer, runs, gains)?);
+        self.propagated_uncertainty = Some(propagate_gain_uncertainty(&observer, runs, gains)?);
         Ok(self)
     }
 
@@ -150,7 +150,7 @@ impl Prepared {
         let all = self.columns.as_slice();
         let columns = self.base.columns.iter();
         let names: Vec<&str> = columns.map(|&index| all[index].name.as_str()).collect();
-        self.shares = Some(direction.shares(&names));
+        self.propagated_uncertainty = Some(direction.propagated_uncertainty(&names));
         self
     }
 
@@ -262,7 +262,7 @@ pub fn prepare(
         points,
         companions,
         returns,
-        shares: None,
+        propagated_uncertainty: None,
     })
 }
 

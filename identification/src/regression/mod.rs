@@ -10,7 +10,7 @@
 //! - `fold`: mean equations of a periodic motion at each phase;
 //! - `projection`: projections of the inputs;
 //! - `points`: motion data for plots;
-//! - `shares`: effect of the uncertainty of previous identifications on estimates;
+//! - `uncertainty_propagation`: effect of the uncertainty of previous identifications on estimates;
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: linearly dependent columns;
 //! - `transpose`: rows of numbers as a matrix.
@@ -26,11 +26,11 @@ mod instruments;
 pub(crate) mod observation;
 pub(crate) mod points;
 pub(crate) mod projection;
-pub(crate) mod shares;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;
 mod transpose;
+pub(crate) mod uncertainty_propagation;
 mod update;
 
 pub(crate) use chunk::Chunk;

@@ -10,7 +10,7 @@ use super::factor::Factor;
 
 /// Contribution of each quantity to the equations of each projection.
 #[derive(Debug, Clone)]
-pub(crate) struct Shares {
+pub(crate) struct PropagatedUncertainty {
     /// For each projection the factors of its lines; empty without equations.
     ///
     /// Columns are those of the base parameters, then one for each quantity; the last one replaces
@@ -22,7 +22,7 @@ pub(crate) struct Shares {
     covariance: DMatrix<f64>,
 }
 
-impl Shares {
+impl PropagatedUncertainty {
     pub(crate) const fn new(
         projections: Vec<Vec<Factor>>,
         parameters: usize,
@@ -55,7 +55,7 @@ impl Shares {
         right.columns_mut(0, count - 1).copy_from(&own);
         right.set_column(count - 1, &reduced.rhs.rows(0, p));
         let triangle = reduced.triangle.view((0, 0), (p, p));
-        let shares = triangle.solve_upper_triangular(&right)?;
-        Some(&shares * &self.covariance * shares.transpose())
+        let sensitivities = triangle.solve_upper_triangular(&right)?;
+        Some(&sensitivities * &self.covariance * sensitivities.transpose())
     }
 }

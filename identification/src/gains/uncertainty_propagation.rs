@@ -25,9 +25,9 @@ use crate::{
         chunk::projected,
         observation::Observer,
         projection::Projection,
-        shares::Shares,
         sink::{LineSink, Plan, observed},
         system::System,
+        uncertainty_propagation::PropagatedUncertainty,
     },
 };
 
@@ -35,11 +35,11 @@ use crate::{
 ///
 /// # Errors
 /// As [`Motions::next`]; the runs have been read before.
-pub(crate) fn drive_shares(
+pub(crate) fn propagate_gain_uncertainty(
     observer: &Observer<'_>,
     runs: &[Log],
     gains: &Gains,
-) -> Result<Shares, Error> {
+) -> Result<PropagatedUncertainty, Error> {
     let info = observer.model.info();
     let (parameters, drives) = (observer.base.len(), info.sizes.actuators);
     let new =
@@ -49,7 +49,11 @@ pub(crate) fn drive_shares(
         run(observer, (number, log), &mut systems)?;
     }
     let lines = systems.into_iter().map(|own| own.lines).collect();
-    Ok(Shares::new(lines, parameters, gains.relative_covariance()))
+    Ok(PropagatedUncertainty::new(
+        lines,
+        parameters,
+        gains.relative_covariance(),
+    ))
 }
 
 /// Adds the equations of a run.

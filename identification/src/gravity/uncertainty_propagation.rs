@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{columns::Extended, solve::Solution};
 use crate::{
     error::Error,
-    regression::{factor::Factor, shares::Shares, system::System},
+    regression::{factor::Factor, system::System, uncertainty_propagation::PropagatedUncertainty},
 };
 
 /// Columns and angle derivatives in the estimated direction, and equations of each projection.
@@ -47,7 +47,11 @@ impl Turned {
     }
 
     /// Effect of angles with this covariance on estimates of the parameters `names`.
-    pub(super) fn shares(&self, names: &[&str], covariance: &DMatrix<f64>) -> Shares {
+    pub(super) fn propagated_uncertainty(
+        &self,
+        names: &[&str],
+        covariance: &DMatrix<f64>,
+    ) -> PropagatedUncertainty {
         let rows = self.columns.nrows();
         let column = |name: &&str| {
             let at = self.names.iter().position(|own| own == name);
@@ -66,6 +70,6 @@ impl Turned {
         let of_line = |line: &Factor| line.combined_with(&coefficients, &last);
         let of = |lines: &Vec<Factor>| lines.iter().map(of_line).collect();
         let projections = self.projections.iter().map(of).collect();
-        Shares::new(projections, names.len(), covariance.clone())
+        PropagatedUncertainty::new(projections, names.len(), covariance.clone())
     }
 }
