@@ -18,7 +18,7 @@ use crate::{
     prior::Prior,
     regression::{
         columns::ColumnSet,
-        observation::{Observer, Seen},
+        observation::{Observer, RunObservation},
         projection::Projection,
         system::Observed,
     },
@@ -228,7 +228,7 @@ impl Columns {
         };
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
-        let (systems, seen) =
+        let (systems, observation) =
             observer.run(0, (log, None), (about.budget.unwrap_or(0), None), &report)?;
         let models = projections.iter().zip(systems);
         let models = models.map(|(projection, observed)| {
@@ -245,8 +245,8 @@ impl Columns {
             time_us: about.origin.1,
             like: about.like.to_owned(),
             content: String::new(),
-            summary: RunSummary::new(log, &seen),
-            flags: flags((model, log), seen),
+            summary: RunSummary::new(log, &observation),
+            flags: flags((model, log), observation),
             columns: names.map(|column| column.name.clone()).collect(),
             models: models.collect(),
         };
@@ -285,8 +285,8 @@ fn kept(
 }
 
 /// Suspicions about the raw numbers of a run.
-fn flags((model, log): (&dyn Model, &Log), seen: Seen) -> Vec<String> {
-    let checks = assessment::suspicious(model, log.name(), seen.monitor);
+fn flags((model, log): (&dyn Model, &Log), observation: RunObservation) -> Vec<String> {
+    let checks = assessment::suspicious(model, log.name(), observation.monitor);
     let failed = checks.iter().filter(|check| !check.passed);
     failed.map(Check::located).collect()
 }

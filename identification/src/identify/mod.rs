@@ -125,9 +125,9 @@ pub fn identify_after(
     )?;
     warnings.extend(held_out.warnings);
     let cross_validation = held_out.validations;
-    let identified = prepared.seen.iter().map(|seen| Watched {
-        monitor: seen.monitor.clone(),
-        closure_residual: seen.closure_residual,
+    let identified = prepared.observations.iter().map(|observation| Watched {
+        monitor: observation.monitor.clone(),
+        closure_residual: observation.closure_residual,
     });
     let watched: Vec<Watched> = identified.chain(held_out.watched).collect();
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
