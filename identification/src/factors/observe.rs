@@ -206,7 +206,7 @@ impl Columns {
                 chosen.extend(place.filter(|place| !chosen.contains(place)));
             }
         }
-        let all = all.with_reversals(model, settings)?;
+        let all = all.with_friction_signs(model, settings)?;
         Ok(Self { all, chosen })
     }
 

@@ -47,7 +47,7 @@ pub(super) fn restored(
     .with_payloads(&names(runs));
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
-    let columns = columns.with_reversals(model, settings)?;
+    let columns = columns.with_friction_signs(model, settings)?;
     let places = places(runs, &columns, &base)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let (mut systems, mut left_out) = (Vec::new(), Vec::new());

@@ -68,7 +68,7 @@ impl Split {
             let problems = known.iter().zip(&combinations).map(problem).collect();
             Error::check(problems)?;
         }
-        let columns = columns.with_reversals(model, settings)?;
+        let columns = columns.with_friction_signs(model, settings)?;
         Ok(Self {
             columns,
             base,

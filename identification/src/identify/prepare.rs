@@ -220,7 +220,7 @@ pub fn prepare(
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
     // Column relations belong to the model, reversals to the data.
-    let columns = columns.with_reversals(model, settings)?;
+    let columns = columns.with_friction_signs(model, settings)?;
     let observer = Observer {
         model,
         columns: &columns,

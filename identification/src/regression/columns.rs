@@ -320,7 +320,11 @@ impl ColumnSet {
     ///
     /// # Errors
     /// A friction parameter whose rate cannot be recognised.
-    pub fn with_reversals(mut self, model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
+    pub fn with_friction_signs(
+        mut self,
+        model: &dyn Model,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
         let reversal = Reversal::new(settings);
         if reversal.band > 0.0 || reversal.averaged {
             let rates = friction_rates(model, settings.seed)?;

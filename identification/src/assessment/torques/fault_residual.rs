@@ -62,7 +62,7 @@ impl Columns {
             .map(|(place, _)| place)
             .collect();
         Ok(Self {
-            columns: columns.with_reversals(model, settings)?,
+            columns: columns.with_friction_signs(model, settings)?,
             base,
             payload,
         })
