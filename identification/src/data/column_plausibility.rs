@@ -50,7 +50,7 @@ impl Log {
     /// # Errors
     /// Positions and torques that look swapped, columns with two meanings, velocities that do not
     /// belong to the positions; a file that cannot be read any more.
-    pub fn check_meaning(&self, actuators: &[&str]) -> Result<(), Error> {
+    pub fn check_column_plausibility(&self, actuators: &[&str]) -> Result<(), Error> {
         let wanted = LOOKED_AT.min(self.samples());
         let mut samples = Samples::default();
         let mut reader = self.reader()?;
@@ -305,7 +305,7 @@ mod tests {
         }
         let log = Log::new("run", 1000.0, 2, positions, torques, false).expect("a log");
         let log = log.with_velocities(velocities);
-        log.check_meaning(&["1", "leg2"])
+        log.check_column_plausibility(&["1", "leg2"])
             .map_err(|error| error.to_string())
     }
 

@@ -17,14 +17,14 @@ pub(super) struct Row<'a> {
 
 /// State of the messages on previous rows.
 #[derive(Debug)]
-pub(super) struct Told {
+pub(super) struct RowDiagnostics {
     /// Whether no row of numbers has been parsed.
     pub(super) is_first: bool,
     /// Whether the help for a cell without a number has been given.
     is_helped: bool,
 }
 
-impl Told {
+impl RowDiagnostics {
     pub(super) const fn new() -> Self {
         Self {
             is_first: true,
