@@ -31,9 +31,9 @@
 mod assessment;
 mod blocks;
 mod calibration;
-mod called;
 mod consistent;
 pub mod data;
+mod display_names;
 mod error;
 mod estimation;
 pub mod factors;
@@ -63,9 +63,9 @@ pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
-pub use called::{called, titled};
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
 pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Scales, Time, Variant};
+pub use display_names::{called, titled};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::evidence::Evidence;
-use crate::{called::titled, regression::projection::ModelKind, result::Stage};
+use crate::{display_names::titled, regression::projection::ModelKind, result::Stage};
 
 /// Result of one check.
 ///

@@ -7,7 +7,7 @@ use overact::Code;
 
 use super::{log::Log, samples::Samples};
 use crate::{
-    called::called,
+    display_names::called,
     error::{Error, Problem},
     significant,
 };

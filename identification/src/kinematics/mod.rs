@@ -263,7 +263,7 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
 fn cutoff_help(frequency: f64, cutoff: f64) -> String {
     let set = "`filter_cutoff` of [identification] about ten times the bandwidth of the motion";
     match time_of_sampling(frequency, cutoff) {
-        Some(slip) => format!("{}. Else give {set}", slip.advice()),
+        Some(unit_error) => format!("{}. Else give {set}", unit_error.advice()),
         None => format!("give {set}"),
     }
 }

@@ -13,7 +13,7 @@ use crate::{
         evidence::{Axis, Curve, Evidence},
         hypotheses::{FaultHypothesis, Group, Scores, Shape},
     },
-    called::called,
+    display_names::called,
     error::Error,
     significant,
 };

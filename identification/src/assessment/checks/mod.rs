@@ -35,8 +35,8 @@ pub(super) use fault_hypotheses::HARMFUL;
 
 use super::{check::Check, hypotheses::Scores};
 use crate::{
-    called::with_joints,
     data::{Dataset, Log},
+    display_names::with_joints,
     error::Error,
     estimation::{
         base::BaseParameters, column_noise::ColumnNoise, instruments::regressor::ErrorsInRegressor,

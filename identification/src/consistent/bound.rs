@@ -1,7 +1,7 @@
 //! Distance from a bound, with its multiplier.
 
 /// Distance of an unknown from a bound.
-pub(super) struct Side {
+pub(super) struct BoundDistance {
     /// Number of the unknown within its group.
     pub(super) place: usize,
     sign: f64,
@@ -11,7 +11,7 @@ pub(super) struct Side {
     proposed: [f64; 2],
 }
 
-impl Side {
+impl BoundDistance {
     /// sign (value - limit) on the path of a weight; `None` if it is not positive.
     pub(super) fn new(
         (place, limit, sign): (usize, f64, f64),

@@ -26,7 +26,7 @@ impl Signal {
 
 /// A unit error: a signal in a unit other than SI.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Slip {
+pub(crate) struct UnitError {
     pub(crate) signal: Signal,
     /// The assumed unit.
     pub(crate) unit: &'static str,
@@ -36,8 +36,13 @@ pub(crate) struct Slip {
     pub(crate) scale: &'static str,
 }
 
-const fn slip(signal: Signal, unit: &'static str, factor: f64, scale: &'static str) -> Slip {
-    Slip {
+const fn unit_error(
+    signal: Signal,
+    unit: &'static str,
+    factor: f64,
+    scale: &'static str,
+) -> UnitError {
+    UnitError {
         signal,
         unit,
         factor,
@@ -46,23 +51,23 @@ const fn slip(signal: Signal, unit: &'static str, factor: f64, scale: &'static s
 }
 
 /// Common unit errors, the most common ones of each signal first.
-pub(crate) const SLIPS: [Slip; 16] = [
-    slip(Signal::Time, "milliseconds", 1e3, ""),
-    slip(Signal::Time, "microseconds", 1e6, ""),
-    slip(Signal::Time, "nanoseconds", 1e9, ""),
-    slip(Signal::Time, "minutes", 1.0 / 60.0, ""),
-    slip(Signal::Time, "hours", 1.0 / 3600.0, ""),
-    slip(Signal::Angles, "degrees", 180.0 / PI, "1 deg"),
-    slip(Signal::Angles, "mrad", 1e3, "0.001 rad"),
-    slip(Signal::Angles, "turns", 1.0 / TAU, "6.283185307179586 rad"),
-    slip(Signal::Lengths, "mm", 1e3, "1 mm"),
-    slip(Signal::Lengths, "µm", 1e6, "0.001 mm"),
-    slip(Signal::Lengths, "cm", 1e2, "10 mm"),
-    slip(Signal::Torques, "mN m (or mN, mA)", 1e3, "0.001"),
-    slip(Signal::Torques, "kN m (or kN)", 1e-3, "1000"),
-    slip(Signal::Torques, "N cm", 1e2, "0.01"),
-    slip(Signal::Torques, "N mm", 1e3, "0.001"),
-    slip(Signal::Torques, "µN m (or µA)", 1e6, "0.000001"),
+pub(crate) const UNIT_ERRORS: [UnitError; 16] = [
+    unit_error(Signal::Time, "milliseconds", 1e3, ""),
+    unit_error(Signal::Time, "microseconds", 1e6, ""),
+    unit_error(Signal::Time, "nanoseconds", 1e9, ""),
+    unit_error(Signal::Time, "minutes", 1.0 / 60.0, ""),
+    unit_error(Signal::Time, "hours", 1.0 / 3600.0, ""),
+    unit_error(Signal::Angles, "degrees", 180.0 / PI, "1 deg"),
+    unit_error(Signal::Angles, "mrad", 1e3, "0.001 rad"),
+    unit_error(Signal::Angles, "turns", 1.0 / TAU, "6.283185307179586 rad"),
+    unit_error(Signal::Lengths, "mm", 1e3, "1 mm"),
+    unit_error(Signal::Lengths, "µm", 1e6, "0.001 mm"),
+    unit_error(Signal::Lengths, "cm", 1e2, "10 mm"),
+    unit_error(Signal::Torques, "mN m (or mN, mA)", 1e3, "0.001"),
+    unit_error(Signal::Torques, "kN m (or kN)", 1e-3, "1000"),
+    unit_error(Signal::Torques, "N cm", 1e2, "0.01"),
+    unit_error(Signal::Torques, "N mm", 1e3, "0.001"),
+    unit_error(Signal::Torques, "µN m (or µA)", 1e6, "0.000001"),
 ];
 
 /// Kinds of drives.
@@ -78,7 +83,7 @@ const NEARER: f64 = 0.5;
 /// Improvement required of a less common unit error, in decades.
 const LESS_USUAL: f64 = 0.01;
 
-impl Slip {
+impl UnitError {
     /// Factor by which the unit error multiplies a quantity.
     fn on(&self, quantity: &Quantity) -> f64 {
         let powers = quantity.powers;
@@ -106,22 +111,31 @@ pub(crate) fn explanation(
     quantities: &[Quantity],
     kinds: Kinds,
     is_single: bool,
-) -> Option<&'static Slip> {
-    let unusual = |slip: Option<&Slip>| -> f64 {
-        let of = |one: &Quantity| one.unusual(one.value / slip.map_or(1.0, |slip| slip.on(one)));
+) -> Option<&'static UnitError> {
+    let unusual = |unit_error: Option<&UnitError>| -> f64 {
+        let of = |one: &Quantity| {
+            one.unusual(one.value / unit_error.map_or(1.0, |unit_error| unit_error.on(one)))
+        };
         quantities.iter().map(of).sum()
     };
-    let resolves = |slip: &Slip| {
+    let resolves = |unit_error: &UnitError| {
         let after = |one: &Quantity| Quantity {
-            value: one.value / slip.on(one),
+            value: one.value / unit_error.on(one),
             ..one.clone()
         };
         quantities.iter().all(|one| after(one).is_possible())
     };
-    let all = SLIPS.iter().enumerate().filter(|(_, slip)| {
-        slip.fits(kinds) && !(is_single && slip.signal == Signal::Time) && resolves(slip)
+    let all = UNIT_ERRORS.iter().enumerate().filter(|(_, unit_error)| {
+        unit_error.fits(kinds)
+            && !(is_single && unit_error.signal == Signal::Time)
+            && resolves(unit_error)
     });
-    let judged = all.map(|(rank, slip)| (unusual(Some(slip)) + LESS_USUAL * rank as f64, slip));
+    let judged = all.map(|(rank, unit_error)| {
+        (
+            unusual(Some(unit_error)) + LESS_USUAL * rank as f64,
+            unit_error,
+        )
+    });
     let (left, best) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (left + NEARER < unusual(None)).then_some(best)
 }
@@ -130,16 +144,18 @@ pub(crate) fn explanation(
 const USUAL_SAMPLING: std::ops::RangeInclusive<f64> = 100.0..=2e5;
 
 /// Unit of time in which a run of this sampling frequency could pass a filter of this cutoff (Hz).
-pub(crate) fn time_of_sampling(frequency: f64, cutoff: f64) -> Option<&'static Slip> {
-    let times = SLIPS.iter().filter(|slip| slip.signal == Signal::Time);
-    let mut longer = times.filter(|slip| slip.factor > 1.0);
-    longer.find(|slip| {
-        let own = frequency * slip.factor;
+pub(crate) fn time_of_sampling(frequency: f64, cutoff: f64) -> Option<&'static UnitError> {
+    let times = UNIT_ERRORS
+        .iter()
+        .filter(|unit_error| unit_error.signal == Signal::Time);
+    let mut longer = times.filter(|unit_error| unit_error.factor > 1.0);
+    longer.find(|unit_error| {
+        let own = frequency * unit_error.factor;
         USUAL_SAMPLING.contains(&own) && cutoff < 0.5 * own
     })
 }
 
-impl Slip {
+impl UnitError {
     /// The unit error as a question, with its remedy.
     pub(crate) fn advice(&self) -> String {
         let unit = self.unit;
