@@ -39,7 +39,7 @@ pub struct Origin {
 ///
 /// Line ends do not count, comments do.
 #[must_use]
-pub fn likeness(description: &str, settings: &Settings) -> String {
+pub fn settings_hash(description: &str, settings: &Settings) -> String {
     let settings = Settings {
         r_sigma: 0.0,
         keep_significant: false,
@@ -60,7 +60,7 @@ pub fn likeness(description: &str, settings: &Settings) -> String {
 pub struct Factory<'a> {
     model: &'a dyn Model,
     settings: &'a Settings,
-    like: String,
+    settings_hash: String,
     /// Columns for each payload.
     known: Mutex<Vec<(Load, Arc<Columns>)>>,
     /// Number of values of successive equations that a run may keep; `None` to keep none.
@@ -84,7 +84,7 @@ impl<'a> Factory<'a> {
         Ok(Self {
             model,
             settings,
-            like: likeness(description, settings),
+            settings_hash: settings_hash(description, settings),
             known: Mutex::new(Vec::new()),
             budget: None,
         })
@@ -108,7 +108,7 @@ impl<'a> Factory<'a> {
     ) -> Result<RunFactors, Error> {
         let columns = self.columns(log, progress)?;
         let about = About {
-            like: &self.like,
+            settings_hash: &self.settings_hash,
             origin,
             budget: self.budget,
         };
@@ -164,7 +164,7 @@ pub fn factor_runs(
 
 /// Metadata of a run.
 struct About<'a> {
-    like: &'a str,
+    settings_hash: &'a str,
     /// Serial number and time.
     origin: (&'a str, Option<i64>),
     budget: Option<usize>,
@@ -243,7 +243,7 @@ impl Columns {
             robot: info.name.to_owned(),
             serial: about.origin.0.to_owned(),
             time_us: about.origin.1,
-            like: about.like.to_owned(),
+            settings_hash: about.settings_hash.to_owned(),
             content: String::new(),
             summary: RunSummary::new(log, &observation),
             flags: flags((model, log), observation),

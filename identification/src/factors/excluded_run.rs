@@ -8,7 +8,7 @@ use crate::error::Problem;
 /// A run, or a whole file, that was left out.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
-pub struct LeftOut {
+pub struct ExcludedRun {
     /// File.
     pub file: String,
     /// Name of the run; `None` for the whole file.
@@ -39,7 +39,7 @@ pub enum Reason {
     MissingModel,
 }
 
-impl LeftOut {
+impl ExcludedRun {
     /// It as an error, with a remedy.
     pub(super) fn problem(&self) -> Problem {
         let message = match &self.run {
