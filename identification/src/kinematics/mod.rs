@@ -10,9 +10,9 @@ pub(crate) mod conditioning;
 mod dense;
 pub(crate) mod distribution;
 mod forward;
-mod known;
+mod gauss_newton;
+mod known_torques;
 mod motion;
-mod settling;
 mod stream;
 
 use overact::Code;
@@ -30,7 +30,7 @@ use crate::{
 
 use forward::Forward;
 pub(crate) use forward::approach;
-use known::KnownTorques;
+use known_torques::KnownTorques;
 pub use motion::Motion;
 use motion::outside;
 use stream::{Derivatives, Stream};

@@ -17,7 +17,7 @@ use crate::widest::widest;
 ///
 /// The stopping rule is that of [`overact::forward::gauss_newton`]. `None` if a sample does not
 /// converge.
-pub(super) fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) -> Option<()> {
+pub(super) fn refine_poses(model: &dyn Model, positions: &[f64], poses: &mut [f64]) -> Option<()> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
     let samples = positions.len() / n;
