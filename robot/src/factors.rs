@@ -8,7 +8,7 @@ use crate::{
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Log, Progress, Settings,
-    factors::{self, Factory, FromFactors, Gathered, Origin, RunFactors},
+    factors::{self, CollectedRuns, FactorEstimation, Factory, Origin, RunFactors},
 };
 
 impl Robot {
@@ -47,8 +47,8 @@ impl Robot {
 
     /// Compatibility key of factors for this description and these settings.
     #[must_use]
-    pub fn likeness(&self, settings: &Settings) -> String {
-        factors::likeness(&self.source().text, settings)
+    pub fn settings_hash(&self, settings: &Settings) -> String {
+        factors::settings_hash(&self.source().text, settings)
     }
 
     /// Identifies the parameters from factors of runs.
@@ -57,11 +57,11 @@ impl Robot {
     /// Incompatible factors, or data that determine no parameter.
     pub fn identify_factors(
         &self,
-        gathered: &Gathered,
+        gathered: &CollectedRuns,
         settings: &Settings,
         skip_bad: bool,
         progress: &dyn Fn(Progress<'_>),
-    ) -> Result<FromFactors, Error> {
+    ) -> Result<FactorEstimation, Error> {
         self.check_factors()?;
         self.check_prior()?;
         let essential = self.description().identification.essential;

@@ -105,7 +105,7 @@ impl Robot {
 
     /// Checks that a log's columns can have the meaning that the description gives them.
     fn meant(&self, log: Log) -> Result<Log, overact_identification::Error> {
-        log.check_meaning(self.model().info().actuators)?;
+        log.check_column_plausibility(self.model().info().actuators)?;
         Ok(log)
     }
 

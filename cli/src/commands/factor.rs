@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let said = if as_json {
         output::json(&serde_json::json!({
             "runs": made.iter().map(|run| &run.summary).collect::<Vec<_>>(),
-            "like": made.first().map(|run| &run.like),
+            "like": made.first().map(|run| &run.settings_hash),
             "bytes": bytes.len(),
         }))?
     } else {

@@ -4,7 +4,7 @@ use super::runs;
 use crate::{failure::Failure, output, progress::Progress};
 use overact_identification::{
     Progress as Doing,
-    factors::{Deviations, FromFactors, LeftOut, gather},
+    factors::{Deviations, ExcludedRun, FactorEstimation, gather},
 };
 use overact_robot::Robot;
 use std::{
@@ -43,8 +43,8 @@ pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
         .map_or(0.0, |run| run.summary.sampling_frequency);
     let mut settings = robot.settings(rate);
     settings.kept_actuators = kept.transpose()?.unwrap_or(settings.kept_actuators);
-    let like = robot.likeness(&settings);
-    let gathered = gather(request.files, Some(&like), request.skip_bad)?;
+    let settings_hash = robot.settings_hash(&settings);
+    let gathered = gather(request.files, Some(&settings_hash), request.skip_bad)?;
     let bar = Progress::new("identifying", request.as_json);
     let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
     let found = robot.identify_factors(&gathered, &settings, request.skip_bad, &tell)?;
@@ -58,7 +58,7 @@ pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
 }
 
 /// Text output.
-fn text(found: &FromFactors) -> String {
+fn text(found: &FactorEstimation) -> String {
     let mut text = format!(
         "{} from the factors of {}\n\n",
         found.robot,
@@ -86,7 +86,7 @@ fn text(found: &FromFactors) -> String {
 }
 
 /// Omitted runs, one per line.
-pub(super) fn left_out(all: &[LeftOut]) -> String {
+pub(super) fn left_out(all: &[ExcludedRun]) -> String {
     let mut text = String::new();
     if !all.is_empty() {
         let _ = writeln!(text, "left out: {}", all.len());

@@ -17,7 +17,7 @@ use crate::{
 
 /// Quantities estimated before the parameters, which are therefore no assumptions.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Found {
+pub(crate) struct PreviouslyIdentified {
     /// Whether the gains of the drives were estimated.
     pub gains: bool,
     /// Whether the direction of gravity was estimated.
@@ -31,7 +31,7 @@ pub(crate) fn assumptions(
     model: &dyn Model,
     columns: &ColumnSet,
     models: &[ModelKind],
-    before: Found,
+    before: PreviouslyIdentified,
 ) -> Vec<String> {
     let gains = if before.gains {
         "known parameters are exact: gains and all other parameters scale with them"
@@ -86,7 +86,7 @@ fn lengths_are_untold(model: &dyn Model) -> bool {
 }
 
 /// The assumptions that are violated most often, as a sentence for the verdict.
-pub(crate) fn rests_on(model: &dyn Model, before: Found) -> Option<String> {
+pub(crate) fn rests_on(model: &dyn Model, before: PreviouslyIdentified) -> Option<String> {
     let what = match (lengths_are_untold(model), before.gains) {
         (true, false) => "lengths, units and torque constants",
         (false, false) => "units and torque constants",
@@ -148,8 +148,9 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         let is_length = kind.check == CheckKind::Length;
         let all =
             all.filter(|one| one.unit.is_empty() == kind.is_part && one.is_length == is_length);
-        let harmful = all.filter(|one| one.moves > HARMFUL && one.moves.is_finite());
-        harmful.max_by(|a, b| a.moves.total_cmp(&b.moves))
+        let harmful =
+            all.filter(|one| one.shift_deviations > HARMFUL && one.shift_deviations.is_finite());
+        harmful.max_by(|a, b| a.shift_deviations.total_cmp(&b.shift_deviations))
     };
     let told = KINDS.iter().filter_map(|kind| {
         if let Some(never) = never(checks, kind) {
@@ -163,7 +164,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         };
         // A relative size above 100 % has no meaning.
         let most = if kind.is_part { WHOLE } else { f64::INFINITY };
-        let moves = worst.moves * (most / worst.size).min(1.0);
+        let shift_deviations = worst.shift_deviations * (most / worst.size).min(1.0);
         let size = match worst.unit {
             "" => format!("{} %", significant(100.0 * worst.size.min(most), 2)),
             "s" => format!("{} ms", significant(1e3 * worst.size, 2)),
@@ -175,7 +176,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         };
         Some(format!(
             "{}: {size}{of} would shift `{}` by {:.0} σ",
-            kind.name, worst.parameter, moves
+            kind.name, worst.parameter, shift_deviations
         ))
     });
     told.collect()
@@ -189,7 +190,7 @@ fn never(checks: &[Check], kind: &Kind) -> Option<String> {
     let hidden = own
         .filter(|one| one.kind == CheckKind::WrongGain)
         .flat_map(|one| &one.detectable)
-        .filter(|one| one.size >= WHOLE && one.moves > HARMFUL);
+        .filter(|one| one.size >= WHOLE && one.shift_deviations > HARMFUL);
     let names: Vec<String> = hidden.map(|one| format!("`{}`", one.name)).collect();
     (!names.is_empty()).then(|| format!("{}: not detectable for {}", kind.name, names.join(", ")))
 }
@@ -200,15 +201,16 @@ mod tests {
     use crate::assessment::check::{About, Check, CheckKind, Detectable};
 
     fn check(kind: CheckKind, faults: &[(&str, &'static str, f64, f64)]) -> Check {
-        let fault = |&(name, unit, size, moves): &(&str, &'static str, f64, f64)| Detectable {
-            name: name.to_owned(),
-            unit,
-            deviation: size / 5.0,
-            size,
-            parameter: String::from("zz_1"),
-            moves,
-            is_length: false,
-        };
+        let fault =
+            |&(name, unit, size, shift_deviations): &(&str, &'static str, f64, f64)| Detectable {
+                name: name.to_owned(),
+                unit,
+                deviation: size / 5.0,
+                size,
+                parameter: String::from("zz_1"),
+                shift_deviations,
+                is_length: false,
+            };
         let all = faults.iter().map(fault).collect();
         Check::new(kind, About::Model, "nothing").detecting(all)
     }

@@ -15,7 +15,7 @@ use overact::Code;
 type Place = (usize, usize);
 
 /// The requested columns.
-pub(super) struct Found {
+pub(super) struct RequestedColumns {
     /// Columns of each file, with the name of the first request.
     pub(super) columns: Vec<Vec<(usize, String)>>,
     /// For each column in order of request, its index among the columns of all files.
@@ -267,7 +267,7 @@ impl<'a> Columns<'a> {
     ///
     /// # Errors
     /// All problems so far.
-    pub(super) fn finish(mut self) -> Result<Found, Error> {
+    pub(super) fn finish(mut self) -> Result<RequestedColumns, Error> {
         if !self.missing.is_empty() {
             let problem = self.missing();
             self.problems.insert(0, problem);
@@ -281,7 +281,7 @@ impl<'a> Columns<'a> {
         }
         let start = |file: usize| columns[..file].iter().map(Vec::len).sum::<usize>();
         let places = places.into_iter().map(|(file, place)| start(file) + place);
-        Ok(Found {
+        Ok(RequestedColumns {
             places: places.collect(),
             columns,
         })

@@ -7,7 +7,7 @@ use super::{
     samples::Samples,
     signals::is_measurable,
     source::{Files, WrapSource},
-    turns::{UnwrappedRows, Unwrapper, Wrap},
+    unwrapping::{UnwrappedRows, Unwrapper, Wrap},
 };
 use crate::error::{Error, Problem};
 use overact::Code;

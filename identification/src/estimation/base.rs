@@ -193,7 +193,7 @@ pub(crate) type Combination = Option<Vec<usize>>;
 ///
 /// # Errors
 /// A model that cannot be evaluated near its home pose.
-pub(crate) fn base_parameters_beside(
+pub(crate) fn base_parameters_with_known(
     model: &dyn Model,
     (columns, payload): (&ColumnSet, PayloadUse),
     known: &[usize],

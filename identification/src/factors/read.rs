@@ -9,7 +9,7 @@ use parquet::{
 
 use super::{
     content::content,
-    left_out::Reason,
+    excluded_run::Reason,
     packed::from_rows,
     record::Record,
     run::{ModelFactors, RunFactors},
@@ -166,7 +166,7 @@ fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
         robot: first.robot.clone(),
         serial: first.serial.clone(),
         time_us: first.time,
-        like: first.like.clone(),
+        settings_hash: first.settings_hash.clone(),
         content: first.content.clone(),
         summary: RunSummary {
             name: first.run.clone(),

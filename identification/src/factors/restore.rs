@@ -5,7 +5,7 @@ use overact::Code;
 use overact::Model;
 
 use super::{
-    left_out::{LeftOut, Reason},
+    excluded_run::{ExcludedRun, Reason},
     run::RunFactors,
 };
 use crate::{
@@ -29,7 +29,7 @@ pub(super) fn restored(
     runs: &[RunFactors],
     settings: &Settings,
     skip_bad: bool,
-) -> Result<(Prepared, Vec<LeftOut>), Error> {
+) -> Result<(Prepared, Vec<ExcludedRun>), Error> {
     let info = model.info();
     let payload = payload_use(runs)?;
     if payload != PayloadUse::Absent && !has_payload(&info) {
@@ -47,7 +47,7 @@ pub(super) fn restored(
     .with_payloads(&names(runs));
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
-    let columns = columns.with_reversals(model, settings)?;
+    let columns = columns.with_friction_signs(model, settings)?;
     let places = places(runs, &columns, &base)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let (mut systems, mut left_out) = (Vec::new(), Vec::new());
@@ -68,7 +68,7 @@ pub(super) fn restored(
             };
             match (observed, &mut system) {
                 (Ok(observed), Ok(system)) => system.extend(observed),
-                (Err(message), _) if skip_bad => left_out.push(LeftOut {
+                (Err(message), _) if skip_bad => left_out.push(ExcludedRun {
                     file: run.summary.name.clone(),
                     run: Some(run.title()),
                     reason: Reason::MissingModel,

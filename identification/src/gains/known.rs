@@ -12,7 +12,7 @@ use crate::{
     data::Log,
     error::{Error, Problem, suggestion},
     estimation::base::{
-        BaseParameters, Combination, PayloadUse, base_parameters_beside, payload_names,
+        BaseParameters, Combination, PayloadUse, base_parameters_with_known, payload_names,
     },
     regression::columns::ColumnSet,
     settings::Settings,
@@ -57,7 +57,7 @@ impl Split {
         let known = found(model, &columns, settings)?;
         let places: Vec<usize> = known.iter().map(|(column, _)| *column).collect();
         let all = (&columns, payload);
-        let (base, combinations) = base_parameters_beside(model, all, &places, settings.seed)?;
+        let (base, combinations) = base_parameters_with_known(model, all, &places, settings.seed)?;
         let fixes = known
             .iter()
             .zip(&combinations)
@@ -69,7 +69,7 @@ impl Split {
             let problems = known.iter().zip(&combinations).map(problem).collect();
             Error::check(problems)?;
         }
-        let columns = columns.with_reversals(model, settings)?;
+        let columns = columns.with_friction_signs(model, settings)?;
         Ok(Self {
             columns,
             base,

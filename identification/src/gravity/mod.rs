@@ -19,7 +19,7 @@
 //! - `solve`: estimation of the direction;
 //! - `determined`: rotations that the torques determine;
 //! - `deviations`: covariance of the angles;
-//! - `shares`: effect of their uncertainty on parameters;
+//! - `uncertainty_propagation`: effect of their uncertainty on parameters;
 //! - `result`: the result.
 
 mod columns;
@@ -28,8 +28,8 @@ mod deviations;
 mod frame;
 mod observation;
 mod result;
-mod shares;
 mod solve;
+mod uncertainty_propagation;
 
 pub use result::GravityDirection;
 
@@ -47,8 +47,8 @@ use determined::free_turns;
 use deviations::covariance;
 use frame::Frame;
 use observation::Observer;
-use shares::Turned;
 use solve::solve;
+use uncertainty_propagation::Turned;
 
 /// Standard deviation of an angle from which on it is undetermined, rad.
 const UNDETERMINED: f64 = 0.2;

@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, Vector3};
 use serde::Serialize;
 
-use super::{frame::Frame, shares::Turned};
-use crate::regression::shares::Shares;
+use super::{frame::Frame, uncertainty_propagation::Turned};
+use crate::regression::uncertainty_propagation::PropagatedUncertainty;
 
 /// 95 % quantiles of chi-squared with one and with two degrees of freedom.
 const SIGNIFICANT: [f64; 2] = [3.841, 5.991];
@@ -98,8 +98,8 @@ impl GravityDirection {
     }
 
     /// Effect of its uncertainty on base parameters that keep the standard parameters `names`.
-    pub(crate) fn shares(&self, names: &[&str]) -> Shares {
-        self.turned.shares(names, &self.covariance)
+    pub(crate) fn propagated_uncertainty(&self, names: &[&str]) -> PropagatedUncertainty {
+        self.turned.propagated_uncertainty(names, &self.covariance)
     }
 
     /// Warnings to the user.

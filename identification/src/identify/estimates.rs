@@ -244,12 +244,12 @@ impl Context<'_> {
         base: &Estimation,
         settings: &Settings,
     ) -> (Option<Estimate>, ErrorsInRegressor) {
-        let companions = &self.prepared.companions;
-        let why = companions.missing.as_ref().map(ToString::to_string);
+        let instrument_runs = &self.prepared.instrument_runs;
+        let why = instrument_runs.missing.as_ref().map(ToString::to_string);
         let model = self.system.projection.model();
         let told = ErrorsInRegressor {
-            runs: companions.runs.clone(),
-            simulated: companions.simulated.clone(),
+            runs: instrument_runs.runs.clone(),
+            simulated: instrument_runs.simulated.clone(),
             ..ErrorsInRegressor::without(model, settings.instruments, why)
         };
         if self.system.instruments.is_empty() {
@@ -384,7 +384,10 @@ fn covariance_before(
     projection: usize,
     estimate: (&[usize], &[f64]),
 ) -> Option<DMatrix<f64>> {
-    prepared.shares.as_ref()?.covariance(projection, estimate)
+    prepared
+        .propagated_uncertainty
+        .as_ref()?
+        .covariance(projection, estimate)
 }
 
 /// Base parameters that the data separate, with their names; warns of the others.

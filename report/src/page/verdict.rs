@@ -13,7 +13,7 @@ use crate::{
     judgement::{grade_words, passed},
     text::escape,
 };
-use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict, objections};
+use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict, failed_checks};
 
 /// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -94,8 +94,8 @@ fn rests_on(verdict: &Verdict) -> String {
 
 /// Objections to a model with links to the evidence, or that there are none.
 fn reasons(identification: &Identification, verdict: &Verdict) -> String {
-    let found = objections(&identification.checks, verdict.model, verdict.stage);
-    if found.told.is_empty() {
+    let found = failed_checks(&identification.checks, verdict.model, verdict.stage);
+    if found.reported.is_empty() {
         let count = passed(identification, verdict.model, verdict.stage);
         return match count {
             0 => String::new(),
@@ -112,7 +112,7 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
             checks::id(*number)
         )
     };
-    let mut reasons: String = found.told.iter().map(reason).collect();
+    let mut reasons: String = found.reported.iter().map(reason).collect();
     if let Some(rest) = found.rest() {
         let _ = write!(reasons, "<li>{}</li>", prose(&sentence(&rest)));
     }

@@ -12,7 +12,7 @@ use crate::{
     terminal::{calibration, gains, gravity, motors},
 };
 use overact_identification::{
-    Estimate, Estimator, Grade, Identification, ParameterEstimate, Stage, Verdict, objections,
+    Estimate, Estimator, Grade, Identification, ParameterEstimate, Stage, Verdict, failed_checks,
     significant,
 };
 
@@ -257,15 +257,15 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
             paragraph(&mut text, "  ", &told);
         }
     }
-    let found = objections(&identification.checks, verdict.model, verdict.stage);
-    for (_, check) in &found.told {
+    let found = failed_checks(&identification.checks, verdict.model, verdict.stage);
+    for (_, check) in &found.reported {
         paragraph(&mut text, "  - ", &check.located());
     }
     if let Some(rest) = found.rest() {
         paragraph(&mut text, "  - ", &rest);
     }
     let count = passed(identification, verdict.model, verdict.stage);
-    if found.told.is_empty() && count > 0 {
+    if found.reported.is_empty() && count > 0 {
         let s = if count == 1 { "" } else { "s" };
         line(&mut text, &format!("  {count} check{s} passed."));
     }

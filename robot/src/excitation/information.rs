@@ -76,7 +76,7 @@ impl Question {
             settings.asymmetric_friction,
             settings.seed,
         )?
-        .with_reversals(bench.model, settings)?;
+        .with_friction_signs(bench.model, settings)?;
         let base = base_parameters(bench.model, &columns, payload, settings.seed)?;
         let sizes = bench.info.sizes;
         if sizes.actuators < sizes.dof {

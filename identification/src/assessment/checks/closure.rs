@@ -75,7 +75,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         checks.push(if !closing.misses() {
             check
         } else if closing.filtered > closing.harmless {
-            check.allowing(Grade::DoNotUse)
+            check.with_grade(Grade::DoNotUse)
         } else {
             check.found()
         });

@@ -23,8 +23,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             words(context, estimate),
         )
         .of_model(estimate.model)
-        .allowing(Grade::UseListed)
-        .spoiling(inertial.map(|one| one.name.clone()).collect())
+        .with_grade(Grade::UseListed)
+        .with_unusable_parameters(inertial.map(|one| one.name.clone()).collect())
     };
     Ok(without.map(of_model).collect())
 }

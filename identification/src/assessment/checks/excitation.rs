@@ -81,8 +81,8 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
         Grade::UseListed
     };
     check(told(context, &spoiled))
-        .allowing(grade)
-        .spoiling(spoiled)
+        .with_grade(grade)
+        .with_unusable_parameters(spoiled)
 }
 
 impl Directions {

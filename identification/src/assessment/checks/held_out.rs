@@ -99,7 +99,7 @@ fn of_estimate(
                 limits: vec![(largest / mean.exp()).sqrt()],
                 ..Evidence::default()
             })
-            .allowing(if grows { Grade::DoNotUse } else { Grade::Use }),
+            .with_grade(if grows { Grade::DoNotUse } else { Grade::Use }),
     )
 }
 

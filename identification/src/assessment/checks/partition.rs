@@ -39,7 +39,7 @@ fn of_case(context: &Context<'_>, base: &Estimate) -> Option<Check> {
             .in_run(&partition.run)
             .measured(partition.largest, "")
             .against(limit, "noise of the torques grows by the condition number")
-            .allowing(if good { Grade::Use } else { Grade::DoNotUse }),
+            .with_grade(if good { Grade::Use } else { Grade::DoNotUse }),
     )
 }
 

@@ -41,7 +41,7 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
         ))
         .found();
     }
-    let words = outcome(told, agreement) + &returning(&told.runs);
+    let words = outcome(told, agreement) + &repeated_errors(&told.runs);
     let spoiled: Vec<String> = told
         .parameters
         .iter()
@@ -57,7 +57,9 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
             check
         }
     } else {
-        check.allowing(Grade::UseListed).spoiling(spoiled)
+        check
+            .with_grade(Grade::UseListed)
+            .with_unusable_parameters(spoiled)
     }
 }
 
@@ -137,7 +139,7 @@ fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
 }
 
 /// Remark on position errors that repeat with the motion.
-fn returning(runs: &[RepeatedRun]) -> String {
+fn repeated_errors(runs: &[RepeatedRun]) -> String {
     let worst = runs
         .iter()
         .filter(|run| run.errors_return())

@@ -69,7 +69,7 @@ pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
             SILENT,
             "simulated robots without faults have 1 to 1.3 times the noise",
         );
-    (ratio.is_finite() && ratio > SILENT).then(|| check.allowing(Grade::DoNotUse))
+    (ratio.is_finite() && ratio > SILENT).then(|| check.with_grade(Grade::DoNotUse))
 }
 
 /// Whether a failed check accounts for the residual.
@@ -118,7 +118,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 LARGEST_PERCENT,
                 "published identifications have 2 to 12 %, including noise",
             )
-            .allowing(if good { Grade::Use } else { Grade::DoNotUse })
+            .with_grade(if good { Grade::Use } else { Grade::DoNotUse })
     };
     Ok(context.least_squares().map(of_estimate).collect())
 }

@@ -55,7 +55,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 .in_run(log.name())
                 .measured(100.0 * shared.part, "% of the shorter run")
                 .against(100.0 * HARMLESS, "intervals too narrow by a fortieth");
-            found.push(check.found().allowing(grade));
+            found.push(check.found().with_grade(grade));
         }
     }
     Ok(found)

@@ -10,7 +10,7 @@ use crate::{
     assessment::{
         check::{About, Check, CheckKind},
         evidence::{Axis, Curve, Evidence},
-        suspects::Correlation,
+        hypotheses::Correlation,
     },
     error::Error,
     estimation::intervals::distributions::student_quantile,
@@ -36,18 +36,18 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let (tests, level) = (pairs.len(), level(pairs.len()));
     let beyond = |one: &&Correlation| one.probability < level && one.value.abs() >= SMALLEST;
-    let guilty = pairs.iter().filter(beyond);
-    let guilty = guilty.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    let most_significant = pairs.iter().filter(beyond);
+    let most_significant = most_significant.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
     let names = context.model.info().actuators;
     let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
-    let shown = guilty.unwrap_or(most);
+    let shown = most_significant.unwrap_or(most);
     let (first, second) = (name(shown.actuators.0), name(shown.actuators.1));
     let found = format!(
         "the residuals of `{first}` and `{second}` are correlated: correlation {} ({:.1} standard deviations)",
         significant(shown.value, 2),
         shown.strength
     );
-    let words = match guilty {
+    let words = match most_significant {
         Some(_) => format!(
             "{found}. The model lacks an effect on both: a force on the platform, a cable, crosstalk between current measurements, or an error of the geometry"
         ),
@@ -60,7 +60,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             format!("{}, and a correlation of {SMALLEST}", origin(tests)),
         )
         .shown_by(evidence(&pairs, &name));
-    Ok(vec![match guilty {
+    Ok(vec![match most_significant {
         Some(_) => check.found(),
         None => check,
     }])

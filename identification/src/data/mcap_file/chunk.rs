@@ -16,14 +16,14 @@ pub(super) const BEGINNING: usize = 28;
 
 /// Header of a chunk.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Said {
+pub(super) struct ChunkHeader {
     /// Unpacked size of its records.
     size: u64,
     /// Checksum of its records; `None` if it was not computed.
     sum: Option<u32>,
 }
 
-impl Said {
+impl ChunkHeader {
     /// Reads the header from the chunk's first bytes.
     pub(super) fn of(beginning: &[u8; BEGINNING]) -> Option<Self> {
         let mut fields = Fields(&beginning[16..]);
@@ -41,7 +41,7 @@ pub(super) struct Chunk {
     input: Unpacking,
     /// Position in the file, for messages.
     pub(super) place: u64,
-    said: Said,
+    header: ChunkHeader,
     /// Number of bytes read.
     position: u64,
     sum: Hasher,
@@ -56,7 +56,7 @@ enum Unpacking {
 
 impl fmt::Debug for Chunk {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "chunk at byte {}, {:?}", self.place, self.said)
+        write!(f, "chunk at byte {}, {:?}", self.place, self.header)
     }
 }
 
@@ -68,7 +68,7 @@ impl Chunk {
     pub(super) fn new(
         input: BufReader<Section>,
         packing: &str,
-        (place, said): (u64, Said),
+        (place, header): (u64, ChunkHeader),
     ) -> Result<Self, String> {
         let input = match packing {
             "" => Unpacking::None(input),
@@ -88,7 +88,7 @@ impl Chunk {
         Ok(Self {
             input,
             place,
-            said,
+            header,
             position: 0,
             sum: Hasher::new(),
         })
@@ -96,7 +96,7 @@ impl Chunk {
 
     /// Number of unread bytes.
     pub(super) const fn left(&self) -> u64 {
-        self.said.size - self.position
+        self.header.size - self.position
     }
 
     /// Fills `bytes`.
@@ -118,7 +118,7 @@ impl Chunk {
             _ => format!("it can't be unpacked: {error}"),
         })?;
         self.position += count;
-        if self.said.sum.is_some() {
+        if self.header.sum.is_some() {
             self.sum.update(bytes);
         }
         Ok(())
@@ -143,7 +143,7 @@ impl Chunk {
     /// # Errors
     /// A wrong checksum.
     pub(super) fn check(&self) -> Result<(), String> {
-        match self.said.sum {
+        match self.header.sum {
             Some(sum) if sum != self.sum.clone().finalize() => Err(String::from(
                 "its checksum does not match: some bytes were changed",
             )),

@@ -11,7 +11,7 @@ use std::{
 };
 
 use super::{
-    chunk::{self, Chunk, Said},
+    chunk::{self, Chunk, ChunkHeader},
     fields::Fields,
     section::Section,
 };
@@ -187,13 +187,13 @@ impl Records {
         if size > end - start {
             return Err(cut_off());
         }
-        let said = Said::of(&beginning).ok_or_else(cut_off)?;
+        let header = ChunkHeader::of(&beginning).ok_or_else(cut_off)?;
         self.pass(end - start)?;
         let input = Section::buffered(&self.file, start, start + size);
         Chunk::new(
             input,
             &legible(&String::from_utf8_lossy(&packing)),
-            (place, said),
+            (place, header),
         )
     }
 

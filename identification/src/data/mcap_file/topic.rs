@@ -3,7 +3,7 @@
 use overact::Code;
 use std::path::{Path, PathBuf};
 
-use super::{joint_state::JointState, topics::Found};
+use super::{joint_state::JointState, topics::TopicChannels};
 use crate::{
     data::problems::{legible, shown},
     error::Problem,
@@ -52,7 +52,11 @@ pub(super) enum Source {
 
 impl Topic {
     /// A topic with the joints of its first message; `None` without a message.
-    pub(super) fn new(file: &str, path: &Path, found: Found) -> Result<Option<Self>, Problem> {
+    pub(super) fn new(
+        file: &str,
+        path: &Path,
+        found: TopicChannels,
+    ) -> Result<Option<Self>, Problem> {
         let Some((recorded, content)) = found.first else {
             return Ok(None);
         };

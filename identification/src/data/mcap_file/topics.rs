@@ -21,7 +21,7 @@ const END: u64 = 29 + 8;
 
 /// A topic, collected from the channels of a file.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct TopicChannels {
     pub(super) topic: String,
     pub(super) channels: Vec<u16>,
     /// Recording time (ns) and content of the first message; `None` without a message.
@@ -41,7 +41,10 @@ impl Topics {
     ///
     /// # Errors
     /// A description of the defect and its position.
-    pub(super) fn find(file: &Arc<File>, length: u64) -> Result<(Self, Vec<Found>), String> {
+    pub(super) fn find(
+        file: &Arc<File>,
+        length: u64,
+    ) -> Result<(Self, Vec<TopicChannels>), String> {
         let mut topics = Self::default();
         let summary = summary(file, length)?;
         let mut content = Vec::new();
@@ -70,11 +73,11 @@ impl Topics {
                 _ => topics.note(&record, &content),
             }
         }
-        let mut found: Vec<Found> = Vec::new();
+        let mut found: Vec<TopicChannels> = Vec::new();
         for (channel, topic) in topics.joints() {
             let first = firsts.remove(&channel);
             match found.iter_mut().find(|own| own.topic == topic) {
-                None => found.push(Found {
+                None => found.push(TopicChannels {
                     topic: topic.to_owned(),
                     channels: vec![channel],
                     first,

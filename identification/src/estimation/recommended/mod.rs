@@ -19,7 +19,7 @@
 mod tests;
 
 use super::{
-    essential::HeldOut,
+    essential::CrossValidationFolds,
     estimate::{Estimation, condition, fit},
     intervals::{
         Intervals,
@@ -58,7 +58,7 @@ pub(crate) fn recommended(
     system: &System,
     (selected, names): (&[usize], &[String]),
     start: &Estimation,
-    (intervals, folds): (&Intervals, Option<&HeldOut>),
+    (intervals, folds): (&Intervals, Option<&CrossValidationFolds>),
     settings: &Settings,
 ) -> Result<Recommended, Error> {
     let base = folds.and_then(|folds| folds.squares(selected));
