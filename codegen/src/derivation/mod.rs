@@ -15,7 +15,7 @@
 //! | `functions` | the functions of the table, from inputs to outputs |
 //!
 //! Files in this folder itself are shared: inputs of functions, choices for a robot, guards, names.
-//! [`DerivationContext`](context::DerivationContext) holds the state of one function's derivation.
+//! `DerivationContext` holds the state of one function's derivation.
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 

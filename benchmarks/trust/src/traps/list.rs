@@ -120,8 +120,7 @@ fn drives() -> Vec<Trap> {
         .assumed("gains that are wrong by one factor"),
         Trap::each("torques in mN m", |run| {
             run.torques.iter_mut().for_each(|torque| *torque *= 1e3);
-        })
-        .assumed("gains that are wrong by one factor"),
+        }),
         Trap::each("torque of drive 2 alone in mN m", |run| {
             alter::torque(run, 1, |torque| 1e3 * torque);
         }),
