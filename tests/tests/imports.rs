@@ -88,7 +88,7 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
             "error",
             "significant",
             "widest",
-            "called",
+            "display_names",
             "units",
             "blocks",
             "thresholds",
