@@ -184,7 +184,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// Objections to the result, and other warnings.
+/// Failed checks of the result, and other warnings.
 fn warnings(result: &Identification) -> Vec<String> {
     let verdicts = result.verdicts.iter().filter(|one| !one.trusted);
     let reasons = verdicts.flat_map(|one| {

@@ -26,8 +26,8 @@ pub struct CollectedRuns {
 /// Reads factor files.
 ///
 /// Duplicate runs are counted once and reported. Other unusable runs are left out if `skip_bad`.
-/// `settings_hash` is the required hash of description and settings. By default it is the most frequent one,
-/// or the first of equally frequent ones.
+/// `settings_hash` is the required hash of description and settings. By default it is the most
+/// frequent one, or the first of equally frequent ones.
 ///
 /// # Errors
 /// All unusable runs and files together, unless they are skipped; no run at all.

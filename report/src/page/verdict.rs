@@ -92,7 +92,7 @@ fn rests_on(verdict: &Verdict) -> String {
     words.map_or_else(String::new, |words| paragraph(&words))
 }
 
-/// Objections to a model with links to the evidence, or that there are none.
+/// Failed checks of a model with links to the evidence, or that there are none.
 fn reasons(identification: &Identification, verdict: &Verdict) -> String {
     let found = failed_checks(&identification.checks, verdict.model, verdict.stage);
     if found.reported.is_empty() {

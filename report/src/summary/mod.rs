@@ -238,7 +238,7 @@ fn list(names: &[&str], extent: Extent) -> String {
     }
 }
 
-/// Objections to an estimate, or that there are none.
+/// Failed checks of an estimate, or that there are none.
 fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -> String {
     let mut text = String::new();
     if verdict.grade == Grade::UseListed {

@@ -95,9 +95,9 @@ impl Pairs {
 
 /// Correlations of all pairs that the motion determines; each run has its number of cosines.
 ///
-/// Each pair is fitted separately, together with the variances σ_kk. For a pair, `periodic_variance` is the
-/// variance that periodic residuals add to the mean of a product. Its second value is the square of
-/// that by its degrees of freedom.
+/// Each pair is fitted separately, together with the variances σ_kk. For a pair,
+/// `periodic_variance` is the variance that periodic residuals add to the mean of a product. Its
+/// second value is the square of that by its degrees of freedom.
 pub(super) fn correlations<'a>(
     runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
     periodic_variance: &dyn Fn((usize, usize)) -> [f64; 2],

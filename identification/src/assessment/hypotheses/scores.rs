@@ -72,8 +72,8 @@ pub(super) struct CachedTests {
 
 /// Reads the runs and computes the scores with an estimate of all base parameters.
 ///
-/// `position_ranges` are the ranges of the actuators. The band is `times` narrower than usual, as far
-/// as enough equations remain.
+/// `position_ranges` belong to the actuators. The band is `times` narrower than usual, as far as
+/// enough equations remain.
 ///
 /// # Errors
 /// As [`Motions::next`]; the runs have been read before.
