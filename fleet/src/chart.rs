@@ -113,7 +113,7 @@ pub fn charts(points: &[Point], rule: &Rule) -> Vec<Chart> {
     let looks = rule.looks(points);
     let limit = rule.false_alarms / (looks.len() * parameters.max(1)) as f64;
     let mut charts: Vec<Chart> = { series.into_iter() }
-        .map(|((serial, parameter), days)| chart((serial, parameter), days, (&looks, limit)))
+        .map(|((serial, parameter), days)| chart(serial, parameter, days, &looks, limit))
         .collect();
     let order = |own: &Chart| (own.alarm.is_none(), own.probability);
     charts.sort_by(|a, b| {
@@ -123,10 +123,13 @@ pub fn charts(points: &[Point], rule: &Rule) -> Vec<Chart> {
     charts
 }
 
+/// Chart of one parameter; a p-value below `limit` at one of the `looks` is an alarm.
 fn chart(
-    (serial, parameter): (&str, &str),
+    serial: &str,
+    parameter: &str,
     mut days: Vec<(f64, f64)>,
-    (looks, limit): (&[f64], f64),
+    looks: &[f64],
+    limit: f64,
 ) -> Chart {
     days.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut probability, mut alarm) = (1.0_f64, None);

@@ -31,6 +31,15 @@ pub struct Plan {
     pub frictions: Vec<f64>,
 }
 
+/// Drift of one parameter of each robot.
+#[derive(Clone, Copy)]
+struct Drift {
+    /// Drifting quantity.
+    fault: Fault,
+    /// Size of the drift, in percent.
+    percent: f64,
+}
+
 /// Results for the robots with one drift.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
@@ -65,8 +74,11 @@ pub fn power(
     let experiment = robot.experiment()?;
     let settings = robot.settings(experiment.plan().sampling_hz);
     let factory = robot.factory(&settings)?;
-    let of = |fault: Fault, sizes: &[f64]| -> Vec<(Fault, f64)> {
-        sizes.iter().map(|size| (fault, *size)).collect()
+    let of = |fault: Fault, sizes: &[f64]| -> Vec<Drift> {
+        sizes
+            .iter()
+            .map(|&percent| Drift { fault, percent })
+            .collect()
     };
     let all = [
         of(Fault::None, &[0.0]),
@@ -74,7 +86,8 @@ pub fn power(
         of(Fault::Friction, &plan.frictions),
     ];
     let mut found = Vec::new();
-    for (fault, percent) in all.concat() {
+    for drift in all.concat() {
+        let Drift { fault, percent } = drift;
         tell(fault, percent);
         let fleet = Fleet {
             days: plan.days,
@@ -92,13 +105,10 @@ pub fn power(
             .filter(|member| member.fault == fault)
             .take(wanted)
             .collect();
-        let points = points((&experiment, &factory), &fleet, &members)?;
+        let points = points(&experiment, &factory, &fleet, &members)?;
         let charts = charts(&points, rule);
-        found.push(counted(
-            (robot, &members),
-            (fault, percent),
-            (&charts, rule.looks(&points)),
-        ));
+        let looks = rule.looks(&points);
+        found.push(counted(robot, &members, drift, &charts, looks));
     }
     Ok(found)
 }
@@ -110,7 +120,8 @@ fn serial(number: usize) -> String {
 
 /// Estimates of all robots and days.
 fn points(
-    (experiment, factory): (&VirtualExperiment<'_>, &Factory<'_>),
+    experiment: &VirtualExperiment<'_>,
+    factory: &Factory<'_>,
     fleet: &Fleet,
     members: &[Member],
 ) -> Result<Vec<Point>, Error> {
@@ -140,9 +151,11 @@ fn points(
 
 /// Counts the alarms.
 fn counted(
-    (robot, members): (&Robot, &[Member]),
-    (fault, percent): (Fault, f64),
-    (charts, looks): (&[Chart], Vec<f64>),
+    robot: &Robot,
+    members: &[Member],
+    drift: Drift,
+    charts: &[Chart],
+    looks: Vec<f64>,
 ) -> Found {
     let info = robot.model().info();
     let names: Vec<&str> = { info.parameters.iter().chain(info.payload_parameters) }
@@ -153,8 +166,8 @@ fn counted(
         alarms.entry(&chart.serial).or_default().push(chart);
     }
     let mut found = Found {
-        fault,
-        percent,
+        fault: drift.fault,
+        percent: drift.percent,
         robots: members.len(),
         by_look: vec![0; looks.len()],
         looks,
@@ -167,7 +180,7 @@ fn counted(
             continue;
         };
         let drifts = |chart: &&&Chart| {
-            fault != Fault::None && Some(&chart.parameter.as_str()) == names.get(member.place)
+            drift.fault != Fault::None && Some(&chart.parameter.as_str()) == names.get(member.place)
         };
         found.accused += 1;
         found.of_another += usize::from(own.iter().any(|chart| !drifts(&chart)));

@@ -123,61 +123,82 @@ fn robot(serial: &str, link: Option<&str>) -> String {
     }
 }
 
-/// The page.
-#[must_use]
-pub fn page(
-    days: &Days,
-    (charts, outliers): (&[Chart], &[Outlier]),
-    (rule, left_out): (&Rule, &[LeftOut]),
-    link: Option<&str>,
-) -> String {
-    let mut html = String::from(HEAD);
-    let alarms: Vec<&Chart> = charts.iter().filter(|own| own.alarm.is_some()).collect();
-    let robots: std::collections::BTreeSet<&str> =
-        days.points.iter().map(|own| own.serial.as_str()).collect();
-    let [runs, twice, damaged, unlike] = days.counts;
-    let _ = write!(
-        html,
-        "<h1>Fleet of {} robots</h1><p>{runs} runs on {} days. {} alarms of drift, {} outliers, {} days without an \
-         estimate. Left out: {} files, {twice} copies, {damaged} damaged records, {unlike} runs of another \
-         description.</p>",
-        robots.len(),
-        days.points
-            .iter()
-            .map(|own| own.day as i64 + 1)
-            .max()
-            .unwrap_or(0),
-        alarms.len(),
-        outliers.len(),
-        days.problems.len(),
-        left_out.len(),
-    );
-    drifts(&mut html, &alarms, rule, link);
-    unlike_others(&mut html, outliers, link);
-    troubles(&mut html, days, left_out, link);
-    html.push_str("<h2>Parameters over the days</h2><p>Grey: the middle 95 % and the median of all robots; red: robots \
-                   with an alarm.</p><div class=\"plots\">");
-    let mut names: Vec<&str> = charts.iter().map(|own| own.parameter.as_str()).collect();
-    names.sort_unstable();
-    names.dedup();
-    for name in names {
-        let own: Vec<&Chart> = charts.iter().filter(|own| own.parameter == name).collect();
-        let accused: Vec<&Chart> = own
-            .iter()
-            .copied()
-            .filter(|own| own.alarm.is_some())
-            .collect();
-        html.push_str(&plot(name, &own, &accused));
+/// Contents of the page.
+#[derive(Debug, Clone, Copy)]
+pub struct Page<'a> {
+    /// Parameters of all robots and days.
+    pub days: &'a Days,
+    /// Charts of all robots.
+    pub charts: &'a [Chart],
+    /// Parameters of robots that differ from those of the others.
+    pub outliers: &'a [Outlier],
+    /// Settings of the charts.
+    pub rule: &'a Rule,
+    /// Files and runs that were ignored.
+    pub left_out: &'a [LeftOut],
+    /// Link to a robot's own report, in which `{serial}` is its serial number.
+    pub link: Option<&'a str>,
+}
+
+impl Page<'_> {
+    /// The page as HTML.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let Self {
+            days,
+            charts,
+            outliers,
+            rule,
+            left_out,
+            link,
+        } = *self;
+        let mut html = String::from(HEAD);
+        let alarms: Vec<&Chart> = charts.iter().filter(|own| own.alarm.is_some()).collect();
+        let robots: std::collections::BTreeSet<&str> =
+            days.points.iter().map(|own| own.serial.as_str()).collect();
+        let [runs, twice, damaged, unlike] = days.counts;
+        let _ = write!(
+            html,
+            "<h1>Fleet of {} robots</h1><p>{runs} runs on {} days. {} alarms of drift, {} outliers, {} days without an \
+             estimate. Skipped: {} files, {twice} copies, {damaged} damaged records, {unlike} runs of another \
+             description.</p>",
+            robots.len(),
+            days.points
+                .iter()
+                .map(|own| own.day as i64 + 1)
+                .max()
+                .unwrap_or(0),
+            alarms.len(),
+            outliers.len(),
+            days.problems.len(),
+            left_out.len(),
+        );
+        drifts(&mut html, &alarms, rule, link);
+        unlike_others(&mut html, outliers, link);
+        troubles(&mut html, days, left_out, link);
+        html.push_str("<h2>Parameters over the days</h2><p>Grey: the middle 95 % and the median of all robots; red: robots \
+                       with an alarm.</p><div class=\"plots\">");
+        let mut names: Vec<&str> = charts.iter().map(|own| own.parameter.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        for name in names {
+            let own: Vec<&Chart> = charts.iter().filter(|own| own.parameter == name).collect();
+            let accused: Vec<&Chart> = own
+                .iter()
+                .copied()
+                .filter(|own| own.alarm.is_some())
+                .collect();
+            html.push_str(&plot(name, &own, &accused));
+        }
+        html.push_str("</div></body></html>\n");
+        html
     }
-    html.push_str("</div></body></html>\n");
-    html
 }
 
 fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>) {
     let _ = write!(
         html,
-        "<h2>Drifts</h2><p>A robot without drift is accused with a probability of at most {} over all looks and \
-         parameters.</p>",
+        "<h2>Drifts</h2><p>The probability of an alarm for a robot without drift is at most {} over all looks and parameters.</p>",
         rule.false_alarms
     );
     if alarms.is_empty() {
@@ -210,14 +231,14 @@ fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>)
 fn unlike_others(html: &mut String, outliers: &[Outlier], link: Option<&str>) {
     let _ = write!(
         html,
-        "<h2>Outliers</h2><p>Medians over the days that are further than {BEYOND} deviations of the fleet from its median.</p>"
+        "<h2>Outliers</h2><p>Medians over the days that are further than {BEYOND} standard deviations of the fleet from its median.</p>"
     );
     if outliers.is_empty() {
         html.push_str("<p>None.</p>");
         return;
     }
     html.push_str(
-        "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>robot<th>parameter<th>value<th>fleet<th>deviations</tr>",
+        "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>robot<th>parameter<th>value<th>fleet<th>σ</tr>",
     );
     for own in outliers {
         let _ = write!(
@@ -237,7 +258,7 @@ fn troubles(html: &mut String, days: &Days, left_out: &[LeftOut], link: Option<&
     if days.problems.is_empty() && left_out.is_empty() {
         return;
     }
-    html.push_str("<h2>Left out</h2><details><summary>All of it</summary><table class=\"long\">");
+    html.push_str("<h2>Skipped</h2><details><summary>All</summary><table class=\"long\">");
     for own in left_out {
         let runs = match own.runs.len() {
             0 => String::new(),
@@ -271,7 +292,7 @@ struct Scale {
 }
 
 impl Scale {
-    fn new<'a>(all: impl Iterator<Item = &'a (f64, f64)>, (width, height): (f64, f64)) -> Self {
+    fn new<'a>(all: impl Iterator<Item = &'a (f64, f64)>, width: f64, height: f64) -> Self {
         let mut own = Self {
             days: 1.0,
             low: f64::INFINITY,
@@ -302,7 +323,7 @@ impl Scale {
 
 /// Small line plot of a robot's days.
 fn line(own: &Chart) -> String {
-    let scale = Scale::new(own.days.iter(), (160.0, 28.0));
+    let scale = Scale::new(own.days.iter(), 160.0, 28.0);
     format!(
         "<svg viewBox=\"0 0 160 28\" preserveAspectRatio=\"none\" class=\"line\"><polyline class=\"own\" points=\"{}\"/></svg>",
         scale.path(&own.days)
@@ -328,7 +349,7 @@ fn plot(name: &str, all: &[&Chart], accused: &[&Chart]) -> String {
     };
     let (low, middle, high) = (of(0), of(1), of(2));
     let lines = accused.iter().flat_map(|own| &own.days);
-    let scale = Scale::new(low.iter().chain(&high).chain(lines), (300.0, 120.0));
+    let scale = Scale::new(low.iter().chain(&high).chain(lines), 300.0, 120.0);
     let back: Vec<(f64, f64)> = high.iter().rev().copied().collect();
     let mut svg = format!(
         "<figure><figcaption>{}</figcaption><svg viewBox=\"0 0 300 120\" class=\"plot\"><polygon class=\"band\" points=\"{}{}\"/>\

@@ -309,12 +309,15 @@ async fn a_page_tells_drifts_and_outliers() {
     let charts = charts(&days.points, &rule);
     assert_eq!(charts.len(), ROBOTS);
     let outliers = outliers(&charts, report::BEYOND);
-    let page = report::page(
-        &days,
-        (&charts, &outliers),
-        (&rule, &[]),
-        Some("own/{serial}.html"),
-    );
+    let page = report::Page {
+        days: &days,
+        charts: &charts,
+        outliers: &outliers,
+        rule: &rule,
+        left_out: &[],
+        link: Some("own/{serial}.html"),
+    };
+    let page = page.html();
     assert!(
         page.contains("Fleet of 5 robots") && page.contains("fv_1_left"),
         "{page}"

@@ -31,9 +31,9 @@
 mod assessment;
 mod blocks;
 mod calibration;
-mod called;
 mod consistent;
 pub mod data;
+mod display_names;
 mod error;
 mod estimation;
 pub mod factors;
@@ -57,15 +57,15 @@ mod widest;
 pub use assessment::{
     check::{About, Check, CheckKind, Detectable, Grade},
     evidence::{Axis, Curve, Evidence},
-    verdict::{Objections, StageVerdict, Verdict, objections},
+    verdict::{FailedChecks, StageVerdict, Verdict, failed_checks},
 };
 pub use calibration::{
     CalibratedParameter, Calibration, CalibrationScope, ChangedGeometry, DescribedGeometry,
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
-pub use called::{called, titled};
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
 pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Scales, Time, Variant};
+pub use display_names::{called, titled};
 pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},

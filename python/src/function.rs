@@ -205,7 +205,7 @@ impl Function {
                 return Err(self.misused(&format!("needs `{}`", one.name)));
             };
             let what = self.what(one);
-            inputs.push(Rows::new(&value, &one.name, (one.length, &what))?);
+            inputs.push(Rows::new(&value, &one.name, one.length, &what)?);
         }
         Ok(inputs)
     }
@@ -236,9 +236,9 @@ impl Function {
             return Ok(info.home_pose.to_vec());
         };
         if !self.form.follows() {
-            return Err(self.misused("takes no `start`, since it finds no pose"));
+            return Err(self.misused("takes no `start`, since it does not compute a pose"));
         }
-        let rows = Rows::new(given, "start", (info.sizes.pose, ""))?;
+        let rows = Rows::new(given, "start", info.sizes.pose, "")?;
         if rows.is_shared() {
             Ok(rows.values()?.to_vec())
         } else {

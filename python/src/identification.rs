@@ -44,7 +44,8 @@ pub(crate) struct Identified {
 pub(crate) fn identify(
     py: Python<'_>,
     robot: &Arc<Robot>,
-    (runs, validation): (&[Bound<'_, PyTuple>], &[Bound<'_, PyTuple>]),
+    runs: &[Bound<'_, PyTuple>],
+    validation: &[Bound<'_, PyTuple>],
     options: &Bound<'_, PyDict>,
 ) -> PyResult<Identified> {
     let all = |items: &[Bound<'_, PyTuple>]| items.iter().map(given).collect::<PyResult<Vec<_>>>();

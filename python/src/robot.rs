@@ -202,13 +202,13 @@ impl Handle {
     ) -> PyResult<Bound<'py, PyAny>> {
         let info = self.robot.model().info();
         let names = format!(" ({})", info.actuators.join(", "));
-        let rows = Rows::new(actuators, "actuators", (info.sizes.actuators, &names))?;
+        let rows = Rows::new(actuators, "actuators", info.sizes.actuators, &names)?;
         let rows = [rows];
         let leading = common_samples(&rows)?;
         let mut pose = match start {
             None => info.home_pose.to_vec(),
             Some(start) => {
-                let start = Rows::new(start, "start", (info.sizes.pose, ""))?;
+                let start = Rows::new(start, "start", info.sizes.pose, "")?;
                 start.values()?[..info.sizes.pose].to_vec()
             }
         };
@@ -269,7 +269,7 @@ impl Handle {
         validation: Vec<Bound<'_, PyTuple>>,
         options: &Bound<'_, PyDict>,
     ) -> PyResult<Identified> {
-        identification::identify(py, &self.robot, (&runs, &validation), options)
+        identification::identify(py, &self.robot, &runs, &validation, options)
     }
 }
 

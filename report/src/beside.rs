@@ -18,7 +18,7 @@ use super::{
 pub fn beside(identification: &Identification, published: Option<&Published>) -> String {
     let mut text = String::new();
     let source = published.map_or_else(String::new, |all| {
-        format!(", beside {}", all.source.trim_end_matches('.'))
+        format!(", compared with {}", all.source.trim_end_matches('.'))
     });
     if let Some(published) = published {
         text += &section(
@@ -39,15 +39,22 @@ pub fn beside(identification: &Identification, published: Option<&Published>) ->
     text
 }
 
+/// Header and rows of a table.
+#[derive(Default)]
+struct TextTable {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
 /// Titled table; empty without rows.
-fn section(title: &str, (header, rows): (Vec<String>, Vec<Vec<String>>)) -> String {
-    if rows.is_empty() {
+fn section(title: &str, contents: TextTable) -> String {
+    if contents.rows.is_empty() {
         return String::new();
     }
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let header: Vec<&str> = contents.header.iter().map(String::as_str).collect();
     let mut text = String::from("\n");
     line(&mut text, title);
-    text + &table(&header, rows)
+    text + &table(&header, contents.rows)
 }
 
 /// Name of a model.
@@ -69,10 +76,7 @@ fn comparable(identification: &Identification) -> Vec<&Estimate> {
 }
 
 /// Table 2: every parameter of an own or published estimate.
-fn parameters(
-    identification: &Identification,
-    published: &Published,
-) -> (Vec<String>, Vec<Vec<String>>) {
+fn parameters(identification: &Identification, published: &Published) -> TextTable {
     let mut header = vec![String::from("parameter")];
     let estimates = comparable(identification);
     let mut names: Vec<&str> = Vec::new();
@@ -110,7 +114,10 @@ fn parameters(
         }
         row
     });
-    (header, rows.collect())
+    TextTable {
+        header,
+        rows: rows.collect(),
+    }
 }
 
 /// Header with a column for each actuator.
@@ -120,10 +127,7 @@ fn actuator_header(first: [&str; 2], actuators: &[String]) -> Vec<String> {
 }
 
 /// Table 3.
-fn torques(
-    identification: &Identification,
-    published: Option<&Published>,
-) -> (Vec<String>, Vec<Vec<String>>) {
+fn torques(identification: &Identification, published: Option<&Published>) -> TextTable {
     let stages = comparable(identification);
     let shown = |one: &&CrossValidation| {
         stages
@@ -136,7 +140,7 @@ fn torques(
         .filter(shown)
         .collect();
     let Some(first) = own.first() else {
-        return (Vec::new(), Vec::new());
+        return TextTable::default();
     };
     let actuators: Vec<String> = first.table.iter().map(|one| one.actuator.clone()).collect();
     let percent = |value: &f64| format!("{value:.1}");
@@ -174,7 +178,7 @@ fn torques(
     }
     let mut header = actuator_header(["run", "prediction"], &actuators);
     header.push(String::from("mean"));
-    (header, rows)
+    TextTable { header, rows }
 }
 
 /// Whether a run has a name, or is a log file named after it.
@@ -197,12 +201,9 @@ fn is_run(run: &str, name: &str) -> bool {
 }
 
 /// Table 4.
-fn tracking(
-    identification: &Identification,
-    published: Option<&Published>,
-) -> (Vec<String>, Vec<Vec<String>>) {
+fn tracking(identification: &Identification, published: Option<&Published>) -> TextTable {
     let Some(first) = identification.tracking.first() else {
-        return (Vec::new(), Vec::new());
+        return TextTable::default();
     };
     let known = published.filter(|all| all.actuators == first.actuators);
     let mut rows = Vec::new();
@@ -224,10 +225,10 @@ fn tracking(
             );
         }
     }
-    (
-        actuator_header(["run", "controller"], &first.actuators),
+    TextTable {
+        header: actuator_header(["run", "controller"], &first.actuators),
         rows,
-    )
+    }
 }
 
 #[cfg(test)]

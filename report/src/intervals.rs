@@ -3,7 +3,8 @@
 use overact_identification::ParameterEstimate;
 
 /// Whether there is an interval; without one, both ends equal the estimate.
-fn is_known([low, high]: [f64; 2]) -> bool {
+fn is_known(one: &ParameterEstimate) -> bool {
+    let [low, high] = one.interval_95;
     low.is_finite() && high.is_finite() && low < high
 }
 
@@ -12,30 +13,29 @@ fn is_known([low, high]: [f64; 2]) -> bool {
 /// The interval is that of the model with all base parameters; elimination may have moved the
 /// estimate.
 pub(crate) fn is_outside(one: &ParameterEstimate) -> bool {
-    is_known(one.interval_95) && !contains(one.interval_95, one.value)
+    is_known(one) && !contains(one, one.value)
 }
 
 /// Whether the interval excludes the true value, if that is known.
 pub(crate) fn misses_truth(one: &ParameterEstimate) -> bool {
-    is_known(one.interval_95)
-        && one
-            .true_value
-            .is_some_and(|truth| !contains(one.interval_95, truth))
+    is_known(one) && one.true_value.is_some_and(|truth| !contains(one, truth))
 }
 
 /// Whether the interval excludes zero.
 pub(crate) fn excludes_zero(one: &ParameterEstimate) -> bool {
-    is_known(one.interval_95) && !contains(one.interval_95, 0.0)
+    is_known(one) && !contains(one, 0.0)
 }
 
 /// Half width of the interval in percent of the estimate; `None` without interval or value.
 pub(crate) fn half_width_percent(one: &ParameterEstimate) -> Option<f64> {
     let [low, high] = one.interval_95;
     let percent = 50.0 * (high - low) / one.value.abs();
-    (is_known(one.interval_95) && percent.is_finite()).then_some(percent)
+    (is_known(one) && percent.is_finite()).then_some(percent)
 }
 
-fn contains([low, high]: [f64; 2], value: f64) -> bool {
+/// Whether the interval of a parameter contains a value.
+fn contains(one: &ParameterEstimate, value: f64) -> bool {
+    let [low, high] = one.interval_95;
     (low..=high).contains(&value)
 }
 

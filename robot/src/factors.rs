@@ -8,7 +8,7 @@ use crate::{
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Log, Progress, Settings,
-    factors::{self, Factory, FromFactors, Gathered, Origin, RunFactors},
+    factors::{self, CollectedRuns, FactorEstimation, Factory, Origin, RunFactors},
 };
 
 impl Robot {
@@ -18,7 +18,8 @@ impl Robot {
     /// Runs that cannot be used, or a description with settings that factors do not support.
     pub fn factors(
         &self,
-        (logs, origin): (&[Log], &Origin),
+        logs: &[Log],
+        origin: &Origin,
         settings: &Settings,
         equations: bool,
         progress: &dyn Fn(Progress<'_>),
@@ -46,8 +47,8 @@ impl Robot {
 
     /// Compatibility key of factors for this description and these settings.
     #[must_use]
-    pub fn likeness(&self, settings: &Settings) -> String {
-        factors::likeness(&self.source().text, settings)
+    pub fn settings_hash(&self, settings: &Settings) -> String {
+        factors::settings_hash(&self.source().text, settings)
     }
 
     /// Identifies the parameters from factors of runs.
@@ -56,11 +57,11 @@ impl Robot {
     /// Incompatible factors, or data that determine no parameter.
     pub fn identify_factors(
         &self,
-        gathered: &Gathered,
+        gathered: &CollectedRuns,
         settings: &Settings,
         skip_bad: bool,
         progress: &dyn Fn(Progress<'_>),
-    ) -> Result<FromFactors, Error> {
+    ) -> Result<FactorEstimation, Error> {
         self.check_factors()?;
         self.check_prior()?;
         let essential = self.description().identification.essential;
@@ -79,9 +80,9 @@ impl Robot {
         if !identification.gains && !identification.gravity_direction {
             return Ok(());
         }
-        let message = "the description asks for gains of drives or for the direction of gravity, which factors can't give";
+        let message = "the description requests gains of drives or the direction of gravity, which factors do not support";
         let help =
-            "identify them from logs first, write them into the description and leave out the key";
+            "first identify them from logs, write them into the description and leave out the key";
         Err(Problem::new(Code::FACTORS, message)
             .file(self.file())
             .help(help)

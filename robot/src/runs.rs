@@ -105,7 +105,7 @@ impl Robot {
 
     /// Checks that a log's columns can have the meaning that the description gives them.
     fn meant(&self, log: Log) -> Result<Log, overact_identification::Error> {
-        log.check_meaning(self.model().info().actuators)?;
+        log.check_column_plausibility(self.model().info().actuators)?;
         Ok(log)
     }
 
@@ -118,7 +118,7 @@ impl Robot {
                 let place = self.place_of_column(column);
                 let help = match problem.help.take() {
                     Some(help) if help.ends_with('?') => {
-                        format!("{help} The names stand in {place}")
+                        format!("{help} The names are in {place}")
                     }
                     Some(help) => format!("{help}; columns are named in {place}"),
                     None => format!("columns are named in {place}"),

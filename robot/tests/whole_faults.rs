@@ -53,7 +53,7 @@ fn gravity_that_points_the_other_way_is_named() {
     assert_ne!(built, TEMPLATE);
     let result = identified(&built, |_, _| ());
     let words = refused(&result, CheckKind::WrongSign).join("\n");
-    assert!(words.contains("gravity looks as if"), "{words}");
+    assert!(words.contains("gravity looks reversed"), "{words}");
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn a_position_that_stands_for_two_joints_behind_their_gears_is_named() {
         positions[1] = 0.1 - positions[0] * 32.0 / 45.0;
     });
     let words = refused(&result, CheckKind::DuplicateColumns).join("\n");
-    assert!(words.contains("one column was taken twice"), "{words}");
+    assert!(words.contains("one column was used twice"), "{words}");
 }
 
 #[test]
@@ -98,7 +98,10 @@ fn what_all_drives_have_in_common_is_told_of_each() {
         }
     });
     let check = found(&result, CheckKind::MissingParameter);
-    assert!(check.words.contains("the same test finds"), "{check:?}");
+    assert!(
+        check.words.contains("the same test also fails for"),
+        "{check:?}"
+    );
     for drive in ["1", "2"] {
         let own = |name: &String| name.ends_with(drive) || name.ends_with(&format!("{drive}R"));
         assert!(check.spoiled.iter().any(own), "{check:?}");
@@ -136,7 +139,7 @@ fn an_experiment_of_which_all_runs_are_held_out_is_refused() {
         .runs(&all, &|_, _| {})
         .expect_err("no run is left");
     assert!(
-        error.to_string().contains("none is left to identify from"),
+        error.to_string().contains("there are no training data"),
         "{error}"
     );
 }

@@ -103,13 +103,13 @@ impl Fleet {
     pub fn member(&self, number: usize, info: &Info<'_>, nominal: &[f64]) -> Member {
         let mut random = self.random(number, 0);
         let build = if number.is_multiple_of(2) { 'A' } else { 'B' };
-        let (parameters, friction) = spread((info, nominal), build, &mut random);
+        let (parameters, friction) = spread(info, nominal, build, &mut random);
         let kinds = &Fault::ALL[1..];
         let drawn = random.random::<f64>() / self.share.max(f64::MIN_POSITIVE);
         let fault = kinds.get(drawn.min(1e9) as usize).copied();
         let drawn = random.random::<f64>();
         let (fault, place) = match fault {
-            Some(fault) => concerned(fault, (info, nominal), drawn),
+            Some(fault) => concerned(fault, info, nominal, drawn),
             None => (Fault::None, 0),
         };
         Member {
@@ -180,7 +180,8 @@ impl Fleet {
 
 /// Parameters of a robot around nominal ones, and the columns of friction.
 fn spread(
-    (info, nominal): (&Info<'_>, &[f64]),
+    info: &Info<'_>,
+    nominal: &[f64],
     build: char,
     random: &mut Pcg64,
 ) -> (Vec<f64>, Vec<usize>) {
@@ -219,7 +220,7 @@ fn spread(
 /// Column or actuator that a fault affects, chosen by a number from 0 to 1.
 ///
 /// The fault becomes `None` if the robot has no such parameter.
-fn concerned(fault: Fault, (info, nominal): (&Info<'_>, &[f64]), drawn: f64) -> (Fault, usize) {
+fn concerned(fault: Fault, info: &Info<'_>, nominal: &[f64], drawn: f64) -> (Fault, usize) {
     let of = |wanted: &dyn Fn(P, &Body) -> bool| -> Vec<usize> {
         let all = info.parameters.iter().chain(info.payload_parameters);
         let own = all.zip(nominal).enumerate();

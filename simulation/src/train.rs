@@ -30,22 +30,34 @@ struct Drive {
     is_ideal: bool,
 }
 
+/// Mode of a flexible drive.
+struct Mode {
+    /// Natural frequency, Hz.
+    frequency: f64,
+    /// Damping factor.
+    damping: f64,
+}
+
 impl Drive {
     /// Drive with a current loop and a mode; a frequency (Hz) of zero omits either.
-    fn new(loop_hz: f64, (mode_hz, damping): (f64, f64), step: f64) -> Self {
+    fn new(loop_hz: f64, mode: &Mode, step: f64) -> Self {
         let current = if loop_hz > 0.0 { CURRENT } else { COMMAND };
-        let torque = if mode_hz > 0.0 { TORQUE } else { current };
+        let torque = if mode.frequency > 0.0 {
+            TORQUE
+        } else {
+            current
+        };
         let mut rates = Matrix6::zeros();
         if loop_hz > 0.0 {
             rates[(CURRENT, COMMAND)] = TAU * loop_hz;
             rates[(CURRENT, CURRENT)] = -TAU * loop_hz;
         }
-        if mode_hz > 0.0 {
-            let natural = TAU * mode_hz;
+        if mode.frequency > 0.0 {
+            let natural = TAU * mode.frequency;
             rates[(TORQUE, RATE)] = 1.0;
             rates[(RATE, current)] += natural * natural;
             rates[(RATE, TORQUE)] -= natural * natural;
-            rates[(RATE, RATE)] -= 2.0 * damping * natural;
+            rates[(RATE, RATE)] -= 2.0 * mode.damping * natural;
         }
         rates[(CURRENT_SUM, current)] = 1.0;
         rates[(TORQUE_SUM, torque)] = 1.0;
@@ -109,8 +121,11 @@ impl<'a> Train<'a> {
         let step = 1.0 / (experiment.sampling_hz * steps as f64);
         let n = revolute.len();
         let drive = |i: usize| {
-            let mode = (value(&drives.flexible_hz, i, 0.0), drives.flexible_damping);
-            Drive::new(value(&drives.current_bandwidth_hz, i, 0.0), mode, step)
+            let mode = Mode {
+                frequency: value(&drives.flexible_hz, i, 0.0),
+                damping: drives.flexible_damping,
+            };
+            Drive::new(value(&drives.current_bandwidth_hz, i, 0.0), &mode, step)
         };
         let wave = |(i, revolute): (usize, &bool)| {
             let periods = value(&drives.cogging_periods, i, 1.0);

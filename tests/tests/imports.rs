@@ -86,7 +86,7 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
             "error",
             "significant",
             "widest",
-            "called",
+            "display_names",
             "units",
             "blocks",
             "thresholds",

@@ -4,7 +4,7 @@ use super::runs;
 use crate::{failure::Failure, output, progress::Progress};
 use overact_identification::{
     Progress as Doing,
-    factors::{Deviations, FromFactors, LeftOut, gather},
+    factors::{Deviations, ExcludedRun, FactorEstimation, gather},
 };
 use overact_robot::Robot;
 use std::{
@@ -43,8 +43,8 @@ pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
         .map_or(0.0, |run| run.summary.sampling_frequency);
     let mut settings = robot.settings(rate);
     settings.kept_actuators = kept.transpose()?.unwrap_or(settings.kept_actuators);
-    let like = robot.likeness(&settings);
-    let gathered = gather(request.files, Some(&like), request.skip_bad)?;
+    let settings_hash = robot.settings_hash(&settings);
+    let gathered = gather(request.files, Some(&settings_hash), request.skip_bad)?;
     let bar = Progress::new("identifying", request.as_json);
     let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
     let found = robot.identify_factors(&gathered, &settings, request.skip_bad, &tell)?;
@@ -58,7 +58,7 @@ pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
 }
 
 /// Text output.
-fn text(found: &FromFactors) -> String {
+fn text(found: &FactorEstimation) -> String {
     let mut text = format!(
         "{} from the factors of {}\n\n",
         found.robot,
@@ -69,7 +69,7 @@ fn text(found: &FromFactors) -> String {
         text.push('\n');
     }
     text.push_str(match found.deviations {
-        Deviations::Equations => "Intervals are those of the logs: the files hold the equations.\n",
+        Deviations::Equations => "Intervals are those of the logs: the files contain the equations.\n",
         Deviations::Parts => {
             "Intervals are from the sums of parts of the runs, not from single equations: wider or narrower than\n\
              those of the logs, and the recommended parameters, which they choose, may be others;\n\
@@ -77,9 +77,7 @@ fn text(found: &FromFactors) -> String {
              --equations for those of one pass.\n"
         }
     });
-    text.push_str(
-        "Raw numbers and the fit were not checked as they are where logs are identified.\n",
-    );
+    text.push_str("The checks of raw data and residuals need logs and were not made.\n");
     for warning in &found.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
@@ -88,7 +86,7 @@ fn text(found: &FromFactors) -> String {
 }
 
 /// Omitted runs, one per line.
-pub(super) fn left_out(all: &[LeftOut]) -> String {
+pub(super) fn left_out(all: &[ExcludedRun]) -> String {
     let mut text = String::new();
     if !all.is_empty() {
         let _ = writeln!(text, "left out: {}", all.len());

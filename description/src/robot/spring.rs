@@ -20,10 +20,10 @@ use overact_exact::{Number, Ratio};
 /// Reads the key `spring` of a joint; the scope contains `q` as the joint's variable.
 pub(crate) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
     let effort = effort(item, kind, "a fixed joint has no spring")?;
-    let constant = "a torque that does not depend on the position is no spring";
+    let constant = "a torque that does not depend on the position is not a spring";
     let help = "write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant \
                 torque is the parameter `off`";
-    with_coefficient(item, scope, effort, (constant, help))
+    with_coefficient(item, scope, effort, constant, help)
 }
 
 /// Reads the key `friction_load` of a joint.
@@ -32,16 +32,18 @@ pub(crate) fn load(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Optio
     let constant = "friction under a load that does not depend on the position is Coulomb friction";
     let help = "leave `friction_load` out, its parameter is `fs`; or write the load with the joint \
                 variable, for instance friction_load = \"40 N m * cos(q)\"";
-    with_coefficient(item, scope, effort, (constant, help))
+    with_coefficient(item, scope, effort, constant, help)
 }
 
-/// A formula of an effort per unit of a coefficient; constant formulas are errors with an
-/// explanation.
+/// A formula of an effort per unit of a coefficient.
+///
+/// A constant formula is an error with the message `constant` and `help`.
 fn with_coefficient(
     item: &Item<'_, '_>,
     scope: &Scope,
     effort: Dimension,
-    (constant, help): (&str, &str),
+    constant: &str,
+    help: &str,
 ) -> Option<Spring> {
     let found: Positional = item.evaluate_as(scope)?;
     if matches!(&found, Positional::Exact(value) if value.terms.is_empty()) {

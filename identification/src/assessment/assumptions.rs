@@ -17,7 +17,7 @@ use crate::{
 
 /// Quantities estimated before the parameters, which are therefore no assumptions.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Found {
+pub(crate) struct PreviouslyIdentified {
     /// Whether the gains of the drives were estimated.
     pub gains: bool,
     /// Whether the direction of gravity was estimated.
@@ -31,40 +31,38 @@ pub(crate) fn assumptions(
     model: &dyn Model,
     columns: &ColumnSet,
     models: &[ModelKind],
-    before: Found,
+    before: PreviouslyIdentified,
 ) -> Vec<String> {
     let gains = if before.gains {
-        "the parameters that are stated as known are exact: gains and all other parameters are in proportion to them"
+        "known parameters are exact: gains and all other parameters scale with them"
     } else {
-        "the gains of the drives are right as a whole: if all torques are wrong by one factor, so are all parameters, and nothing in the data tells"
+        "the common scale of all torques is right: if all torques are wrong by one factor, so are all parameters"
     };
     let mut all = vec![
         String::from(gains),
         String::from(
-            "the clock is right: if all times are wrong by one factor, masses and inertias are wrong by its square and viscous friction by the factor, and only gravity tells",
+            "the clock is right: if all times are wrong by one factor, masses and inertias are wrong by its square and viscous friction by the factor; only gravity reveals it",
         ),
         String::from(
-            "time is in seconds, positions are in rad and m after `position_scale`, torques in N m and N after `torque_gain`: a unit that is wrong by a factor of thirty or more is found where physical scales contradict it, a smaller factor is not",
+            "time is in seconds, positions are in rad and m after `position_scale`, torques in N m and N after `torque_gain`: physical scales reveal a unit that is wrong by a factor of thirty or more, but no smaller factor",
         ),
+        String::from("the common scale of all lengths is right: angles do not determine it"),
         String::from(
-            "the lengths of the description are right as a whole: angles alone fix no scale",
-        ),
-        String::from(
-            "the torques of the logs are the whole torques of the drives: nothing was subtracted, as a friction or gravity compensation, no filter of the drive smoothed them, and none holds a part of another's",
+            "the logged torques are the complete torques of the drives: no friction or gravity compensation was subtracted, no filter of the drive smoothed them, and there is no crosstalk",
         ),
         String::from("parameters that the description leaves out are zero"),
         String::from(
-            "the robot is rigid and stays as it was: temperature, wear and what was mounted are those of the runs",
+            "the robot is rigid and does not change: temperature, wear and load are those of the runs",
         ),
     ];
     if lengths_are_untold(model) {
         all.push(String::from(
-            "each length of the loops is right: with as many drives as degrees of freedom no closure tells of them, and they are not looked for",
+            "each length of the loops is right: with as many drives as degrees of freedom the closures do not test them",
         ));
     }
     if !before.gravity {
         all.push(String::from(
-            "gravity points as described: how the base stands is not looked for",
+            "gravity points as described: the orientation of the base is not tested",
         ));
     }
     let mut friction = columns.as_slice().iter();
@@ -75,7 +73,7 @@ pub(crate) fn assumptions(
     }
     if models.contains(&ModelKind::Platform) && model.info().sizes.actuators > 1 {
         all.push(String::from(
-            "torques that work against each other without moving the platform (a preload) are no part of the model",
+            "internal torques, which act against each other without moving the platform (preload), are not part of the model",
         ));
     }
     all
@@ -88,18 +86,14 @@ fn lengths_are_untold(model: &dyn Model) -> bool {
 }
 
 /// The assumptions that are violated most often, as a sentence for the verdict.
-pub(crate) fn rests_on(model: &dyn Model, before: Found) -> Option<String> {
+pub(crate) fn rests_on(model: &dyn Model, before: PreviouslyIdentified) -> Option<String> {
     let what = match (lengths_are_untold(model), before.gains) {
-        (true, false) => {
-            "the lengths and the unit and constants of the torques are right as stated: nothing in data of this robot tells"
-        }
-        (false, false) => {
-            "the unit and constants of the torques are right as stated: nothing in the data tells"
-        }
-        (true, true) => "the lengths are right as stated: nothing in data of this robot tells",
+        (true, false) => "lengths, units and torque constants",
+        (false, false) => "units and torque constants",
+        (true, true) => "lengths",
         (false, true) => return None,
     };
-    Some(format!("This takes for granted that {what}."))
+    Some(format!("Assumption that these data cannot test: {what}."))
 }
 
 /// A kind of fault whose detection limit is reported.
@@ -131,7 +125,7 @@ const KINDS: [Kind; 8] = [
     kind(
         CheckKind::Reversals,
         false,
-        "smoothing of all signals alike",
+        "equal smoothing of all signals",
     ),
     kind(CheckKind::Clock, true, "sampling frequency"),
 ];
@@ -154,8 +148,9 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         let is_length = kind.check == CheckKind::Length;
         let all =
             all.filter(|one| one.unit.is_empty() == kind.is_part && one.is_length == is_length);
-        let harmful = all.filter(|one| one.moves > HARMFUL && one.moves.is_finite());
-        harmful.max_by(|a, b| a.moves.total_cmp(&b.moves))
+        let harmful =
+            all.filter(|one| one.shift_deviations > HARMFUL && one.shift_deviations.is_finite());
+        harmful.max_by(|a, b| a.shift_deviations.total_cmp(&b.shift_deviations))
     };
     let told = KINDS.iter().filter_map(|kind| {
         if let Some(never) = never(checks, kind) {
@@ -169,7 +164,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
         };
         // A relative size above 100 % has no meaning.
         let most = if kind.is_part { WHOLE } else { f64::INFINITY };
-        let moves = worst.moves * (most / worst.size).min(1.0);
+        let shift_deviations = worst.shift_deviations * (most / worst.size).min(1.0);
         let size = match worst.unit {
             "" => format!("{} %", significant(100.0 * worst.size.min(most), 2)),
             "s" => format!("{} ms", significant(1e3 * worst.size, 2)),
@@ -180,8 +175,8 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             unit => format!("{} {unit}", significant(worst.size, 2)),
         };
         Some(format!(
-            "{}: {size}{of} would move `{}` by {:.0} deviations",
-            kind.name, worst.parameter, moves
+            "{}: {size}{of} would shift `{}` by {:.0} σ",
+            kind.name, worst.parameter, shift_deviations
         ))
     });
     told.collect()
@@ -195,15 +190,9 @@ fn never(checks: &[Check], kind: &Kind) -> Option<String> {
     let hidden = own
         .filter(|one| one.kind == CheckKind::WrongGain)
         .flat_map(|one| &one.detectable)
-        .filter(|one| one.size >= WHOLE && one.moves > HARMFUL);
+        .filter(|one| one.size >= WHOLE && one.shift_deviations > HARMFUL);
     let names: Vec<String> = hidden.map(|one| format!("`{}`", one.name)).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{}: nothing in these data tells that of {}",
-            kind.name,
-            names.join(", ")
-        )
-    })
+    (!names.is_empty()).then(|| format!("{}: not detectable for {}", kind.name, names.join(", ")))
 }
 
 #[cfg(test)]
@@ -212,15 +201,16 @@ mod tests {
     use crate::assessment::check::{About, Check, CheckKind, Detectable};
 
     fn check(kind: CheckKind, faults: &[(&str, &'static str, f64, f64)]) -> Check {
-        let fault = |&(name, unit, size, moves): &(&str, &'static str, f64, f64)| Detectable {
-            name: name.to_owned(),
-            unit,
-            deviation: size / 5.0,
-            size,
-            parameter: String::from("zz_1"),
-            moves,
-            is_length: false,
-        };
+        let fault =
+            |&(name, unit, size, shift_deviations): &(&str, &'static str, f64, f64)| Detectable {
+                name: name.to_owned(),
+                unit,
+                deviation: size / 5.0,
+                size,
+                parameter: String::from("zz_1"),
+                shift_deviations,
+                is_length: false,
+            };
         let all = faults.iter().map(fault).collect();
         Check::new(kind, About::Model, "nothing").detecting(all)
     }
@@ -239,12 +229,12 @@ mod tests {
             ),
         ]);
         let expected = [
-            "zero of an encoder: 0.0091 rad of `left` would move `zz_1` by 13 deviations",
-            "scale of an encoder: 0.1 % of all drives would move `zz_1` by 16 deviations",
-            "gain of one drive: 10 % of `right` would move `zz_1` by 86 deviations",
-            "delay of the torques: 0.28 ms would move `zz_1` by 5 deviations",
-            "smoothing of the torques: a mean over 12 ms would move `zz_1` by 8 deviations",
-            "sampling frequency: 100 % would move `zz_1` by 200 deviations",
+            "zero of an encoder: 0.0091 rad of `left` would shift `zz_1` by 13 σ",
+            "scale of an encoder: 0.1 % of all drives would shift `zz_1` by 16 σ",
+            "gain of one drive: 10 % of `right` would shift `zz_1` by 86 σ",
+            "delay of the torques: 0.28 ms would shift `zz_1` by 5 σ",
+            "smoothing of the torques: a mean over 12 ms would shift `zz_1` by 8 σ",
+            "sampling frequency: 100 % would shift `zz_1` by 200 σ",
         ];
         assert_eq!(told, expected);
     }
@@ -255,7 +245,7 @@ mod tests {
         gains.detectable.push(Detectable::never("right"));
         assert_eq!(
             unseen(&[gains]),
-            ["gain of one drive: nothing in these data tells that of `right`"]
+            ["gain of one drive: not detectable for `right`"]
         );
     }
 

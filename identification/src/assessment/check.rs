@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::evidence::Evidence;
-use crate::{called::titled, regression::projection::ModelKind, result::Stage};
+use crate::{display_names::titled, regression::projection::ModelKind, result::Stage};
 
 /// Result of one check.
 ///
@@ -77,7 +77,8 @@ pub struct Detectable {
     /// Estimated parameter that a fault of this size shifts most.
     pub parameter: String,
     /// Shift of that parameter by an undetected fault, in standard deviations.
-    pub moves: f64,
+    #[serde(rename = "moves")]
+    pub shift_deviations: f64,
 }
 
 impl Detectable {
@@ -90,7 +91,7 @@ impl Detectable {
             deviation: f64::INFINITY,
             size: f64::INFINITY,
             parameter: String::new(),
-            moves: f64::INFINITY,
+            shift_deviations: f64::INFINITY,
         }
     }
 }
@@ -317,7 +318,7 @@ impl Check {
 
     /// Sets the grade. Any grade below [`Grade::Use`] marks the check as failed.
     #[must_use]
-    pub fn allowing(mut self, grade: Grade) -> Self {
+    pub fn with_grade(mut self, grade: Grade) -> Self {
         self.grade = grade;
         self.passed &= grade == Grade::Use;
         self
@@ -368,7 +369,7 @@ impl Check {
 
     /// Sets the unusable parameters.
     #[must_use]
-    pub fn spoiling(mut self, parameters: Vec<String>) -> Self {
+    pub fn with_unusable_parameters(mut self, parameters: Vec<String>) -> Self {
         self.spoiled = parameters;
         self
     }

@@ -3,7 +3,7 @@
 use overact::Model;
 
 use super::{
-    checks::{raw_numbers, units},
+    checks::{raw_samples, units},
     positions,
 };
 use crate::{data::Log, error::Error, monitor::Monitor};
@@ -26,7 +26,7 @@ pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
             .as_ref()
             .and_then(|monitor| units::hint(model, log.name(), monitor)),
     );
-    let suspicious = monitor.map(|monitor| raw_numbers::suspicious(model, log.name(), monitor));
+    let suspicious = monitor.map(|monitor| raw_samples::suspicious(model, log.name(), monitor));
     hints.extend(suspicious.into_iter().flatten().map(|one| one.words));
     let mut problems = error.problems;
     if let (Some(problem), false) = (problems.first_mut(), hints.is_empty()) {

@@ -7,8 +7,8 @@
 //! - `assumptions`: what no data can test;
 //! - `positions`: positions that violate the closure, and corrections that restore it;
 //! - `torques`: torques that contradict the model, and the fault that explains them;
-//! - `whole`: faults of whole runs or of the model;
-//! - `suspects`: fault hypotheses tested on the residual;
+//! - `run_level_faults`: faults of whole runs or of the model;
+//! - `hypotheses`: fault hypotheses tested on the residual;
 //! - `explained`: hints at the cause of an error.
 
 pub(crate) mod assumptions;
@@ -16,11 +16,11 @@ pub(crate) mod check;
 pub(crate) mod checks;
 pub(crate) mod evidence;
 mod explained;
+pub(crate) mod hypotheses;
 mod positions;
-pub(crate) mod suspects;
+mod run_level_faults;
 pub(crate) mod torques;
 pub(crate) mod verdict;
-mod whole;
 
-pub(crate) use checks::{Context, Watched, checks, raw_numbers::suspicious};
+pub(crate) use checks::{Context, Watched, checks, raw_samples::suspicious};
 pub(crate) use explained::explained;

@@ -9,7 +9,7 @@ use crate::{
     data::Log,
     error::Error,
     kinematics::approach,
-    units::{SLIPS, Signal, Slip},
+    units::{Signal, UNIT_ERRORS, UnitError},
 };
 
 /// Number of rows of a run that are tested, and their distance in time (s).
@@ -32,7 +32,7 @@ pub(crate) enum Fault {
     /// An actuator has the opposite sign.
     Reversed(usize),
     /// Positions of one or all revolute (or prismatic) actuators are in another unit.
-    Unit(&'static Slip, Option<usize>),
+    Unit(&'static UnitError, Option<usize>),
 }
 
 impl Fault {
@@ -53,19 +53,19 @@ impl Fault {
     fn with_units(model: &dyn Model) -> Vec<Self> {
         let info = model.info();
         let mut faults = Self::all(model);
-        let of_all = |slip: &'static Slip| {
-            let turns = slip.signal == Signal::Angles;
+        let of_all = |unit_error: &'static UnitError| {
+            let turns = unit_error.signal == Signal::Angles;
             let own = info.actuator_is_revolute.iter().enumerate();
             let own = own.filter(move |(_, revolute)| **revolute == turns);
             let own: Vec<Option<usize>> = own.map(|(index, _)| Some(index)).collect();
             let all = (own.len() > 1).then_some(None);
             all.into_iter()
                 .chain(own)
-                .map(move |which| Self::Unit(slip, which))
+                .map(move |which| Self::Unit(unit_error, which))
         };
-        let positions = SLIPS
+        let positions = UNIT_ERRORS
             .iter()
-            .filter(|slip| matches!(slip.signal, Signal::Angles | Signal::Lengths));
+            .filter(|unit_error| matches!(unit_error.signal, Signal::Angles | Signal::Lengths));
         faults.extend(positions.flat_map(of_all));
         faults
     }
@@ -79,8 +79,8 @@ impl Fault {
         match self {
             Self::Swapped(..) | Self::Reversed(_) => 0.0,
             Self::Degrees => (180.0 / PI).ln() + ALL,
-            Self::Unit(slip, Some(_)) => slip.factor.ln().abs(),
-            Self::Unit(slip, None) => slip.factor.ln().abs() + ALL,
+            Self::Unit(unit_error, Some(_)) => unit_error.factor.ln().abs(),
+            Self::Unit(unit_error, None) => unit_error.factor.ln().abs() + ALL,
         }
     }
 
@@ -97,13 +97,13 @@ impl Fault {
                 }
                 Self::Swapped(i, j) => row.swap(i, j),
                 Self::Reversed(i) => row[i] = -row[i],
-                Self::Unit(slip, Some(i)) => row[i] /= slip.factor,
-                Self::Unit(slip, None) => {
-                    let turns = slip.signal == Signal::Angles;
+                Self::Unit(unit_error, Some(i)) => row[i] /= unit_error.factor,
+                Self::Unit(unit_error, None) => {
+                    let turns = unit_error.signal == Signal::Angles;
                     let positions = row.iter_mut().zip(info.actuator_is_revolute);
                     positions
                         .filter(|(_, revolute)| **revolute == turns)
-                        .for_each(|(q, _)| *q /= slip.factor);
+                        .for_each(|(q, _)| *q /= unit_error.factor);
                 }
             }
         }
@@ -114,19 +114,19 @@ impl Fault {
         let info = model.info();
         let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
         let (kind, actuator, message) = match self {
-            Self::Unit(slip, which) => {
+            Self::Unit(unit_error, which) => {
                 let of = which.map_or_else(
                     || String::from("all drives of the kind"),
                     |index| format!("`{}`", name(index)),
                 );
-                let message = format!("{of}: {}", slip.advice());
+                let message = format!("{of}: {}", unit_error.advice());
                 (CheckKind::Unit, which.map(name), message)
             }
             Self::Degrees => (
                 CheckKind::Degrees,
                 None,
                 String::from(
-                    "the positions look like degrees, or like angles of motors before their gears: give `position_scale = \"1 deg\"` in the table [data], or the inverse of each gear ratio, or `coordinates = \"motors\"` where the description has motors with their ratios",
+                    "the positions look like degrees, or like motor angles: give `position_scale = \"1 deg\"` in the table [data], or the inverse of each gear ratio, or `coordinates = \"motors\"` if the description has motors with ratios",
                 ),
             ),
             Self::Swapped(i, j) => (
@@ -142,17 +142,17 @@ impl Fault {
                 CheckKind::WrongSign,
                 Some(name(i)),
                 format!(
-                    "the position of `{}` looks reversed: check its sign (a negative `position_scale` in the table [data] turns it round)",
+                    "the position of `{}` looks reversed: check its sign (a negative `position_scale` in the table [data] reverses it)",
                     name(i)
                 ),
             ),
         };
         let check = Check::new(kind, About::Model, format!("{message}; {so}"))
             .in_run(run)
-            .allowing(Grade::DoNotUse);
+            .with_grade(Grade::DoNotUse);
         let check = match self {
             Self::Degrees => check.in_unit(Signal::Angles.name(), 180.0 / PI),
-            Self::Unit(slip, _) => check.in_unit(slip.signal.name(), slip.factor),
+            Self::Unit(unit_error, _) => check.in_unit(unit_error.signal.name(), unit_error.factor),
             Self::Swapped(..) | Self::Reversed(_) => check,
         };
         match actuator {
@@ -191,7 +191,7 @@ pub(crate) fn explanation(
     });
     Ok(best.map(|(fault, left)| {
         let before = miss.map_or_else(
-            || String::from("where no pose is found now"),
+            || String::from("where no pose is found without the change"),
             |miss| format!("instead of missing by {miss:.3} m or rad"),
         );
         let so = format!("then the loops close to {left:.1e} m or rad {before}");

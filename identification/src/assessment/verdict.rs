@@ -88,7 +88,7 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
             .iter()
             .filter(|check| check.concerns(estimate.model, estimate.stage))
     };
-    let found = objections(checks, estimate.model, estimate.stage);
+    let found = failed_checks(checks, estimate.model, estimate.stage);
     let failed: Vec<&Check> = concerning().filter(|check| !check.passed).collect();
     let names = estimate.parameters.iter().map(|one| &one.name);
     let is_spoiled = |name: &String| failed.iter().any(|check| check.spoiled.contains(name));
@@ -122,21 +122,21 @@ const WORTH_TELLING: f64 = 0.5;
 
 /// Failed checks of an estimate.
 #[derive(Debug, Clone)]
-pub struct Objections<'a> {
+pub struct FailedChecks<'a> {
     /// Checks to report in full, with their indices among all checks.
     ///
     /// Most serious first, then by the explained fraction.
-    pub told: Vec<(usize, &'a Check)>,
+    pub reported: Vec<(usize, &'a Check)>,
     /// Names of the other failed checks.
     ///
     /// One fault resembles others in the torques. Checks that explain much less than another one
     /// are only named. All such checks are only named if the data are certainly wrong.
-    pub beside: Vec<&'static str>,
+    pub named_only: Vec<&'static str>,
 }
 
 /// Failed checks of the estimate of a model and stage.
 #[must_use]
-pub fn objections(checks: &[Check], model: ModelKind, stage: Stage) -> Objections<'_> {
+pub fn failed_checks(checks: &[Check], model: ModelKind, stage: Stage) -> FailedChecks<'_> {
     let found = checks.iter().enumerate();
     let mut found: Vec<(usize, &Check)> = found
         .filter(|(_, check)| !check.passed && check.concerns(model, stage))
@@ -153,21 +153,27 @@ pub fn objections(checks: &[Check], model: ModelKind, stage: Stage) -> Objection
         let grade = b.grade.cmp(&a.grade);
         grade.then(explained(b).total_cmp(&explained(a)))
     });
-    let (told, beside): (Vec<_>, Vec<_>) = found
+    let (reported, named_only): (Vec<_>, Vec<_>) = found
         .into_iter()
         .partition(|(_, check)| explained(check) >= WORTH_TELLING * most);
-    let mut beside: Vec<&str> = beside.iter().map(|(_, check)| check.kind.name()).collect();
-    beside.dedup();
-    Objections { told, beside }
+    let mut named_only: Vec<&str> = named_only
+        .iter()
+        .map(|(_, check)| check.kind.name())
+        .collect();
+    named_only.dedup();
+    FailedChecks {
+        reported,
+        named_only,
+    }
 }
 
-impl Objections<'_> {
+impl FailedChecks<'_> {
     /// A sentence that names the other failed checks; `None` if there are none.
     #[must_use]
     pub fn rest(&self) -> Option<String> {
-        (!self.beside.is_empty()).then(|| {
+        (!self.named_only.is_empty()).then(|| {
             format!(
-                "what else was found may well follow from that: {}",
+                "failed checks that this may explain: {}",
                 self.beside.join(", ")
             )
         })
@@ -175,7 +181,7 @@ impl Objections<'_> {
 
     /// All failed checks in sentences.
     fn sentences(&self) -> Vec<String> {
-        let told = self.told.iter().map(|(_, check)| check.located());
-        told.chain(self.rest()).collect()
+        let reported = self.reported.iter().map(|(_, check)| check.located());
+        reported.chain(self.rest()).collect()
     }
 }

@@ -11,8 +11,8 @@
 use nalgebra::{Matrix4, Vector4};
 
 use super::{
+    bound::{BoundDistance, until},
     pseudo_inertia::{Inertia, Metric, inertia, pseudo_inertia},
-    side::{Side, until},
 };
 
 /// A constraint set of a block of unknowns.
@@ -160,42 +160,42 @@ impl Cone for BodyCone {
 /// Cone of a positive coefficient.
 pub(super) struct PositiveCone {
     prior: f64,
-    side: Side,
+    bound: BoundDistance,
 }
 
 impl PositiveCone {
     /// A coefficient on the path of a weight; `None` if it is not positive.
     pub(super) fn new(prior: f64, own: f64, weight: f64) -> Option<Self> {
-        let side = Side::new((0, 0.0, 1.0), own, weight)?;
-        Some(Self { prior, side })
+        let bound = BoundDistance::new((0, 0.0, 1.0), own, weight)?;
+        Some(Self { prior, bound })
     }
 }
 
 impl Cone for PositiveCone {
     fn values(&self) -> Inertia {
-        first(self.side.distance)
+        first(self.bound.distance)
     }
 
     fn scaling(&self) -> Metric {
-        corner(self.side.stiffness().sqrt().recip())
+        corner(self.bound.stiffness().sqrt().recip())
     }
 
     fn slope(&self, cost: f64, weight: f64) -> Inertia {
-        let slope = cost / self.prior + self.side.slope(weight);
-        first(slope / self.side.stiffness().sqrt())
+        let slope = cost / self.prior + self.bound.slope(weight);
+        first(slope / self.bound.stiffness().sqrt())
     }
 
     fn products(&self) -> (usize, f64) {
-        (1, self.side.product())
+        (1, self.bound.product())
     }
 
     fn propose(&mut self, step: &Inertia, weight: f64) -> f64 {
-        self.side
-            .propose(step[0] / self.side.stiffness().sqrt(), weight)
+        self.bound
+            .propose(step[0] / self.bound.stiffness().sqrt(), weight)
     }
 
     fn advance(&mut self, part: f64) -> Option<()> {
-        self.side.advance(part);
+        self.bound.advance(part);
         Some(())
     }
 }

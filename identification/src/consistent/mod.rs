@@ -12,6 +12,7 @@
 //! The data enter by the R factors of the observation system, so the cost is independent of the
 //! number of samples.
 
+mod bound;
 mod completion;
 mod cones;
 mod density;
@@ -19,7 +20,6 @@ mod equations;
 mod point;
 mod prior;
 mod pseudo_inertia;
-mod side;
 mod solve;
 mod start;
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{
+    bound::BoundDistance,
     cones::{BodyCone, Cone, FreeCone, PositiveCone},
     equations::Equations,
     pseudo_inertia::{Inertia, Metric},
-    side::Side,
     unknowns::{Group, Kind, Unknowns},
 };
 
@@ -18,7 +18,7 @@ struct Block {
     first: usize,
     len: usize,
     cone: Box<dyn Cone>,
-    sides: Vec<Side>,
+    distances: Vec<BoundDistance>,
 }
 
 impl Block {
@@ -33,14 +33,14 @@ impl Block {
             Kind::Free { scale } => Box::new(FreeCone::new(*scale, own[0], cost)),
         };
         let bounds = group.bounds.iter();
-        let sides = bounds.flat_map(|(k, [low, high])| [(*k, *low, 1.0), (*k, *high, -1.0)]);
-        let sides = sides.filter(|(_, limit, _)| limit.is_finite());
+        let distances = bounds.flat_map(|(k, [low, high])| [(*k, *low, 1.0), (*k, *high, -1.0)]);
+        let distances = distances.filter(|(_, limit, _)| limit.is_finite());
         Some(Self {
             first: group.first,
             len: group.len(),
             cone,
-            sides: sides
-                .map(|side| Side::new(side, own[side.0], weight))
+            distances: distances
+                .map(|distance| BoundDistance::new(distance, own[distance.0], weight))
                 .collect::<Option<_>>()?,
         })
     }
@@ -102,9 +102,9 @@ impl Point {
         let (mut count, mut sum) = (0, 0.0);
         for block in &self.blocks {
             let (own, product) = block.cone.products();
-            let sides: f64 = block.sides.iter().map(Side::product).sum();
-            count += own + block.sides.len();
-            sum += product + sides;
+            let distances: f64 = block.distances.iter().map(BoundDistance::product).sum();
+            count += own + block.distances.len();
+            sum += product + distances;
         }
         sum / count.max(1) as f64
     }
@@ -126,14 +126,17 @@ impl Point {
                 .copy_from(&step.rows(block.first, block.len));
             let change = block.cone.scaling() * own;
             reach = reach.min(block.cone.propose(&own, weight));
-            for side in &mut block.sides {
-                reach = reach.min(side.propose(change[side.place], weight));
+            for distance in &mut block.distances {
+                reach = reach.min(distance.propose(change[distance.place], weight));
             }
         }
         let part = (CLEAR * reach).min(1.0);
         for block in &mut self.blocks {
             block.cone.advance(part)?;
-            block.sides.iter_mut().for_each(|side| side.advance(part));
+            block
+                .distances
+                .iter_mut()
+                .for_each(|distance| distance.advance(part));
         }
         let length = (square / self.cost).sqrt();
         (length.is_finite() && part > 0.0).then_some(Step { length, part })
@@ -141,13 +144,13 @@ impl Point {
 
     /// Equations of a step: M, with an additional row for each bound.
     pub(super) fn equations(&self, a: &DMatrix<f64>) -> Option<Equations> {
-        let sides: usize = self.blocks.iter().map(|block| block.sides.len()).sum();
-        let mut all = DMatrix::zeros(a.nrows() + sides, self.len);
+        let distances: usize = self.blocks.iter().map(|block| block.distances.len()).sum();
+        let mut all = DMatrix::zeros(a.nrows() + distances, self.len);
         all.rows_mut(0, a.nrows()).copy_from(a);
         let mut row = a.nrows();
         for block in &self.blocks {
-            for side in &block.sides {
-                all[(row, block.first + side.place)] = side.stiffness().sqrt();
+            for distance in &block.distances {
+                all[(row, block.first + distance.place)] = distance.stiffness().sqrt();
                 row += 1;
             }
         }
@@ -167,8 +170,8 @@ impl Point {
         self.gathered(|block| {
             let mut slope = block.cone.slope(self.cost, weight);
             let scaling = block.cone.scaling();
-            for side in &block.sides {
-                slope += scaling.row(side.place).transpose() * side.slope(weight);
+            for distance in &block.distances {
+                slope += scaling.row(distance.place).transpose() * distance.slope(weight);
             }
             slope
         })

@@ -15,6 +15,7 @@ mod archive;
 mod arrays;
 mod budget;
 mod clock;
+mod column_plausibility;
 mod columns;
 mod dataset;
 mod expression;
@@ -27,10 +28,9 @@ mod mapping;
 mod mat_file;
 #[cfg(feature = "mcap")]
 mod mcap_file;
-mod meaning;
 mod medium;
 mod numpy;
-mod opening;
+mod open_files;
 mod parquet_file;
 pub(crate) mod periods;
 mod problems;
@@ -47,7 +47,7 @@ mod summary;
 mod table;
 mod text;
 mod transmission;
-mod turns;
+mod unwrapping;
 
 use std::{
     path::Path,
@@ -100,11 +100,11 @@ pub fn parts(path: &Path) -> Vec<&Path> {
 /// cells that are not finite numbers, a non-uniform time, files of different lengths or times, or
 /// an invalid mapping.
 pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
-    read_telling(path, mapping, payload, &|_| {})
+    read_with_progress(path, mapping, payload, &|_| {})
 }
 
 /// Reads a run; `advance` gets the number of bytes read since its last call.
-fn read_telling(
+fn read_with_progress(
     path: &Path,
     mapping: &Mapping,
     payload: bool,
@@ -113,7 +113,7 @@ fn read_telling(
     let part = |path: &Path| (display_name(path), Medium::at(path));
     let files: Vec<_> = parts(path).into_iter().map(part).collect();
     let files = Files::new(display_name(path), &files, mapping)?;
-    looked_through(files, mapping, payload, advance)
+    first_pass(files, mapping, payload, advance)
 }
 
 /// Reads a run from arrays in memory, like arrays of a file; `name` is for messages.
@@ -132,7 +132,7 @@ pub fn read_arrays(
     }
     let tables = (vec![Table::Arrays(table)], vec![1]);
     let files = Files::of_tables(name.to_owned(), tables, mapping)?;
-    looked_through(files, mapping, payload, &|_| {})
+    first_pass(files, mapping, payload, &|_| {})
 }
 
 /// Reads a run from the bytes of a file of any supported format; `name` is for messages.
@@ -147,11 +147,11 @@ pub fn read_bytes(
 ) -> Result<Log, Error> {
     let files = [(name.to_owned(), Medium::Memory(Arc::clone(bytes)))];
     let files = Files::new(name.to_owned(), &files, mapping)?;
-    looked_through(files, mapping, payload, &|_| {})
+    first_pass(files, mapping, payload, &|_| {})
 }
 
 /// Reads the run of open files once to check it.
-fn looked_through(
+fn first_pass(
     mut files: Files,
     mapping: &Mapping,
     payload: bool,
@@ -205,6 +205,7 @@ pub fn read_all(
         let now = bytes + done.fetch_add(bytes, Ordering::Relaxed);
         progress(now as f64 / total.max(1) as f64);
     };
-    let read = |&(path, payload): &(&Path, bool)| read_telling(path, mapping, payload, &advance);
+    let read =
+        |&(path, payload): &(&Path, bool)| read_with_progress(path, mapping, payload, &advance);
     files.par_iter().map(read).collect()
 }

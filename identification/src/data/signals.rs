@@ -1,12 +1,12 @@
 //! Signals of a mapping: requested columns, and their conversion to time and SI units.
 
 use super::{
-    columns::{Columns, Found, Tables},
+    columns::{Columns, RequestedColumns, Tables},
     expression::Expression,
     mapping::{Gain, Mapping, Time},
     problems::missing_columns,
     table::Table,
-    turns::{Position, Rotation},
+    unwrapping::{Position, Rotation},
 };
 use crate::error::{Error, Problem};
 use overact::Code;
@@ -69,7 +69,7 @@ impl Signals {
                 scale: *scale,
             })
             .collect();
-        let Found { columns, places } = columns.finish()?;
+        let RequestedColumns { columns, places } = columns.finish()?;
         times.iter_mut().for_each(|time| time.renumber(&places));
         for signal in &mut signals {
             signal.expression.renumber(&places);

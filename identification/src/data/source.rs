@@ -7,7 +7,7 @@ use super::{
     spill::Spill,
     table::Table,
     transmission::Transmission,
-    turns::{Rotation, Wrap},
+    unwrapping::{Rotation, Wrap},
 };
 use crate::error::Error;
 

@@ -9,7 +9,7 @@ use super::{
     source::{Files, WrapSource},
     spill::Spill,
     table::Table,
-    turns::Wrap,
+    unwrapping::Wrap,
 };
 use crate::error::{Error, Problem};
 use overact::Code;

@@ -15,7 +15,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::position_noise::shaken;
+use super::position_noise::with_added_noise;
 use crate::{
     data::Log,
     error::Error,
@@ -68,7 +68,7 @@ impl ColumnNoise {
             let settings = observer.settings;
             let used = SAMPLES.max(EQUATIONS * settings.decimation);
             let piece = log.beginning(settings.samples_needed() + used)?;
-            let noisy = shaken(&piece)?;
+            let noisy = with_added_noise(&piece)?;
             // Skip this run if the noise leaves the workspace.
             let both = (&piece, Some(&noisy));
             let Ok((observed, _)) = observer.run(number, both, (0, None), &|_, _| {}) else {

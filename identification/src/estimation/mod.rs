@@ -3,7 +3,7 @@
 //! - `base`: base parameters in the symmetric order (42)-(43);
 //! - `estimate`: ordinary or weighted least squares with standard deviations (44)-(48);
 //! - `correlation`, `fourier`: standard deviations for residuals correlated over time and lines;
-//! - `returning`: variance of residual sums in periodic motion;
+//! - `periodic_variance`: variance of residual sums in periodic motion;
 //! - `intervals`: 95 % intervals that allow for correlation and elimination;
 //! - `instruments`, `total_least_squares`: estimates that allow for errors of the columns;
 //! - `column_noise`, `position_noise`: effect of position noise on the columns;
@@ -18,7 +18,7 @@ pub(crate) mod estimate;
 mod fourier;
 pub(crate) mod instruments;
 pub(crate) mod intervals;
+pub(crate) mod periodic_variance;
 mod position_noise;
 pub(crate) mod recommended;
-pub(crate) mod returning;
 pub(crate) mod total_least_squares;

@@ -65,7 +65,7 @@ fn white(signal: &[f64]) -> f64 {
 ///
 /// # Errors
 /// A file cannot be read any more.
-pub(crate) fn shaken(log: &Log) -> Result<Log, Error> {
+pub(crate) fn with_added_noise(log: &Log) -> Result<Log, Error> {
     let n = log.actuators();
     let (mut positions, mut velocities, mut torques) = (Vec::new(), Vec::new(), Vec::new());
     let mut reader = log.reader()?;
@@ -84,11 +84,11 @@ pub(crate) fn shaken(log: &Log) -> Result<Log, Error> {
         }
     }
     let (name, frequency) = (log.name(), log.sampling_frequency());
-    let shaken = Log::new(name, frequency, n, positions, torques, log.payload())?;
-    let shaken = shaken.with_velocities(velocities);
+    let noisy = Log::new(name, frequency, n, positions, torques, log.payload())?;
+    let noisy = noisy.with_velocities(velocities);
     Ok(match log.payload_name() {
-        Some(name) => shaken.with_payload_name(name),
-        None => shaken,
+        Some(name) => noisy.with_payload_name(name),
+        None => noisy,
     })
 }
 

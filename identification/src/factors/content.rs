@@ -18,7 +18,7 @@ pub(super) fn hash(bytes: &[u8]) -> String {
 /// Hash of a run's equations, without its name and other metadata.
 pub(super) fn content(run: &RunFactors) -> String {
     let mut bytes = Vec::new();
-    text(&mut bytes, &run.like);
+    text(&mut bytes, &run.settings_hash);
     text(
         &mut bytes,
         run.summary.payload_name.as_deref().unwrap_or(""),

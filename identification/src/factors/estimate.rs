@@ -3,7 +3,7 @@
 use overact::Model;
 use serde::Serialize;
 
-use super::{left_out::LeftOut, restore::restored, run::RunFactors};
+use super::{excluded_run::ExcludedRun, restore::restored, run::RunFactors};
 use crate::{
     error::Error,
     identify::{BaseParameter, Progress, estimates_of},
@@ -14,7 +14,7 @@ use crate::{
 /// Result of an estimation from the factors of runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct FromFactors {
+pub struct FactorEstimation {
     /// Name of the robot.
     pub robot: String,
     /// Runs.
@@ -28,7 +28,7 @@ pub struct FromFactors {
     /// Origin of standard deviations for correlated residuals, and of intervals.
     pub deviations: Deviations,
     /// Runs and files that were left out.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<ExcludedRun>,
     /// Warnings before using the result.
     pub warnings: Vec<String>,
     /// The settings used.
@@ -54,11 +54,11 @@ pub enum Deviations {
 /// runs that lack a model other than the actuator projection.
 pub fn identify_factors(
     model: &dyn Model,
-    (runs, left_out): (&[RunFactors], &[LeftOut]),
+    (runs, left_out): (&[RunFactors], &[ExcludedRun]),
     settings: &Settings,
     skip_bad: bool,
     progress: &dyn Fn(Progress<'_>),
-) -> Result<FromFactors, Error> {
+) -> Result<FactorEstimation, Error> {
     settings.check(&model.info())?;
     let has_equations = |run: &RunFactors| {
         let mut usable = run.models.iter().filter(|own| own.parts.is_ok());
@@ -83,7 +83,7 @@ pub fn identify_factors(
     let (prepared, missing) = restored(model, &runs, &settings, skip_bad)?;
     let mut warnings: Vec<String> = runs.iter().flat_map(|run| run.flags.clone()).collect();
     let estimates = estimates_of(&prepared, &settings, progress, &mut warnings)?;
-    Ok(FromFactors {
+    Ok(FactorEstimation {
         robot: model.info().name.to_owned(),
         base_parameters: BaseParameter::all(&prepared.columns, &prepared.base, None),
         runs: prepared.runs,

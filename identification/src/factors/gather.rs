@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::{
-    left_out::{LeftOut, Reason},
+    excluded_run::{ExcludedRun, Reason},
     read::read_factors,
     run::RunFactors,
 };
@@ -16,37 +16,45 @@ use crate::error::{Error, Problem};
 /// Runs of several files, and what was left out.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Gathered {
+pub struct CollectedRuns {
     /// Runs, in the order of the files.
     pub runs: Vec<RunFactors>,
     /// Runs and files that were left out.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<ExcludedRun>,
 }
 
 /// Reads factor files.
 ///
 /// Duplicate runs are counted once and reported. Other unusable runs are left out if `skip_bad`.
-/// `like` is the required hash of description and settings. By default it is the most frequent one,
-/// or the first of equally frequent ones.
+/// `settings_hash` is the required hash of description and settings. By default it is the most
+/// frequent one, or the first of equally frequent ones.
 ///
 /// # Errors
 /// All unusable runs and files together, unless they are skipped; no run at all.
-pub fn gather(files: &[PathBuf], like: Option<&str>, skip_bad: bool) -> Result<Gathered, Error> {
+pub fn gather(
+    files: &[PathBuf],
+    settings_hash: Option<&str>,
+    skip_bad: bool,
+) -> Result<CollectedRuns, Error> {
     let mut left_out = Vec::new();
     let mut found: Vec<(String, RunFactors)> = Vec::new();
     for path in files {
         read_into(path, &mut found, &mut left_out);
     }
-    let like = like.map(str::to_owned).or_else(|| most(&found));
-    let alike = |(_, run): &&(String, RunFactors)| Some(&run.like) == like.as_ref();
+    let settings_hash = settings_hash.map(str::to_owned).or_else(|| most(&found));
+    let alike =
+        |(_, run): &&(String, RunFactors)| Some(&run.settings_hash) == settings_hash.as_ref();
     let model = found.iter().find(alike).map(|(_, run)| run.clone());
     let mut seen: BTreeMap<String, String> = BTreeMap::new();
     let mut runs = Vec::new();
     for (file, run) in found {
         let name = Some(run.summary.name.clone());
-        if like.as_ref().is_some_and(|like| *like != run.like) {
+        if settings_hash
+            .as_ref()
+            .is_some_and(|settings_hash| *settings_hash != run.settings_hash)
+        {
             let (reason, message) = (Reason::Unlike, unlike(&run, model.as_ref()));
-            left_out.push(LeftOut {
+            left_out.push(ExcludedRun {
                 file,
                 run: name,
                 reason,
@@ -55,9 +63,9 @@ pub fn gather(files: &[PathBuf], like: Option<&str>, skip_bad: bool) -> Result<G
             continue;
         }
         if let Some(other) = seen.get(&run.content) {
-            let message = format!("it is the same run as {other}, and counts once");
+            let message = format!("it is the same run as {other} and counts once");
             let reason = Reason::Twice;
-            left_out.push(LeftOut {
+            left_out.push(ExcludedRun {
                 file,
                 run: name,
                 reason,
@@ -70,20 +78,20 @@ pub fn gather(files: &[PathBuf], like: Option<&str>, skip_bad: bool) -> Result<G
     }
     if !skip_bad {
         let bad = left_out.iter().filter(|one| one.reason != Reason::Twice);
-        Error::check(bad.map(LeftOut::problem).collect())?;
+        Error::check(bad.map(ExcludedRun::problem).collect())?;
     }
     if runs.is_empty() {
-        let mut problems: Vec<Problem> = left_out.iter().map(LeftOut::problem).collect();
+        let mut problems: Vec<Problem> = left_out.iter().map(ExcludedRun::problem).collect();
         problems.push(
             Problem::new(Code::FACTORS, "no run is left in the factor files")
                 .help("give at least one"),
         );
         return Err(Error { problems });
     }
-    Ok(Gathered { runs, left_out })
+    Ok(CollectedRuns { runs, left_out })
 }
 
-fn read_into(path: &Path, found: &mut Vec<(String, RunFactors)>, left_out: &mut Vec<LeftOut>) {
+fn read_into(path: &Path, found: &mut Vec<(String, RunFactors)>, left_out: &mut Vec<ExcludedRun>) {
     let file = path.display().to_string();
     let damaged = match read_factors(path) {
         Ok(read) => {
@@ -92,7 +100,7 @@ fn read_into(path: &Path, found: &mut Vec<(String, RunFactors)>, left_out: &mut 
         }
         Err(damaged) => vec![damaged],
     };
-    left_out.extend(damaged.into_iter().map(|one| LeftOut {
+    left_out.extend(damaged.into_iter().map(|one| ExcludedRun {
         file: file.clone(),
         run: one.run,
         reason: one.reason,
@@ -116,8 +124,7 @@ fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
             other.summary.sampling_frequency
         ),
         _ => format!(
-            "it is of a robot `{}`, but the text of the description differs somewhere, and a comment is enough, or \
-             other actuators were kept",
+            "it is of a robot `{}`, but the text of the description differs (a comment suffices), or other actuators were kept",
             run.robot
         ),
     };
@@ -126,13 +133,18 @@ fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
 
 /// The most frequent hash of description and settings; the first of equally frequent ones.
 fn most(found: &[(String, RunFactors)]) -> Option<String> {
-    let count = |like: &str| found.iter().filter(|(_, run)| run.like == like).count();
+    let count = |settings_hash: &str| {
+        found
+            .iter()
+            .filter(|(_, run)| run.settings_hash == settings_hash)
+            .count()
+    };
     let mut best: Option<(usize, &str)> = None;
     for (_, run) in found {
-        let own = count(&run.like);
+        let own = count(&run.settings_hash);
         if best.is_none_or(|(most, _)| own > most) {
-            best = Some((own, &run.like));
+            best = Some((own, &run.settings_hash));
         }
     }
-    best.map(|(_, like)| like.to_owned())
+    best.map(|(_, settings_hash)| settings_hash.to_owned())
 }

@@ -27,13 +27,13 @@
 //! - `pool`, `pool_bytes`: records of many runs in bounded memory, in any order, for a database.
 //! - `pooled`: estimate of a pool.
 //! - `schema`, `write`, `read`: Parquet files, one row for each line of a part.
-//! - `left_out`: unusable runs; `gather`: compatible runs of several files.
+//! - `excluded_run`: unusable runs; `gather`: compatible runs of several files.
 //! - `restore`, `estimate`: back to a system, and its estimates.
 
 mod content;
 mod estimate;
+mod excluded_run;
 mod gather;
-mod left_out;
 mod observe;
 mod packed;
 mod pool;
@@ -47,10 +47,10 @@ mod schema;
 mod write;
 
 pub use crate::estimation::intervals::distributions::student_tail;
-pub use estimate::{Deviations, FromFactors, identify_factors};
-pub use gather::{Gathered, gather};
-pub use left_out::{LeftOut, Reason};
-pub use observe::{Factory, Origin, factor_runs, likeness};
+pub use estimate::{Deviations, FactorEstimation, identify_factors};
+pub use excluded_run::{ExcludedRun, Reason};
+pub use gather::{CollectedRuns, gather};
+pub use observe::{Factory, Origin, factor_runs, settings_hash};
 pub use pool::{Pool, PoolError};
 pub use pooled::{Comparison, Pooled, PooledParameter, compare};
 pub use read::{Damaged, ReadFactors, read_factors};

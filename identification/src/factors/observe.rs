@@ -18,7 +18,7 @@ use crate::{
     prior::Prior,
     regression::{
         columns::ColumnSet,
-        observation::{Observer, Seen},
+        observation::{Observer, RunObservation},
         projection::Projection,
         system::Observed,
     },
@@ -39,7 +39,7 @@ pub struct Origin {
 ///
 /// Line ends do not count, comments do.
 #[must_use]
-pub fn likeness(description: &str, settings: &Settings) -> String {
+pub fn settings_hash(description: &str, settings: &Settings) -> String {
     let settings = Settings {
         r_sigma: 0.0,
         keep_significant: false,
@@ -60,7 +60,7 @@ pub fn likeness(description: &str, settings: &Settings) -> String {
 pub struct Factory<'a> {
     model: &'a dyn Model,
     settings: &'a Settings,
-    like: String,
+    settings_hash: String,
     /// Columns for each payload.
     known: Mutex<Vec<(Load, Arc<Columns>)>>,
     /// Number of values of successive equations that a run may keep; `None` to keep none.
@@ -84,7 +84,7 @@ impl<'a> Factory<'a> {
         Ok(Self {
             model,
             settings,
-            like: likeness(description, settings),
+            settings_hash: settings_hash(description, settings),
             known: Mutex::new(Vec::new()),
             budget: None,
         })
@@ -108,7 +108,7 @@ impl<'a> Factory<'a> {
     ) -> Result<RunFactors, Error> {
         let columns = self.columns(log, progress)?;
         let about = About {
-            like: &self.like,
+            settings_hash: &self.settings_hash,
             origin,
             budget: self.budget,
         };
@@ -164,7 +164,7 @@ pub fn factor_runs(
 
 /// Metadata of a run.
 struct About<'a> {
-    like: &'a str,
+    settings_hash: &'a str,
     /// Serial number and time.
     origin: (&'a str, Option<i64>),
     budget: Option<usize>,
@@ -206,7 +206,7 @@ impl Columns {
                 chosen.extend(place.filter(|place| !chosen.contains(place)));
             }
         }
-        let all = all.with_reversals(model, settings)?;
+        let all = all.with_friction_signs(model, settings)?;
         Ok(Self { all, chosen })
     }
 
@@ -228,7 +228,7 @@ impl Columns {
         };
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
-        let (systems, seen) =
+        let (systems, observation) =
             observer.run(0, (log, None), (about.budget.unwrap_or(0), None), &report)?;
         let models = projections.iter().zip(systems);
         let models = models.map(|(projection, observed)| {
@@ -243,10 +243,10 @@ impl Columns {
             robot: info.name.to_owned(),
             serial: about.origin.0.to_owned(),
             time_us: about.origin.1,
-            like: about.like.to_owned(),
+            settings_hash: about.settings_hash.to_owned(),
             content: String::new(),
-            summary: RunSummary::new(log, &seen),
-            flags: flags((model, log), seen),
+            summary: RunSummary::new(log, &observation),
+            flags: flags((model, log), observation),
             columns: names.map(|column| column.name.clone()).collect(),
             models: models.collect(),
         };
@@ -285,8 +285,8 @@ fn kept(
 }
 
 /// Suspicions about the raw numbers of a run.
-fn flags((model, log): (&dyn Model, &Log), seen: Seen) -> Vec<String> {
-    let checks = assessment::suspicious(model, log.name(), seen.monitor);
+fn flags((model, log): (&dyn Model, &Log), observation: RunObservation) -> Vec<String> {
+    let checks = assessment::suspicious(model, log.name(), observation.monitor);
     let failed = checks.iter().filter(|check| !check.passed);
     failed.map(Check::located).collect()
 }

@@ -55,7 +55,7 @@ pub struct Pool {
 /// Factors of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Kind {
-    pub(super) like: u128,
+    pub(super) settings_hash: u128,
     pub(super) model: ModelKind,
     pub(super) load: Option<String>,
     pub(super) columns: String,
@@ -73,7 +73,7 @@ pub(super) struct Kind {
 impl Kind {
     fn of(record: &Record) -> Self {
         Self {
-            like: record.like,
+            settings_hash: record.settings_hash,
             model: record.model,
             load: record.load.clone(),
             columns: record.columns.clone(),

@@ -37,7 +37,7 @@ impl Pool {
         whole(&mut own, self.kinds.len() as u64);
         for (key, kind) in &self.kinds {
             own.extend(key.to_le_bytes());
-            own.extend(kind.like.to_le_bytes());
+            own.extend(kind.settings_hash.to_le_bytes());
             text(&mut own, kind.model.name());
             whole(&mut own, u64::from(kind.load.is_some()));
             text(&mut own, kind.load.as_deref().unwrap_or(""));
@@ -99,14 +99,14 @@ fn read(rest: &mut Rest<'_>) -> Option<Pool> {
 }
 
 fn kind(rest: &mut Rest<'_>) -> Option<Kind> {
-    let like = u128::from_le_bytes(rest.array()?);
+    let settings_hash = u128::from_le_bytes(rest.array()?);
     let name = words(rest)?;
     let models = [ModelKind::Platform, ModelKind::Actuators, ModelKind::Joints];
     let model = models.into_iter().find(|own| own.name() == name)?;
     let loaded = count(rest)? != 0;
     let load = words(rest)?;
     let mut own = Kind {
-        like,
+        settings_hash,
         model,
         load: loaded.then_some(load),
         columns: words(rest)?,

@@ -104,7 +104,9 @@ impl Pool {
             return told;
         };
         let others = self.kinds.values().filter(|other| *other != kind);
-        let mixed = others.clone().any(|other| other.like == kind.like);
+        let mixed = others
+            .clone()
+            .any(|other| other.settings_hash == kind.settings_hash);
         told.unlike += others.map(|other| other.runs() as u64).sum::<u64>();
         if mixed {
             told.problem =

@@ -39,7 +39,7 @@ const MODELS: [ModelKind; 3] = [ModelKind::Platform, ModelKind::Actuators, Model
 #[non_exhaustive]
 pub struct Record {
     /// Hash of the description and of the settings that affect the equations.
-    pub like: u128,
+    pub settings_hash: u128,
     /// Hash of the run's numbers.
     pub content: u128,
     /// Model.
@@ -75,7 +75,7 @@ impl Record {
         let load = self.load.as_ref().map(|name| format!("+{name}"));
         let text = format!(
             "{:032x}\n{}\n{}\n{}",
-            self.like,
+            self.settings_hash,
             self.model.name(),
             load.unwrap_or_default(),
             self.columns
@@ -89,7 +89,7 @@ impl Record {
         let load = self.load.as_deref().unwrap_or("");
         let model = MODELS.iter().position(|own| *own == self.model);
         let mut own = vec![0; FRONT];
-        own.extend(self.like.to_le_bytes());
+        own.extend(self.settings_hash.to_le_bytes());
         own.extend(self.content.to_le_bytes());
         own.extend([model.unwrap_or(0) as u8, u8::from(self.load.is_some())]);
         for value in [self.part, self.line, self.factor.parameters() as u16] {
@@ -161,7 +161,7 @@ impl Record {
 
     fn checked(bytes: &[u8]) -> Option<Self> {
         let mut rest = Rest(&bytes[FRONT..]);
-        let like = u128::from_le_bytes(rest.array()?);
+        let settings_hash = u128::from_le_bytes(rest.array()?);
         let content = u128::from_le_bytes(rest.array()?);
         let [model, loaded] = rest.array()?;
         let [part, line, columns] = [rest.short()?, rest.short()?, rest.short()?];
@@ -176,7 +176,7 @@ impl Record {
         let sums = numbers(rest.take(8 * size)?, size)?;
         let matrix = from_triangle(rest.0, size)?;
         Some(Self {
-            like,
+            settings_hash,
             content,
             model: *MODELS.get(usize::from(model))?,
             load: (loaded != 0).then_some(load),

@@ -5,7 +5,7 @@ use overact::Code;
 use overact::Model;
 
 use super::{
-    left_out::{LeftOut, Reason},
+    excluded_run::{ExcludedRun, Reason},
     run::RunFactors,
 };
 use crate::{
@@ -29,7 +29,7 @@ pub(super) fn restored(
     runs: &[RunFactors],
     settings: &Settings,
     skip_bad: bool,
-) -> Result<(Prepared, Vec<LeftOut>), Error> {
+) -> Result<(Prepared, Vec<ExcludedRun>), Error> {
     let info = model.info();
     let payload = payload_use(runs)?;
     if payload != PayloadUse::Absent && !has_payload(&info) {
@@ -47,7 +47,7 @@ pub(super) fn restored(
     .with_payloads(&names(runs));
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
-    let columns = columns.with_reversals(model, settings)?;
+    let columns = columns.with_friction_signs(model, settings)?;
     let places = places(runs, &columns, &base)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let (mut systems, mut left_out) = (Vec::new(), Vec::new());
@@ -68,7 +68,7 @@ pub(super) fn restored(
             };
             match (observed, &mut system) {
                 (Ok(observed), Ok(system)) => system.extend(observed),
-                (Err(message), _) if skip_bad => left_out.push(LeftOut {
+                (Err(message), _) if skip_bad => left_out.push(ExcludedRun {
                     file: run.summary.name.clone(),
                     run: Some(run.title()),
                     reason: Reason::MissingModel,
@@ -91,8 +91,8 @@ fn payload_use(runs: &[RunFactors]) -> Result<PayloadUse, Error> {
     let loaded = || runs.iter().filter(|run| run.summary.payload);
     let unnamed = loaded().find(|run| run.summary.payload_name.is_none());
     if let (Some(unnamed), false) = (unnamed, names(runs).is_empty()) {
-        let message = "the run carries a payload without a name, others one with a name: they can't be told from each other";
-        let help = "factor the logs anew with the name of each payload";
+        let message = "the run carries a payload without a name, others one with a name: they can't be distinguished";
+        let help = "factor the logs again with the name of each payload";
         return Err(Problem::new(Code::FACTORS, message)
             .file(unnamed.title())
             .help(help)
@@ -153,7 +153,7 @@ fn places(
             });
             if found.is_none() && (carried || !loads.contains(column)) {
                 let message = format!("the factors have no column `{}`", wanted.name);
-                let help = "factor the log anew with this program";
+                let help = "factor the log again with this program";
                 problems.push(
                     Problem::new(Code::FACTORS, message)
                         .file(run.title())

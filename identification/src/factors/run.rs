@@ -21,7 +21,7 @@ pub struct RunFactors {
     /// Start of the run, µs since 1970 (UTC); `None` if not given.
     pub time_us: Option<i64>,
     /// Hash of the description and of the settings that affect the equations.
-    pub like: String,
+    pub settings_hash: String,
     /// Hash of the numbers.
     pub content: String,
     /// Summary of the run.
@@ -80,7 +80,7 @@ impl RunFactors {
             lines.map(move |(line, factor)| (part, line, factor))
         });
         let record = |(part, line, factor): (usize, usize, &Factor)| Record {
-            like: number(&self.like),
+            settings_hash: number(&self.settings_hash),
             content: number(&self.content),
             model: model.model,
             load: load.clone(),

@@ -10,7 +10,7 @@ pub(super) const VERSION: i64 = 2;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Row {
     pub(super) version: i64,
-    pub(super) like: String,
+    pub(super) settings_hash: String,
     pub(super) content: String,
     pub(super) robot: String,
     pub(super) serial: String,
@@ -109,7 +109,7 @@ impl Row {
         use Cell::{Bytes, Instant, Real, Whole};
         vec![
             Whole(self.version),
-            Bytes(self.like.as_bytes()),
+            Bytes(self.settings_hash.as_bytes()),
             Bytes(self.content.as_bytes()),
             Bytes(self.robot.as_bytes()),
             Bytes(self.serial.as_bytes()),
@@ -145,7 +145,7 @@ impl Row {
         use Place::{Bytes, Instant, Real, Text, Whole};
         Some(match name {
             "version" => Whole(&mut self.version),
-            "like" => Text(&mut self.like),
+            "like" => Text(&mut self.settings_hash),
             "content" => Text(&mut self.content),
             "robot" => Text(&mut self.robot),
             "serial" => Text(&mut self.serial),

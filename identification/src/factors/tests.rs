@@ -38,7 +38,7 @@ fn records(seed: u64, runs: usize) -> Vec<Record> {
                 let mut factor = Factor::new(3);
                 factor.push_rows(&rows);
                 all.push(Record {
-                    like: 1,
+                    settings_hash: 1,
                     content: u128::from(seed) << 80 | (run as u128) << 64 | 5,
                     model: ModelKind::Joints,
                     load: None,
@@ -145,7 +145,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
     same(&few, &late.estimate());
     // Kinds do not share groups, and all follow the limit.
     let mut other = records(8, 40);
-    other.iter_mut().for_each(|record| record.like = 2);
+    other.iter_mut().for_each(|record| record.settings_hash = 2);
     let mut both = pooled(&all, 64);
     both.merge(pooled(&other[..100], 8)).expect("other runs");
     same(&few, &both.estimate());
@@ -229,7 +229,7 @@ fn nothing_counts_twice_and_nothing_damaged_counts() {
 fn only_like_with_like() {
     let mut all = records(4, 3);
     for record in &mut all[..10] {
-        record.like = 2;
+        record.settings_hash = 2;
     }
     let told = pooled(&all, 16).estimate();
     assert_eq!((told.runs, told.unlike, told.problem.as_str()), (2, 1, ""));

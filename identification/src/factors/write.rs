@@ -97,7 +97,7 @@ fn of_run(run: &RunFactors) -> Vec<Row> {
     let standstill = summary.standstill_equations.iter().map(usize::to_string);
     let all = Row {
         version: VERSION,
-        like: run.like.clone(),
+        settings_hash: run.settings_hash.clone(),
         content: run.content.clone(),
         robot: run.robot.clone(),
         serial: run.serial.clone(),

@@ -66,14 +66,14 @@ impl Groups {
 
     /// Runs a group forwards: `rows` of `width` signals.
     ///
-    /// `before` is X, and `after` receives that of the next group. `told` receives F, then the
+    /// `before` is X, and `after` receives that of the next group. `partial` receives F, then the
     /// partial kept values. All contain the real parts of a mode for all signals, then the
     /// imaginary ones.
     pub(super) fn pass(
         &self,
         (rows, width): (&[f64], usize),
         (before, after): (&[f64], &mut [f64]),
-        told: &mut [f64],
+        partial: &mut [f64],
     ) {
         Arch::new().dispatch(Pass {
             groups: self,
@@ -81,24 +81,24 @@ impl Groups {
             width,
             before,
             after,
-            told,
+            partial,
         });
     }
 
     /// Runs a group backwards.
     ///
-    /// `told` is its result of the forward pass. `behind` is B' and becomes B. Kept values are
+    /// `partial` is its result of the forward pass. `after` is B' and becomes B. Kept values are
     /// written to `kept` if requested.
     pub(super) fn pass_backwards(
         &self,
-        told: &[f64],
-        behind: &mut [f64],
+        partial: &[f64],
+        after: &mut [f64],
         kept: Option<&mut [f64]>,
     ) {
         Arch::new().dispatch(Backwards {
             groups: self,
-            told,
-            behind,
+            partial,
+            after,
             kept,
         });
     }
@@ -111,7 +111,7 @@ struct Pass<'a> {
     width: usize,
     before: &'a [f64],
     after: &'a mut [f64],
-    told: &'a mut [f64],
+    partial: &'a mut [f64],
 }
 
 impl WithSimd for Pass<'_> {
@@ -157,17 +157,17 @@ impl Pass<'_> {
         };
         let (rows, before) = (widened(self.rows), widened(self.before));
         let mut after = vec![0.0; before.len()];
-        let mut told = vec![0.0; (PARTS + 1) * lanes];
+        let mut partial = vec![0.0; (PARTS + 1) * lanes];
         let wide = Pass {
             groups: self.groups,
             rows: &rows,
             width: lanes,
             before: &before,
             after: &mut after,
-            told: &mut told,
+            partial: &mut partial,
         };
         wide.all(simd);
-        for (to, from) in [(self.after, &after), (self.told, &told)] {
+        for (to, from) in [(self.after, &after), (self.partial, &partial)] {
             let rows = to.chunks_exact_mut(width).zip(from.chunks_exact(lanes));
             rows.for_each(|(to, from)| to.copy_from_slice(&from[..width]));
         }
@@ -240,8 +240,8 @@ impl Pass<'_> {
             let (c, d) = (even[2 * mode + 1], odd[2 * mode + 1]);
             let share = 2.0 * groups.modes.shares[mode];
             kept = simd.add_f64s(kept, times(simd, share, [x, y])[0]);
-            *vector_mut::<S>(self.told, places[0]) = simd.add_f64s(a, b);
-            *vector_mut::<S>(self.told, places[1]) = simd.add_f64s(c, d);
+            *vector_mut::<S>(self.partial, places[0]) = simd.add_f64s(a, b);
+            *vector_mut::<S>(self.partial, places[1]) = simd.add_f64s(c, d);
             let late = [simd.sub_f64s(a, b), simd.sub_f64s(c, d)];
             let late = times(simd, groups.modes.poles[mode], late);
             let old = times(simd, groups.powers[mode], [x, y]);
@@ -250,7 +250,7 @@ impl Pass<'_> {
                 *vector_mut::<S>(self.after, places[part]) = new;
             }
         }
-        *vector_mut::<S>(self.told, PARTS * width + column) = kept;
+        *vector_mut::<S>(self.partial, PARTS * width + column) = kept;
     }
 }
 
@@ -305,8 +305,8 @@ fn vector_mut<S: Simd>(values: &mut [f64], first: usize) -> &mut S::f64s {
 /// Backward pass of a group.
 struct Backwards<'a> {
     groups: &'a Groups,
-    told: &'a [f64],
-    behind: &'a mut [f64],
+    partial: &'a [f64],
+    after: &'a mut [f64],
     kept: Option<&'a mut [f64]>,
 }
 
@@ -315,16 +315,16 @@ impl WithSimd for Backwards<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        let width = self.behind.len() / PARTS;
+        let width = self.after.len() / PARTS;
         if let Some(kept) = &mut self.kept {
-            kept.copy_from_slice(&self.told[PARTS * width..]);
+            kept.copy_from_slice(&self.partial[PARTS * width..]);
         }
-        let told = self.told.chunks_exact(2 * width);
-        let modes = self.behind.chunks_exact_mut(2 * width).zip(told);
-        for ((mode, (behind, told)), power) in modes.enumerate().zip(&self.groups.powers) {
+        let partial = self.partial.chunks_exact(2 * width);
+        let modes = self.after.chunks_exact_mut(2 * width).zip(partial);
+        for ((mode, (after, partial)), power) in modes.enumerate().zip(&self.groups.powers) {
             let share = 2.0 * self.groups.modes.shares[mode];
-            let (real, imaginary) = behind.split_at_mut(width);
-            let (f, g) = told.split_at(width);
+            let (real, imaginary) = after.split_at_mut(width);
+            let (f, g) = partial.split_at(width);
             let (real, more) = S::as_mut_simd_f64s(real);
             let (imaginary, rest) = S::as_mut_simd_f64s(imaginary);
             let ((f, last), (g, end)) = (S::as_simd_f64s(f), S::as_simd_f64s(g));

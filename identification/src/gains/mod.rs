@@ -16,7 +16,7 @@
 //! - `noise`: noise of the drives' signals, from the residuals;
 //! - `solve`: generalised total least squares with exact columns W and w;
 //! - `deviations`: standard deviations of the gains;
-//! - `shares`: effect of their uncertainty on later estimates;
+//! - `uncertainty_propagation`: effect of their uncertainty on later estimates;
 //! - `result`: the result.
 
 mod deviations;
@@ -25,11 +25,11 @@ mod noise;
 mod observation;
 mod result;
 mod selection;
-mod shares;
 mod solve;
+mod uncertainty_propagation;
 
 pub use result::{DriveGain, Gains, JointParameter};
-pub(crate) use shares::drive_shares;
+pub(crate) use uncertainty_propagation::propagate_gain_uncertainty;
 
 use overact::Code;
 use overact::Model;

@@ -145,7 +145,7 @@ impl Extended {
         };
         let [own, x, y, z] = sets;
         Ok(Self {
-            own: picked(0, own.with_reversals(model, settings)?),
+            own: picked(0, own.with_friction_signs(model, settings)?),
             along: [picked(1, x), picked(2, y), picked(3, z)],
             random: random.select_columns(&kept),
             described: Vector3::from(fields.described),

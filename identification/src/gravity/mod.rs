@@ -19,7 +19,7 @@
 //! - `solve`: estimation of the direction;
 //! - `determined`: rotations that the torques determine;
 //! - `deviations`: covariance of the angles;
-//! - `shares`: effect of their uncertainty on parameters;
+//! - `uncertainty_propagation`: effect of their uncertainty on parameters;
 //! - `result`: the result.
 
 mod columns;
@@ -28,8 +28,8 @@ mod deviations;
 mod frame;
 mod observation;
 mod result;
-mod shares;
 mod solve;
+mod uncertainty_propagation;
 
 pub use result::GravityDirection;
 
@@ -47,8 +47,8 @@ use determined::free_turns;
 use deviations::covariance;
 use frame::Frame;
 use observation::Observer;
-use shares::Turned;
 use solve::solve;
+use uncertainty_propagation::Turned;
 
 /// Standard deviation of an angle from which on it is undetermined, rad.
 const UNDETERMINED: f64 = 0.2;
@@ -80,7 +80,8 @@ pub fn gravity_direction(
     let described = Vector3::from(fields.described);
     let Some(frame) = Frame::new(described) else {
         let message = "the direction of gravity is not determined: there is no gravity";
-        let help = "give the acceleration of gravity in the description, about where it points";
+        let help =
+            "give the acceleration of gravity and its approximate direction in the description";
         return Err(Problem::new(Code::GRAVITY_DIRECTION, message)
             .help(help)
             .into());
@@ -89,9 +90,9 @@ pub fn gravity_direction(
     let turns = free_turns(&extended, &frame, settings.seed);
     if turns.is_empty() {
         return Err(Problem::new(Code::GRAVITY_DIRECTION,
-            "the direction of gravity is not determined: wherever it points, parameters of the robot explain the same torques",
+            "the direction of gravity is not determined: for any direction, some parameters of the robot explain the torques",
         )
-        .help("leave out `gravity_direction`; offsets and moments take in what a tilt does")
+        .help("leave out `gravity_direction`; offsets and moments absorb a tilt")
         .into());
     }
     let frame = frame.confined(&turns);

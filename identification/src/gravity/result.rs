@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, Vector3};
 use serde::Serialize;
 
-use super::{frame::Frame, shares::Turned};
-use crate::regression::shares::Shares;
+use super::{frame::Frame, uncertainty_propagation::Turned};
+use crate::regression::uncertainty_propagation::PropagatedUncertainty;
 
 /// 95 % quantiles of chi-squared with one and with two degrees of freedom.
 const SIGNIFICANT: [f64; 2] = [3.841, 5.991];
@@ -98,8 +98,8 @@ impl GravityDirection {
     }
 
     /// Effect of its uncertainty on base parameters that keep the standard parameters `names`.
-    pub(crate) fn shares(&self, names: &[&str]) -> Shares {
-        self.turned.shares(names, &self.covariance)
+    pub(crate) fn propagated_uncertainty(&self, names: &[&str]) -> PropagatedUncertainty {
+        self.turned.propagated_uncertainty(names, &self.covariance)
     }
 
     /// Warnings to the user.
@@ -109,7 +109,7 @@ impl GravityDirection {
         let mut warnings = Vec::new();
         if self.significant {
             warnings.push(format!(
-                "gravity points {:.2} deg away from where the description has it, with a standard deviation of {:.2} deg: everything is identified with gravity = [{x}, {y}, {z}], which belongs into the description",
+                "gravity deviates by {:.2} deg from the description, with a standard deviation of {:.2} deg: all results use gravity = [{x}, {y}, {z}]; write it into the description",
                 self.tilt.to_degrees(),
                 self.tilt_deviation.to_degrees()
             ));
@@ -117,7 +117,7 @@ impl GravityDirection {
         if let Some(axis) = self.undetermined_about {
             let [x, y, z] = axis.map(|one| (one * 1e4).round() / 1e4);
             warnings.push(format!(
-                "the direction of gravity is determined in one direction only: turning it about [{x}, {y}, {z}] changes nothing that parameters do not explain",
+                "the direction of gravity is only partly determined: parameters explain a rotation about [{x}, {y}, {z}] equally well",
             ));
         }
         warnings

@@ -17,7 +17,7 @@ use crate::{
 
 /// Results on the validation runs.
 #[derive(Default)]
-pub(super) struct HeldOut {
+pub(super) struct ValidationRunResults {
     pub(super) validations: Vec<CrossValidation>,
     /// Number of the projection of each result.
     pub(super) owners: Vec<usize>,
@@ -77,7 +77,7 @@ pub(super) fn cross_validate(
     predictors: &[Predictor],
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
-) -> Result<HeldOut, Error> {
+) -> Result<ValidationRunResults, Error> {
     let observer = Observer {
         model,
         columns: &prepared.columns,
@@ -86,7 +86,7 @@ pub(super) fn cross_validate(
         settings,
     };
     let candidates: Vec<Candidate<'_>> = predictors.iter().map(Predictor::candidate).collect();
-    let mut held_out = HeldOut::default();
+    let mut results = ValidationRunResults::default();
     let (mut all, mut problems) = (Vec::new(), Vec::new());
     for log in runs {
         let run = log.name();
@@ -94,8 +94,8 @@ pub(super) fn cross_validate(
         match validate(&observer, log, &candidates, &report) {
             Ok(validated) => {
                 all.push((log.payload(), validated.validations));
-                held_out.motions.push(validated.motion);
-                held_out.watched.push(Watched {
+                results.motions.push(validated.motion);
+                results.watched.push(Watched {
                     monitor: validated.monitor,
                     closure_residual: validated.closure_residual,
                 });
@@ -107,13 +107,13 @@ pub(super) fn cross_validate(
     // In the order of the estimates, each on all runs.
     for (index, predictor) in predictors.iter().enumerate() {
         for (payload, validations) in &all {
-            held_out.add(predictor, *payload, &validations[index]);
+            results.add(predictor, *payload, &validations[index]);
         }
     }
-    Ok(held_out)
+    Ok(results)
 }
 
-impl HeldOut {
+impl ValidationRunResults {
     /// Adds the result of an estimate on a run.
     fn add(&mut self, own: &Predictor, payload: bool, validation: &Result<Validation, Error>) {
         match validation {

@@ -244,12 +244,12 @@ impl Context<'_> {
         base: &Estimation,
         settings: &Settings,
     ) -> (Option<Estimate>, ErrorsInRegressor) {
-        let companions = &self.prepared.companions;
-        let why = companions.missing.as_ref().map(ToString::to_string);
+        let instrument_runs = &self.prepared.instrument_runs;
+        let why = instrument_runs.missing.as_ref().map(ToString::to_string);
         let model = self.system.projection.model();
         let told = ErrorsInRegressor {
-            runs: companions.runs.clone(),
-            simulated: companions.simulated.clone(),
+            runs: instrument_runs.runs.clone(),
+            simulated: instrument_runs.simulated.clone(),
             ..ErrorsInRegressor::without(model, settings.instruments, why)
         };
         if self.system.instruments.is_empty() {
@@ -384,7 +384,10 @@ fn covariance_before(
     projection: usize,
     estimate: (&[usize], &[f64]),
 ) -> Option<DMatrix<f64>> {
-    prepared.shares.as_ref()?.covariance(projection, estimate)
+    prepared
+        .propagated_uncertainty
+        .as_ref()?
+        .covariance(projection, estimate)
 }
 
 /// Base parameters that the data separate, with their names; warns of the others.
@@ -440,7 +443,7 @@ fn nothing_moves(prepared: &Prepared, system: &System) -> Problem {
         .help("record runs in which the robot moves");
     }
     problem(format!(
-        "the data determine no parameter: `standstill_velocity` leaves out {still} of {} equations",
+        "the data determine no parameter: `standstill_velocity` skips {still} of {} equations",
         still + left
     ))
     .help("lower `standstill_velocity` of [identification], or check the unit of the positions, `position_scale` of [data]")
@@ -455,7 +458,7 @@ fn quality_warnings(system: &System, base: &Estimation) -> Vec<String> {
         && matches!(system.projection, Projection::Actuators(_))
     {
         warnings.push(format!(
-            "{label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or trust case 1",
+            "{label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or use case 1",
             partition.largest, partition.run, partition.time
         ));
     }

@@ -13,7 +13,7 @@ use overact::Code;
 
 /// Instruments of all runs.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Companions {
+pub(super) struct InstrumentRuns {
     /// A run of instruments for each run, or none at all.
     pub(super) logs: Vec<Log>,
     /// Periods of each run, for instruments from other periods.
@@ -24,7 +24,7 @@ pub(super) struct Companions {
     pub(super) missing: Option<Error>,
 }
 
-impl Companions {
+impl InstrumentRuns {
     /// Instruments of the runs.
     ///
     /// Either all runs have some or none, since a run without instruments has no equations for this
@@ -46,7 +46,7 @@ impl Companions {
         let mut found = Self::default();
         for log in runs {
             let own = log.instruments().ok_or_else(|| {
-                Problem::new(Code::INSTRUMENTS, "there is no simulated motion beside the run")
+                Problem::new(Code::INSTRUMENTS, "there is no simulated motion of the run")
                     .file(log.name())
                     .help("describe the robot's controller, or set `instruments` to \"periods\" or \"none\"")
             })?;

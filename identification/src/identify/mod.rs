@@ -34,9 +34,9 @@ use prepare::{check_runs, prepared_warnings};
 use crate::{
     assessment::{
         self, Context, Watched,
-        assumptions::{Found, assumptions, rests_on, unseen},
+        assumptions::{PreviouslyIdentified, assumptions, rests_on, unseen},
         check::{Check, Grade},
-        suspects::{Reach, scores},
+        hypotheses::{PositionRange, scores},
         verdict::verdicts,
     },
     data::Dataset,
@@ -94,7 +94,7 @@ pub fn identify_after(
     check_runs(model, dataset.validation, settings)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let mut prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
-    let found = Found {
+    let found = PreviouslyIdentified {
         gains: matches!(before, Before::Gains(_)),
         gravity: matches!(before, Before::Gravity(_)),
     };
@@ -125,21 +125,21 @@ pub fn identify_after(
     )?;
     warnings.extend(held_out.warnings);
     let cross_validation = held_out.validations;
-    let identified = prepared.seen.iter().map(|seen| Watched {
-        monitor: seen.monitor.clone(),
-        closure_residual: seen.closure_residual,
+    let identified = prepared.observations.iter().map(|observation| Watched {
+        monitor: observation.monitor.clone(),
+        closure_residual: observation.closure_residual,
     });
     let watched: Vec<Watched> = identified.chain(held_out.watched).collect();
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
     let scores_of = |(_, base): &(usize, Estimate), times: usize| {
         let columns = (&prepared.columns, prepared.base.columns.as_slice());
-        let reaches = reaches(&watched[..dataset.runs.len()]);
+        let position_ranges = position_ranges(&watched[..dataset.runs.len()]);
         let runs = (dataset.runs, dataset.variants);
         scores(
             model,
             runs,
             columns,
-            (base, &reaches),
+            (base, &position_ranges),
             (settings, &prepared.returns, times),
         )
     };
@@ -224,13 +224,13 @@ pub(crate) fn estimates_of(
 }
 
 /// Position ranges and speeds of the actuators in all runs.
-fn reaches(watched: &[Watched]) -> Vec<Reach> {
-    let of_run = |one: &Watched| -> Vec<Reach> {
+fn position_ranges(watched: &[Watched]) -> Vec<PositionRange> {
+    let of_run = |one: &Watched| -> Vec<PositionRange> {
         let bounds = one.monitor.bounds().into_iter();
         let speeds = one.monitor.speeds();
         bounds
             .zip(speeds)
-            .map(|((low, high), speed)| Reach { low, high, speed })
+            .map(|((low, high), speed)| PositionRange { low, high, speed })
             .collect()
     };
     let all = watched.iter().map(of_run);

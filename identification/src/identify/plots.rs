@@ -33,13 +33,13 @@ pub(super) fn figures(
     others: Vec<RunFigures>,
     settings: &Settings,
 ) -> Result<Figures, Error> {
-    let own = prepared.seen.iter().map(|seen| RunFigures {
+    let own = prepared.observations.iter().map(|observation| RunFigures {
         identified: true,
-        ..seen.figures.clone()
+        ..observation.figures.clone()
     });
     let mut predictions = Vec::new();
     for (projection, estimate) in estimates {
-        for run in 0..prepared.seen.len() {
+        for run in 0..prepared.observations.len() {
             predictions.push(prediction(model, prepared, run, *projection, estimate)?);
         }
     }
@@ -78,22 +78,23 @@ fn residual(
     let interval = settings.decimation as f64 / frequency;
     let (selected, values) = (estimate.columns(), estimate.values());
     let line = |line: usize| {
-        let runs = prepared
-            .seen
-            .iter()
-            .zip(&prepared.points)
-            .map(|(seen, points)| {
-                let rows = &points[projection][line];
-                let mut residual = rows.column(rows.ncols() - 1).clone_owned();
-                for (&column, value) in selected.iter().zip(&values) {
-                    residual.axpy(-value, &rows.column(column), 1.0);
-                }
-                ResidualSeries {
-                    run: seen.figures.run.clone(),
-                    time: seen.figures.time.clone(),
-                    residual: residual.iter().copied().collect(),
-                }
-            });
+        let runs =
+            prepared
+                .observations
+                .iter()
+                .zip(&prepared.points)
+                .map(|(observation, points)| {
+                    let rows = &points[projection][line];
+                    let mut residual = rows.column(rows.ncols() - 1).clone_owned();
+                    for (&column, value) in selected.iter().zip(&values) {
+                        residual.axpy(-value, &rows.column(column), 1.0);
+                    }
+                    ResidualSeries {
+                        run: observation.figures.run.clone(),
+                        time: observation.figures.time.clone(),
+                        residual: residual.iter().copied().collect(),
+                    }
+                });
         LineResidual {
             runs: runs.collect(),
             ..line_residual(system, line, &selected, &values, interval)
@@ -118,8 +119,8 @@ fn prediction(
 ) -> Result<PredictionFigures, Error> {
     let info = model.info();
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let seen = &prepared.seen[run];
-    let time = &seen.figures.time;
+    let observation = &prepared.observations[run];
+    let time = &observation.figures.time;
     let names = prepared.projections[projection].line_names(&info);
     let (selected, values) = (estimate.columns(), estimate.values());
     let lines: Vec<Series> = prepared.points[run][projection]
@@ -141,7 +142,13 @@ fn prediction(
         })
         .collect();
     let poses: Vec<f64> = (0..time.len())
-        .flat_map(|point| seen.figures.pose.iter().map(move |series| series[point]))
+        .flat_map(|point| {
+            observation
+                .figures
+                .pose
+                .iter()
+                .map(move |series| series[point])
+        })
         .collect();
     let mut jacobians = vec![0.0; time.len() * n * r];
     model
@@ -158,7 +165,7 @@ fn prediction(
         .collect();
     let points = jacobians
         .chunks_exact(n * r)
-        .zip(seen.torques.chunks_exact(n));
+        .zip(observation.torques.chunks_exact(n));
     for (point, (jacobian, measured)) in points.enumerate() {
         let inputs: Vec<f64> = lines.iter().map(|line| line.predicted[point]).collect();
         let predicted = distributed(&prepared.projections[projection], model, jacobian, &inputs);
@@ -170,7 +177,7 @@ fn prediction(
         }
     }
     Ok(PredictionFigures {
-        run: seen.figures.run.clone(),
+        run: observation.figures.run.clone(),
         identified: true,
         model: estimate.model,
         stage: estimate.stage,

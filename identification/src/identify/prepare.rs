@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use overact::Model;
 
-use super::{instruments::Companions, progress::Progress};
+use super::{instruments::InstrumentRuns, progress::Progress};
 use crate::{
     assessment,
     consistent::{Consistent, consistent},
@@ -16,17 +16,17 @@ use crate::{
         base::{BaseParameters, PayloadUse, base_parameters, payload_names},
         column_noise::ColumnNoise,
     },
-    gains::{Gains, drive_shares},
+    gains::{Gains, propagate_gain_uncertainty},
     gravity::GravityDirection,
     kinematics,
     prior::Prior,
     regression::{
         columns::ColumnSet,
         factor::Factor,
-        observation::{Observer, Seen},
+        observation::{Observer, RunObservation},
         projection::Projection,
-        shares::Shares,
         system::{Observed, System},
+        uncertainty_propagation::PropagatedUncertainty,
     },
     result::{Estimate, RunSummary},
     settings::{Settings, check_partition},
@@ -52,15 +52,15 @@ pub struct Prepared {
     /// The runs.
     pub runs: Vec<RunSummary>,
     /// Other results of the pass over each run.
-    pub(super) seen: Vec<Seen>,
+    pub(super) observations: Vec<RunObservation>,
     /// For each run and projection, the equations of each line at the plotted points.
     pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
     /// Instruments.
-    pub(super) companions: Companions,
+    pub(super) instrument_runs: InstrumentRuns,
     /// Periodic motion of each run, if it has one.
     pub(super) returns: Vec<Option<Return>>,
     /// Effect of the uncertainty of previous identifications.
-    pub(super) shares: Option<Shares>,
+    pub(super) propagated_uncertainty: Option<PropagatedUncertainty>,
 }
 
 impl Prepared {
@@ -77,11 +77,11 @@ impl Prepared {
             projections,
             systems,
             runs,
-            seen: Vec::new(),
+            observations: Vec::new(),
             points: Vec::new(),
-            companions: Companions::default(),
+            instrument_runs: InstrumentRuns::default(),
             returns: Vec::new(),
-            shares: None,
+            propagated_uncertainty: None,
         }
     }
 
@@ -99,7 +99,7 @@ impl Prepared {
             projections: &self.projections,
             settings,
         };
-        self.shares = Some(drive_shares(&observer, runs, gains)?);
+        self.propagated_uncertainty = Some(propagate_gain_uncertainty(&observer, runs, gains)?);
         Ok(self)
     }
 
@@ -129,7 +129,11 @@ impl Prepared {
         if sizes.pose != sizes.dof {
             return Vec::new();
         }
-        let runs = || self.seen.iter().map(|seen| &seen.figures);
+        let runs = || {
+            self.observations
+                .iter()
+                .map(|observation| &observation.figures)
+        };
         let names = runs()
             .next()
             .map_or(Vec::new(), |run| run.coordinates.clone());
@@ -150,7 +154,7 @@ impl Prepared {
         let all = self.columns.as_slice();
         let columns = self.base.columns.iter();
         let names: Vec<&str> = columns.map(|&index| all[index].name.as_str()).collect();
-        self.shares = Some(direction.shares(&names));
+        self.propagated_uncertainty = Some(direction.propagated_uncertainty(&names));
         self
     }
 
@@ -216,7 +220,7 @@ pub fn prepare(
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
     // Column relations belong to the model, reversals to the data.
-    let columns = columns.with_reversals(model, settings)?;
+    let columns = columns.with_friction_signs(model, settings)?;
     let observer = Observer {
         model,
         columns: &columns,
@@ -227,9 +231,9 @@ pub fn prepare(
     let new =
         |projection: &Projection| Ok(System::new(projection.clone(), &info, base.columns.len()));
     let mut systems: Vec<Result<System, Error>> = projections.iter().map(new).collect();
-    let (mut seen, mut points, mut problems) = (Vec::new(), Vec::new(), Vec::new());
-    let mut companions = Companions::new(runs, settings);
-    if !companions.logs.is_empty() {
+    let (mut observations, mut points, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    let mut instrument_runs = InstrumentRuns::new(runs, settings);
+    if !instrument_runs.logs.is_empty() {
         let with = |system: Result<System, Error>| system.map(System::with_instruments);
         systems = systems.into_iter().map(with).collect();
     }
@@ -238,31 +242,33 @@ pub fn prepare(
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
         let budget = LARGEST_STRETCHES / runs.len();
-        let both = (log, companions.of(number));
+        let both = (log, instrument_runs.of(number));
         let kept = (budget, returns[number]);
         match observer.run(number, both, kept, &report) {
             Ok((equations, told)) => {
-                companions.missing = companions.missing.or_else(|| told.unusable.clone());
-                seen.push(told);
+                instrument_runs.missing = instrument_runs.missing.or_else(|| told.unusable.clone());
+                observations.push(told);
                 points.push(add(&mut systems, equations));
             }
             Err(error) => problems.extend(assessment::explained(model, log, error).problems),
         }
     }
     Error::check(problems)?;
-    let runs = runs.iter().zip(&seen);
+    let runs = runs.iter().zip(&observations);
     Ok(Prepared {
-        runs: runs.map(|(log, seen)| RunSummary::new(log, seen)).collect(),
+        runs: runs
+            .map(|(log, observation)| RunSummary::new(log, observation))
+            .collect(),
         projections: projections.to_vec(),
         columns,
         base,
         payload,
         systems,
-        seen,
+        observations,
         points,
-        companions,
+        instrument_runs,
         returns,
-        shares: None,
+        propagated_uncertainty: None,
     })
 }
 
@@ -315,7 +321,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
         warnings.push(String::from(
             match prepared.columns.loads().len() {
                 0 | 1 => "the payload's parameters are not identifiable without unloaded runs: they are regrouped into the platform's",
-                _ => "no run is without payload: the parameters of one payload are regrouped into the robot's, those of the others are told less its own",
+                _ => "no run is without payload: the parameters of one payload are regrouped into the robot's, and those of the others are differences from it",
             },
         ));
     }
@@ -326,7 +332,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
             && !prepared.columns.has_load(name)
         {
             warnings.push(format!(
-                "{}: no run identified from carries the payload `{name}` of this cross-validation run: it is predicted without",
+                "{}: no training run carries the payload `{name}` of this validation run: it is predicted without",
                 other.name()
             ));
             continue;
@@ -338,7 +344,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
         };
         if !known {
             warnings.push(format!(
-                "{}: the cross-validation run {} the payload, unlike the runs identified from",
+                "{}: the validation run {} the payload, unlike the training runs",
                 other.name(),
                 if other.payload() {
                     "carries"
@@ -358,7 +364,7 @@ fn mostly_still(prepared: &Prepared) -> Option<String> {
     let left: usize = system.lines.iter().map(Factor::equations).sum();
     (still > left).then(|| {
         format!(
-            "{still} of {} equations are left out at standstill: check the unit of the positions, `position_scale` of [data], and `standstill_velocity` of [identification]",
+            "{still} of {} equations are skipped at standstill: check the unit of the positions, `position_scale` of [data], and `standstill_velocity` of [identification]",
             still + left
         )
     })

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     data::Dataset,
     error::Error,
-    estimation::essential::HeldOut,
+    estimation::essential::CrossValidationFolds,
     regression::{projection::Projection, system::PartitionCondition},
     result::{CrossValidation, Estimate, ParameterEstimate, Stage},
     settings::{Instruments, Settings},
@@ -221,9 +221,10 @@ fn held_out(prepared: &Prepared, number: usize, base: &Estimate) -> Option<f64> 
     let selected = base.columns();
     let system = |number: usize| prepared.systems.get(number)?.as_ref().ok();
     let (system, platform) = (system(number)?, system(0)?);
-    let own = HeldOut::new(system, &selected, &base.weights)?;
+    let own = CrossValidationFolds::new(system, &selected, &base.weights)?;
     // The test equations are not weighted.
-    let platform = HeldOut::new(platform, &selected, &vec![1.0; platform.lines.len()])?;
+    let platform =
+        CrossValidationFolds::new(platform, &selected, &vec![1.0; platform.lines.len()])?;
     own.error_percent_in(&platform, &selected)
 }
 
@@ -271,7 +272,7 @@ fn warning(row: &RankedProjection, platform: &RankedProjection) -> Option<String
         )
     };
     if row.relative_error_percent < platform.relative_error_percent {
-        text.push_str("; its relative error, lower than that of case 1, does not speak for it");
+        text.push_str("; its relative error below that of case 1 is no reason to use it");
     }
     Some(text)
 }

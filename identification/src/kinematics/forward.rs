@@ -13,8 +13,8 @@ use overact::{Function, Model, math::wrap_angle};
 use rayon::prelude::*;
 
 use super::conditioning::couples;
+use super::gauss_newton::refine_poses;
 use super::motion::outside;
-use super::settling::settle;
 use crate::{blocks::evaluate, data::Log, error::Error};
 
 /// Number of steps from the home pose to the first sample.
@@ -120,7 +120,7 @@ impl<'a> Forward<'a> {
         poses
             .par_chunks_mut(TOGETHER * size)
             .zip(positions.par_chunks(TOGETHER * n))
-            .try_for_each(|(poses, positions)| settle(self.model, positions, poses))?;
+            .try_for_each(|(poses, positions)| refine_poses(self.model, positions, poses))?;
         Some(poses)
     }
 

@@ -10,9 +10,9 @@ pub(crate) mod conditioning;
 mod dense;
 pub(crate) mod distribution;
 mod forward;
-mod known;
+mod gauss_newton;
+mod known_torques;
 mod motion;
-mod settling;
 mod stream;
 
 use overact::Code;
@@ -30,7 +30,7 @@ use crate::{
 
 use forward::Forward;
 pub(crate) use forward::approach;
-use known::KnownTorques;
+use known_torques::KnownTorques;
 pub use motion::Motion;
 use motion::outside;
 use stream::{Derivatives, Stream};
@@ -263,7 +263,7 @@ pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result
 fn cutoff_help(frequency: f64, cutoff: f64) -> String {
     let set = "`filter_cutoff` of [identification] about ten times the bandwidth of the motion";
     match time_of_sampling(frequency, cutoff) {
-        Some(slip) => format!("{}. Else give {set}", slip.advice()),
+        Some(unit_error) => format!("{}. Else give {set}", unit_error.advice()),
         None => format!("give {set}"),
     }
 }
@@ -278,7 +278,7 @@ fn short_help(log: &Log) -> String {
     if seconds < SHORT_RUN {
         let seconds = significant(seconds, 2);
         format!(
-            "{longer}; the run lasts {seconds} s: is the time in minutes? It has to be in seconds"
+            "{longer}; the run lasts {seconds} s: is the time in minutes? It must be in seconds"
         )
     } else {
         longer.to_owned()

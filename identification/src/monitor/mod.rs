@@ -1,6 +1,6 @@
 //! Statistics and plausibility of a run's raw numbers, collected while it is read.
 //!
-//! - `watch`: stuck encoders, lost samples, standstill;
+//! - `run_monitor`: stuck encoders, lost samples, standstill;
 //! - `position`: statistics of an actuator's positions;
 //! - `marks`: hashes of samples, to find repeated ones;
 //! - `peaks`: torques with flat peaks;
@@ -14,11 +14,11 @@ mod marks;
 mod peaks;
 mod position;
 mod roughness;
+mod run_monitor;
 mod statistics;
 mod suspicion;
 #[cfg(test)]
 mod tests;
-mod watch;
 
+pub(crate) use run_monitor::Monitor;
 pub(crate) use suspicion::{Suspicion, Trouble};
-pub(crate) use watch::Monitor;

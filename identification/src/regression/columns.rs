@@ -20,8 +20,8 @@ use std::cell::Cell;
 use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
 
 use super::{
+    collect_rows::collect_rows,
     friction::{Rate, friction_rates},
-    gathering::gathered,
 };
 use crate::{data::Load, error::Error, settings::Settings};
 use StandardParameter as P;
@@ -320,7 +320,11 @@ impl ColumnSet {
     ///
     /// # Errors
     /// A friction parameter whose rate cannot be recognised.
-    pub fn with_reversals(mut self, model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
+    pub fn with_friction_signs(
+        mut self,
+        model: &dyn Model,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
         let reversal = Reversal::new(settings);
         if reversal.band > 0.0 || reversal.averaged {
             let rates = friction_rates(model, settings.seed)?;
@@ -448,7 +452,7 @@ impl ColumnSet {
             (&payload[..], sizes.payload_parameters, load),
         ];
         let mut lines: Vec<Vec<f64>> = (0..sizes.dof)
-            .map(|line| gathered(&sources, (line, sizes.dof), (samples, width)))
+            .map(|line| collect_rows(&sources, (line, sizes.dof), (samples, width)))
             .collect();
         NUMBERS.set(robot);
         for (place, column) in columns().enumerate() {

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     elimination::residual,
-    turned::turned,
+    transpose::transpose,
     update::{update, update_by_triangle},
 };
 
@@ -70,7 +70,7 @@ impl Factor {
     pub(crate) fn push_rows(&mut self, rows: &[f64]) {
         let size = self.r.ncols();
         for rows in rows.chunks(self.worthwhile() * size) {
-            let block = turned(rows, size);
+            let block = transpose(rows, size);
             self.equations += block.nrows();
             self.sums += block.row_sum().transpose();
             self.absorb(block);

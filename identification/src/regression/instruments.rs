@@ -16,7 +16,7 @@ use crate::{
 ///
 /// Its positions correspond to those of a measured run sample by sample but do not have their
 /// errors. Its torques are not used.
-pub(crate) struct Companion<'a> {
+pub(crate) struct InstrumentRun<'a> {
     motions: Motions<'a>,
     /// Its motion at the current samples of the run.
     motion: Option<Motion>,
@@ -24,7 +24,7 @@ pub(crate) struct Companion<'a> {
     failed: Option<Error>,
 }
 
-impl<'a> Companion<'a> {
+impl<'a> InstrumentRun<'a> {
     /// Starts with the first sample, for a run of `samples` samples.
     ///
     /// # Errors
@@ -95,7 +95,7 @@ impl<'a> Companion<'a> {
         let own = own.ok_or_else(|| {
             Problem::new(
                 Code::INSTRUMENTS,
-                "the instruments are not in step with the run",
+                "the instruments are not synchronous with the run",
             )
         })?;
         Ok(own)

@@ -2,7 +2,7 @@
 //!
 //! - `columns`: columns of the model: standard parameters, payload, split friction;
 //! - `friction`, `states`: joint of each friction parameter, and random states to find it;
-//! - `gathering`: numbers of the model in rows;
+//! - `collect_rows`: numbers of the model in rows;
 //! - `chunk`, `observation`: successive samples as equations; the pass over a run;
 //! - `instruments`: equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
@@ -10,27 +10,27 @@
 //! - `fold`: mean equations of a periodic motion at each phase;
 //! - `projection`: projections of the inputs;
 //! - `points`: motion data for plots;
-//! - `shares`: effect of the uncertainty of previous identifications on estimates;
+//! - `uncertainty_propagation`: effect of the uncertainty of previous identifications on estimates;
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: linearly dependent columns;
-//! - `turned`: rows of numbers as a matrix.
+//! - `transpose`: rows of numbers as a matrix.
 
 pub(crate) mod chunk;
+mod collect_rows;
 pub(crate) mod columns;
 pub(crate) mod elimination;
 pub(crate) mod factor;
 pub(crate) mod fold;
 mod friction;
-mod gathering;
 mod instruments;
 pub(crate) mod observation;
 pub(crate) mod points;
 pub(crate) mod projection;
-pub(crate) mod shares;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;
-mod turned;
+mod transpose;
+pub(crate) mod uncertainty_propagation;
 mod update;
 
 pub(crate) use chunk::Chunk;

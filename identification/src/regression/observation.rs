@@ -12,7 +12,7 @@ use super::{
     chunk::{Chunk, projected},
     columns::ColumnSet,
     fold::Phases,
-    instruments::Companion,
+    instruments::InstrumentRun,
     points::Points,
     projection::Projection,
     sink::{LineSink, Plan, observed},
@@ -44,7 +44,7 @@ pub(crate) struct Observer<'a> {
 
 /// Other results of a pass over a run.
 #[derive(Debug, Clone)]
-pub(crate) struct Seen {
+pub(crate) struct RunObservation {
     /// Number of samples used.
     pub(crate) samples: usize,
     pub(crate) closure_residual: f64,
@@ -75,10 +75,11 @@ impl Observer<'_> {
         (log, instruments): (&Log, Option<&Log>),
         (budget, returns): (usize, Option<Return>),
         progress: &dyn Fn(usize, usize),
-    ) -> Result<(Vec<Result<Observed, Error>>, Seen), Error> {
+    ) -> Result<(Vec<Result<Observed, Error>>, RunObservation), Error> {
         let info = self.model.info();
-        let companion = |own| Companion::new(self.model, (own, log.samples()), self.settings);
-        let mut companion = instruments.map(companion).transpose()?;
+        let instrument_run =
+            |own| InstrumentRun::new(self.model, (own, log.samples()), self.settings);
+        let mut instrument_run = instruments.map(instrument_run).transpose()?;
         let mut motions = Motions::new(self.model, log, self.settings)?;
         let samples = motions.samples();
         let decimator = self
@@ -86,14 +87,14 @@ impl Observer<'_> {
             .decimator(self.settings.decimation, log.sampling_frequency())?;
         let (lines, n) = (info.sizes.dof, info.sizes.actuators);
         // Columns and Y, and instruments if there are some.
-        let width = self.base.len() * if companion.is_some() { 2 } else { 1 } + 1;
+        let width = self.base.len() * if instrument_run.is_some() { 2 } else { 1 } + 1;
         let equations = decimator.kept(samples);
         let plan = Plan::new(
             equations,
             budget / (lines * width * self.projections.len()).max(1),
         )
-        .returning(returns.and_then(|motion| Phases::new(motion, self.settings.decimation)));
-        let mut sinks = self.sinks(&plan, (&decimator, samples), companion.is_some())?;
+        .with_phases(returns.and_then(|motion| Phases::new(motion, self.settings.decimation)));
+        let mut sinks = self.sinks(&plan, (&decimator, samples), instrument_run.is_some())?;
         let mut torques = decimator.stream(info.sizes.actuators, samples)?;
         let mut decimated_torques = Vec::new();
         let mut points = Points::new(
@@ -108,7 +109,7 @@ impl Observer<'_> {
         let scales = home_scales(self.model);
         while let Some(motion) = motions.next()? {
             closure_residual = closure_residual.max(motion.closure_residual);
-            if let Some(own) = &mut companion {
+            if let Some(own) = &mut instrument_run {
                 own.advance(&motion);
             }
             let (blocks, mut conditions) = (motion.samples.div_ceil(BLOCK), Vec::new());
@@ -118,16 +119,16 @@ impl Observer<'_> {
                 let range = first..(first + together).min(blocks);
                 let told = (&scales[..], true);
                 let chunks = self.chunks_with(&motion, range.clone(), &mut failed, told)?;
-                let own = companion.as_mut();
+                let own = instrument_run.as_mut();
                 let own = own.map(|own| own.chunks(self, range, &scales));
-                let beside = own.unwrap_or_default();
+                let instrument_chunks = own.unwrap_or_default();
                 sinks.par_iter_mut().enumerate().for_each(|(index, sink)| {
                     let (projection, line) = (index / lines, index % lines);
                     if failed[projection].is_some() {
                         return;
                     }
                     for (place, chunk) in chunks.iter().enumerate() {
-                        let instruments = beside.get(place);
+                        let instruments = instrument_chunks.get(place);
                         let instruments = instruments.map(|own| &own.lines[projection][line][..]);
                         let velocities = motion.velocities.iter().copied();
                         let before = (first + place) * BLOCK * n;
@@ -144,7 +145,7 @@ impl Observer<'_> {
         }
         progress(log.samples(), log.samples());
         let partitions = points.partitions(self.projections);
-        let unusable = companion.and_then(Companion::into_failure);
+        let unusable = instrument_run.and_then(InstrumentRun::into_failure);
         let still = sinks.iter().filter_map(LineSink::left_out).collect();
         let mut sinks = sinks.into_iter();
         let system = |(failure, partition): (Option<Error>, _)| {
@@ -156,7 +157,7 @@ impl Observer<'_> {
             failure.map_or_else(|| Ok(observed), Err)
         };
         let systems = failed.into_iter().zip(partitions).map(system).collect();
-        let seen = Seen {
+        let observation = RunObservation {
             samples,
             closure_residual,
             still,
@@ -165,7 +166,7 @@ impl Observer<'_> {
             monitor: motions.into_monitor(),
             unusable,
         };
-        Ok((systems, seen))
+        Ok((systems, observation))
     }
 
     /// Sinks for the equations of a run, one for each line of each projection.

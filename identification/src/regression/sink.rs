@@ -6,7 +6,7 @@ use super::{
     factor::Factor,
     fold::{Fold, Phases},
     system::{Observed, Part, PartitionCondition, Stretch},
-    turned::turned,
+    transpose::transpose,
 };
 use crate::{error::Error, filters::Decimation, series::LARGEST_SERIES};
 
@@ -48,7 +48,7 @@ impl Plan {
     }
 
     /// Sets the phases of a periodic motion.
-    pub(crate) fn returning(self, phases: Option<Phases>) -> Self {
+    pub(crate) fn with_phases(self, phases: Option<Phases>) -> Self {
         Self { phases, ..self }
     }
 
@@ -328,11 +328,11 @@ pub(crate) fn observed(
         run,
         lines: sinks
             .iter()
-            .map(|sink| turned(&sink.stretches[stretch], width))
+            .map(|sink| transpose(&sink.stretches[stretch], width))
             .collect(),
         instruments: instruments
             .iter()
-            .map(|sink| turned(&sink.stretches[stretch], width - 1))
+            .map(|sink| transpose(&sink.stretches[stretch], width - 1))
             .collect(),
     };
     Observed {
@@ -342,7 +342,7 @@ pub(crate) fn observed(
         partition,
         points: sinks
             .iter()
-            .map(|sink| turned(&sink.points, width))
+            .map(|sink| transpose(&sink.points, width))
             .collect(),
         instruments: instruments.into_iter().map(|sink| sink.factor).collect(),
     }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::{data::Log, regression::observation::Seen};
+use crate::{data::Log, regression::observation::RunObservation};
 
 /// A training run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,15 +29,15 @@ pub struct RunSummary {
 
 impl RunSummary {
     /// Summary of a run.
-    pub(crate) fn new(log: &Log, seen: &Seen) -> Self {
+    pub(crate) fn new(log: &Log, observation: &RunObservation) -> Self {
         Self {
             name: log.name().to_owned(),
-            samples: seen.samples,
+            samples: observation.samples,
             sampling_frequency: log.sampling_frequency(),
             payload: log.payload(),
             payload_name: log.payload_name().map(str::to_owned),
-            closure_residual: seen.closure_residual,
-            standstill_equations: seen.still.clone(),
+            closure_residual: observation.closure_residual,
+            standstill_equations: observation.still.clone(),
         }
     }
 }

@@ -1,4 +1,4 @@
-use super::{Kinds, Powers, Quantity, Range, Slip, explanation, time_of_sampling};
+use super::{Kinds, Powers, Quantity, Range, UnitError, explanation, time_of_sampling};
 
 const BOTH: Kinds = Kinds {
     revolute: true,
@@ -42,7 +42,7 @@ fn quantities(sampling: f64, acceleration: f64, density: f64) -> Vec<Quantity> {
 }
 
 fn unit(quantities: &[Quantity], is_single: bool) -> Option<&'static str> {
-    explanation(quantities, BOTH, is_single).map(|slip: &Slip| slip.unit)
+    explanation(quantities, BOTH, is_single).map(|unit_error: &UnitError| unit_error.unit)
 }
 
 #[test]
@@ -88,7 +88,8 @@ fn drives_share_their_time() {
 
 #[test]
 fn a_sampling_frequency_below_the_filters_names_the_unit_of_time() {
-    let unit = |frequency, cutoff| time_of_sampling(frequency, cutoff).map(|slip| slip.unit);
+    let unit =
+        |frequency, cutoff| time_of_sampling(frequency, cutoff).map(|unit_error| unit_error.unit);
     assert_eq!(unit(2.0, 100.0), Some("milliseconds"));
     assert_eq!(unit(0.002, 100.0), Some("microseconds"));
     assert_eq!(unit(2e-6, 100.0), Some("nanoseconds"));

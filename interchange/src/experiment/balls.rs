@@ -1,12 +1,6 @@
 //! Successive angles and rates of ball joints, and of universal joints at rods.
 
-use crate::{
-    assembly::{
-        motion::State,
-        network::{Edge, Network},
-    },
-    model::Kind,
-};
+use crate::assembly::{motion::State, network::Network};
 use nalgebra::{DMatrix, Matrix3, Rotation3, Unit, Vector3};
 
 /// A ball joint as in the description: successive rotations, the first about a fixed axis of its
@@ -26,11 +20,13 @@ pub(super) struct Ball {
 }
 
 impl Ball {
-    /// Ball joint of an edge traversed from one group to another, with axes at home.
+    /// Ball joint from one group to another, with axes at home.
+    ///
+    /// `None` if there are neither two nor three axes.
     pub(super) fn new(
         network: &Network<'_>,
-        edge: &Edge,
-        [from, to]: [usize; 2],
+        from: usize,
+        to: usize,
         axes: &[Vector3<f64>],
         before: &[(usize, Self)],
     ) -> Option<Self> {
@@ -38,8 +34,7 @@ impl Ball {
             .iter()
             .find(|(_, own)| own.to == from && own.line.is_some());
         let line = (axes.len() == 2).then(|| network.line(to, &network.states[0]));
-        let is_ball = edge.kind == Kind::Ball && (2..=3).contains(&axes.len());
-        is_ball.then(|| Self {
+        (2..=3).contains(&axes.len()).then(|| Self {
             from,
             to,
             axes: axes.to_vec(),

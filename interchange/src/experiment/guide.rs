@@ -199,7 +199,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             Vec::new()
         } else {
             vec![format!(
-                "Home stands on a limit of {}, which these runs pass: `overact import --home` starts elsewhere.",
+                "Home is at a limit of {}, which these runs exceed: change home with `overact import --home`.",
                 names.join(", ")
             )]
         }
@@ -220,7 +220,7 @@ fn balls(network: &Network<'_>, layout: &Layout, plan: &Plan) -> Option<Vec<(usi
         };
         let own: Vec<_> = axes.by_ref().take(count).copied().collect();
         if edge.kind == Kind::Ball {
-            let ball = Ball::new(network, edge, [from, to], &own, &balls)?;
+            let ball = Ball::new(network, from, to, &own, &balls)?;
             balls.push((index, ball));
         }
     }

@@ -3,7 +3,7 @@
 //! Each z axis is a joint axis; each x axis is the common normal to the next joint axis. Most of
 //! the six constants are then zero.
 
-use super::step::{NEARLY, PARALLEL, Step, feet};
+use super::step::{Line, NEARLY, PARALLEL, Step, feet};
 use crate::model::Pose;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
@@ -156,7 +156,15 @@ fn placed(node: &Node, before: &Pose, next: &Next) -> Pose {
         Next::Line {
             point, direction, ..
         } => {
-            let (own, other) = feet((node.point, z), (*point, *direction));
+            let axis = Line {
+                point: node.point,
+                direction: z,
+            };
+            let next = Line {
+                point: *point,
+                direction: *direction,
+            };
+            let (own, other) = feet(axis, next);
             let x = (other - own).try_normalize(1e-9);
             let x = x.filter(|x| x.dot(&z).abs() < 1e-6).and_then(across);
             let origin = if node.is_prismatic { foot } else { own };
@@ -199,7 +207,15 @@ fn incoming(node: &Node, before: &Pose) -> (Point3<f64>, Vector3<f64>) {
         let x = across(foot - start).or_else(|| across(x_before));
         return (foot, x.unwrap_or_else(|| any_across(&z)));
     }
-    let (_, foot) = feet((start, z_before), (point, z));
+    let before = Line {
+        point: start,
+        direction: z_before,
+    };
+    let axis = Line {
+        point,
+        direction: z,
+    };
+    let (_, foot) = feet(before, axis);
     let normal = normal.normalize();
     let x = if normal.dot(&x_before) < -1e-9 {
         -normal

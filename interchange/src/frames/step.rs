@@ -118,11 +118,18 @@ pub(crate) fn round(angle: f64) -> f64 {
     fifteenths(angle, 1e-12).map_or(angle, |k| k as f64 * PI / 12.0)
 }
 
+/// Line in space, as a joint axis.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    pub(crate) point: Point3<f64>,
+    /// Unit vector.
+    pub(crate) direction: Vector3<f64>,
+}
+
 /// Feet of the common normal of two lines that are not parallel.
-pub(crate) fn feet(
-    (p, u): (Point3<f64>, Vector3<f64>),
-    (q, w): (Point3<f64>, Vector3<f64>),
-) -> (Point3<f64>, Point3<f64>) {
+pub(crate) fn feet(first: Line, second: Line) -> (Point3<f64>, Point3<f64>) {
+    let (p, u) = (first.point, first.direction);
+    let (q, w) = (second.point, second.direction);
     let (between, c) = (q - p, u.dot(&w));
     let denominator = 1.0 - c * c;
     let s = (between.dot(&u) - c * between.dot(&w)) / denominator;

@@ -78,7 +78,8 @@ fn of_geoms(
                     Shape::Body(own) => (Some(own.seen(offset)), false),
                     Shape::Empty => (None, false),
                     Shape::Unknown => {
-                        let reason = "the inertia of this shape is not computed: the body's has no value here";
+                        let reason =
+                            "the inertia of this shape is not computed: the body's is unknown here";
                         let place = &child.place;
                         reader
                             .files
@@ -129,8 +130,8 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
         return Shape::Unknown;
     };
     let mass = mass.unwrap_or(density * volume);
-    let frame = match geom.numbers::<6>(files, "fromto") {
-        Some(ends) => between(ends).0,
+    let frame = match Segment::of_geom(files, geom) {
+        Some(segment) => segment.frame(),
         None => {
             let frame = reader.compiler.frame(files, geom);
             Pose::from_parts(frame.translation, exact::cleaned(&frame.rotation))
@@ -143,9 +144,7 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
 fn solid(reader: &Reader<'_>, geom: &Element, kind: &str) -> Option<(f64, Vector3<f64>)> {
     let files: &Files = reader.files;
     let size = geom.list(files, "size").unwrap_or_default();
-    let length = geom
-        .numbers::<6>(files, "fromto")
-        .map(|ends| between(ends).1);
+    let length = Segment::of_geom(files, geom).map(|segment| segment.length());
     let at = |index: usize| size.get(index).copied();
     let radius = at(0)?;
     // With `fromto`, x and y use the first size.
@@ -206,13 +205,33 @@ fn capsule(radius: f64, height: f64) -> (f64, Vector3<f64>) {
     (volume, Vector3::new(across, across, along))
 }
 
-/// Frame at the midpoint of two points with z along them, and their distance.
-fn between([ax, ay, az, bx, by, bz]: [f64; 6]) -> (Pose, f64) {
-    let (from, to) = (Vector3::new(ax, ay, az), Vector3::new(bx, by, bz));
-    let along = to - from;
-    let turned = Rotation3::rotation_between(&Vector3::z(), &along);
-    let turned = turned.unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), PI));
-    let middle = 0.5 * (from + to);
-    let frame = Pose::from_parts(middle.into(), exact::cleaned(&turned));
-    (frame, along.norm())
+/// Line segment that a geom's `fromto` gives.
+struct Segment {
+    from: Vector3<f64>,
+    to: Vector3<f64>,
+}
+
+impl Segment {
+    /// Segment of a geom; `None` without `fromto`.
+    fn of_geom(files: &Files, geom: &Element) -> Option<Self> {
+        let [ax, ay, az, bx, by, bz] = geom.numbers(files, "fromto")?;
+        Some(Self {
+            from: Vector3::new(ax, ay, az),
+            to: Vector3::new(bx, by, bz),
+        })
+    }
+
+    /// Frame at the midpoint with z along the segment.
+    fn frame(&self) -> Pose {
+        let along = self.to - self.from;
+        let turned = Rotation3::rotation_between(&Vector3::z(), &along);
+        let turned = turned.unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), PI));
+        let middle = 0.5 * (self.from + self.to);
+        Pose::from_parts(middle.into(), exact::cleaned(&turned))
+    }
+
+    /// Distance between the ends.
+    fn length(&self) -> f64 {
+        (self.to - self.from).norm()
+    }
 }

@@ -41,16 +41,23 @@ pub(super) fn read(files: &Files, element: &Element, open: &[PathBuf]) -> Includ
     let Some(path) = beneath(uri, open) else {
         return Included::Elsewhere(uri.to_owned(), place.clone());
     };
-    let found = included(files, element, &path, open, (uri, place));
-    found.map_or(Included::Error, |(model, source)| {
-        Included::Model(model, source)
-    })
+    let include = Include {
+        element,
+        uri,
+        place,
+        open,
+    };
+    include
+        .model(files, &path)
+        .map_or(Included::Error, |(model, source)| {
+            Included::Model(model, source)
+        })
 }
 
 /// Reports an error for a URI that is not read.
 pub(super) fn refuse(files: &Files, uri: &str, place: &Place) {
     let message = format!("`{uri}` is not read: only files in the robot's own folder are");
-    let help = "put the model beside this file and write its path from here, or write it out: `gz sdf -p FILE` does";
+    let help = "put the model next to this file and write its relative path, or expand it with `gz sdf -p FILE`";
     files.report(place, message, help);
 }
 
@@ -83,42 +90,49 @@ fn beneath(uri: &str, open: &[PathBuf]) -> Option<PathBuf> {
     }
 }
 
-fn included(
-    files: &Files,
-    element: &Element,
-    path: &Path,
-    open: &[PathBuf],
-    (uri, place): (&str, &Place),
-) -> Option<(Box<Element>, Source)> {
-    let real = |path: &Path| path.canonicalize().ok();
-    let is_open = |other: &PathBuf| real(other).is_some_and(|other| real(path) == Some(other));
-    if open.iter().any(is_open) {
-        let message = format!("`{uri}` includes itself in the end");
-        files.report(place, message, "take one of the includes out");
-        return None;
+/// An `<include>` element with its URI.
+struct Include<'a> {
+    element: &'a Element,
+    uri: &'a str,
+    /// Location of the URI in the file.
+    place: &'a Place,
+    /// Open files; the last one contains the element.
+    open: &'a [PathBuf],
+}
+
+impl Include<'_> {
+    /// Reads the model from the file at `path`; `None` after an error.
+    fn model(&self, files: &Files, path: &Path) -> Option<(Box<Element>, Source)> {
+        let real = |path: &Path| path.canonicalize().ok();
+        let is_open = |other: &PathBuf| real(other).is_some_and(|other| real(path) == Some(other));
+        if self.open.iter().any(is_open) {
+            let message = format!("`{}` includes itself", self.uri);
+            files.report(self.place, message, "remove one of the includes");
+            return None;
+        }
+        if files.count() > FILES {
+            let message = format!("more than {FILES} files are included");
+            files.report(self.place, message, "describe the robot in fewer files");
+            return None;
+        }
+        let file = files.read(path, Some(self.place))?;
+        let mut root = xml::parse(files, file)?;
+        keep_honoured(files, &SDF, &mut root);
+        bounds::check_elements(files, &root)?;
+        let version = version(files, &root)?;
+        let mut models = root.all("model");
+        let (Some(model), None) = (models.next(), models.next()) else {
+            let message = "an included file has one <model>";
+            files.report(&root.place, message, "put one model into a file");
+            return None;
+        };
+        let source = Source {
+            version,
+            from: Some(path.to_owned()),
+            is_merged: matches!(self.element.get("merge"), Some("true" | "1")),
+        };
+        Some((Box::new(changed(model.clone(), self.element)), source))
     }
-    if files.count() > FILES {
-        let message = format!("more than {FILES} files are included");
-        files.report(place, message, "describe the robot in fewer files");
-        return None;
-    }
-    let file = files.read(path, Some(place))?;
-    let mut root = xml::parse(files, file)?;
-    keep_honoured(files, &SDF, &mut root);
-    bounds::check_elements(files, &root)?;
-    let version = version(files, &root)?;
-    let mut models = root.all("model");
-    let (Some(model), None) = (models.next(), models.next()) else {
-        let message = "an included file has one <model>";
-        files.report(&root.place, message, "put one model into a file");
-        return None;
-    };
-    let source = Source {
-        version,
-        from: Some(path.to_owned()),
-        is_merged: matches!(element.get("merge"), Some("true" | "1")),
-    };
-    Some((Box::new(changed(model.clone(), element)), source))
 }
 
 /// Applies the name, pose and other overrides of the `<include>` to the model.

@@ -104,10 +104,10 @@ pub(super) fn capital(text: &str) -> String {
 /// Largest number of decimals of a value beyond those of its interval.
 const MOST_MORE: usize = 3;
 
-/// Value and interval, rounded by the interval's width: `0.044641` and `0.044570 … 0.044712`.
+/// Value and interval, rounded by the interval's width.
 ///
-/// The interval is `None` if unknown.
-pub(super) fn with_interval(value: f64, [low, high]: [f64; 2]) -> (String, Option<String>) {
+/// An example is `0.044641` and `0.044570 … 0.044712`. The interval is `None` if unknown.
+pub(super) fn with_interval(value: f64, low: f64, high: f64) -> (String, Option<String>) {
     let half = 0.5 * (high - low);
     let known = value.is_finite() && half.is_finite() && half > 0.0;
     if !known {
@@ -163,8 +163,8 @@ mod tests {
 
     #[test]
     fn a_value_is_rounded_by_its_interval() {
-        let both = |value, interval| {
-            let (value, interval) = with_interval(value, interval);
+        let both = |value, [low, high]: [f64; 2]| {
+            let (value, interval) = with_interval(value, low, high);
             format!("{value} in {}", interval.unwrap_or_default())
         };
         assert_eq!(

@@ -59,7 +59,8 @@ impl Axis {
     pub(super) fn scale(
         &self,
         values: impl Iterator<Item = f64>,
-        (from, to): (f64, f64),
+        from: f64,
+        to: f64,
         count: usize,
         tight: bool,
     ) -> Scale {
@@ -76,7 +77,7 @@ impl Axis {
             }
         }
         let (low, high, ticks) = match self.kind {
-            Kind::Linear => linear(low, high, (count, least_step), tight),
+            Kind::Linear => linear(low, high, count, least_step, tight),
             Kind::Logarithmic => logarithmic(low, high, count),
         };
         Scale {
@@ -122,7 +123,8 @@ impl Scale {
 fn linear(
     low: f64,
     high: f64,
-    (count, least_step): (usize, f64),
+    count: usize,
+    least_step: f64,
     tight: bool,
 ) -> (f64, f64, Vec<(f64, String)>) {
     let (mut low, mut high) = if low <= high { (low, high) } else { (0.0, 1.0) };
@@ -229,7 +231,7 @@ mod tests {
     use super::{Axis, scientific};
 
     fn labels(axis: &Axis, values: &[f64]) -> Vec<String> {
-        let scale = axis.scale(values.iter().copied(), (0.0, 100.0), 5, false);
+        let scale = axis.scale(values.iter().copied(), 0.0, 100.0, 5, false);
         scale.ticks.into_iter().map(|(_, label)| label).collect()
     }
 
@@ -264,7 +266,7 @@ mod tests {
                 vec![1e-300, 1e140],
                 vec![-1e308, 1e308],
             ] {
-                let scale = axis.scale(values.iter().copied(), (0.0, 100.0), 5, false);
+                let scale = axis.scale(values.iter().copied(), 0.0, 100.0, 5, false);
                 assert!(scale.ticks.len() < 60, "{values:?}");
                 for value in &values {
                     if let Some(place) = scale.at(*value) {
@@ -277,9 +279,9 @@ mod tests {
 
     #[test]
     fn values_lie_where_they_belong() {
-        let linear = Axis::linear("x").scale([0.0, 10.0].into_iter(), (0.0, 100.0), 5, true);
+        let linear = Axis::linear("x").scale([0.0, 10.0].into_iter(), 0.0, 100.0, 5, true);
         assert_eq!(linear.at(2.5), Some(25.0));
-        let log = Axis::logarithmic("x").scale([1.0, 100.0].into_iter(), (0.0, 100.0), 5, false);
+        let log = Axis::logarithmic("x").scale([1.0, 100.0].into_iter(), 0.0, 100.0, 5, false);
         assert!(
             log.at(10.0)
                 .is_some_and(|place| (place - 50.0).abs() < 1e-9)

@@ -189,11 +189,15 @@ impl Chart {
             own.map(|rule| rule.value)
         };
         let places = points().map(|point| point.0).chain(rules(true));
-        let x = self.x.scale(places, (left, right), 6, true);
+        let x = self.x.scale(places, left, right, 6, true);
         let heights = points().map(|point| point.1).chain(rules(false));
-        let y = self.y.scale(heights, (bottom, top), 5, false);
-        let above = self.above();
-        let mut svg = opening((WIDTH, HEIGHT, above), &self.title, &self.description);
+        let y = self.y.scale(heights, bottom, top, 5, false);
+        let size = PlotSize {
+            width: WIDTH,
+            height: HEIGHT,
+            above: self.above(),
+        };
+        let mut svg = opening(size, &self.title, &self.description);
         svg.push_str(&self.axes(&x, &y));
         let across = |rule: &&Rule| !rule.is_vertical;
         for rule in &self.rules {
@@ -268,17 +272,22 @@ impl Chart {
     }
 }
 
-/// Opening tag of a plot with extra height `above`, and names for assistive technology.
-pub(super) fn opening(
-    (width, height, above): (f64, f64, f64),
-    title: &str,
-    description: &str,
-) -> String {
+/// Size of a plot in SVG units.
+#[derive(Clone, Copy)]
+pub(super) struct PlotSize {
+    pub(super) width: f64,
+    pub(super) height: f64,
+    /// Extra height above the plot.
+    pub(super) above: f64,
+}
+
+/// Opening tag of a plot, and names for assistive technology.
+pub(super) fn opening(size: PlotSize, title: &str, description: &str) -> String {
     format!(
         "<svg class=\"plot\" viewBox=\"0 {} {} {}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\" aria-label=\"{}: {}\"><title>{}</title>",
-        short(-above),
-        short(width),
-        short(height + above),
+        short(-size.above),
+        short(size.width),
+        short(size.height + size.above),
         escape(title),
         escape(description),
         escape(description)
@@ -456,10 +465,10 @@ mod tests {
     fn a_title_that_leaves_no_room_for_the_unit_has_a_line_of_its_own() {
         let mut chart = chart(vec![(0.0, 1.0), (1.0, 10.0)]);
         assert!(chart.svg().contains("viewBox=\"0 0 400 230\""));
-        chart.title = String::from("Residual of the held-out run beside others");
+        chart.title = String::from("Residual of the validation run and of others");
         let svg = chart.svg();
         assert!(svg.contains("viewBox=\"0 -15 400 245\""), "{svg}");
-        assert!(svg.contains("y=\"0\">Residual of the held-out run beside others</text>"));
+        assert!(svg.contains("y=\"0\">Residual of the validation run and of others</text>"));
     }
 
     #[test]

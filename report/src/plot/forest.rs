@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::{
     WIDTH,
     axis::{Axis, Scale},
-    chart::{Look, opening},
+    chart::{Look, PlotSize, opening},
     short,
 };
 use crate::text::{escape, fitted};
@@ -75,10 +75,15 @@ impl Forest {
     pub(crate) fn svg(&self) -> String {
         let bars = self.rows.iter().flat_map(|(_, bars)| bars);
         let ends = bars.flat_map(Bar::values);
-        let x = self.x.scale(ends, (LEFT, RIGHT), 5, false);
+        let x = self.x.scale(ends, LEFT, RIGHT, 5, false);
         let height: f64 = self.rows.iter().map(|(_, bars)| row_height(bars)).sum();
         let bottom = HEAD + height;
-        let mut svg = opening((WIDTH, bottom + FOOT, 0.0), &self.title, &self.description);
+        let size = PlotSize {
+            width: WIDTH,
+            height: bottom + FOOT,
+            above: 0.0,
+        };
+        let mut svg = opening(size, &self.title, &self.description);
         svg.push_str(&self.axes(&x, bottom));
         let mut top = HEAD;
         for (name, bars) in &self.rows {

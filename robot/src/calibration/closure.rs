@@ -117,7 +117,7 @@ impl ChangedMechanism<'_> {
         let twists: Vec<DVector<f64>> = motion
             .twist()
             .into_iter()
-            .map(|coordinate| counted(end_velocity(coordinate, arm), rows))
+            .map(|coordinate| EndMotion::unit_twist(coordinate, arm).components(rows))
             .collect();
         let moves: Vec<DVector<f64>> = self
             .described
@@ -126,7 +126,11 @@ impl ChangedMechanism<'_> {
             .map(|own| {
                 let own = (own.leg == index).then_some(own.length);
                 let way = own.map(|length| end_miss(leg, length, &frames, platform));
-                counted((way.unwrap_or_default(), Vector3::zeros()), rows)
+                let motion = EndMotion {
+                    linear: way.unwrap_or_default(),
+                    angular: Vector3::zeros(),
+                };
+                motion.components(rows)
             })
             .collect();
         let by_twist = jacobian.solve(&DMatrix::from_columns(&twists))?;
@@ -135,27 +139,43 @@ impl ChangedMechanism<'_> {
     }
 }
 
-/// Constrained components of a motion (velocity, angular velocity).
-fn counted((linear, angular): (Vector3<f64>, Vector3<f64>), rows: &[usize]) -> DVector<f64> {
-    let parts = [linear, angular];
-    let values = rows.iter().map(|row| parts[row / 3][row % 3]);
-    DVector::from_iterator(rows.len(), values)
+/// Displacement or velocity of a leg's end.
+struct EndMotion {
+    linear: Vector3<f64>,
+    angular: Vector3<f64>,
+}
+
+impl EndMotion {
+    /// Motion of a platform point at `arm` from the origin for a unit twist coordinate.
+    fn unit_twist(coordinate: TwistCoordinate, arm: Vector3<f64>) -> Self {
+        let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+        match coordinate {
+            TwistCoordinate::Linear(axis) => Self {
+                linear: unit(axis),
+                angular: Vector3::zeros(),
+            },
+            TwistCoordinate::Angular(axis) => Self {
+                linear: unit(axis).cross(&arm),
+                angular: unit(axis),
+            },
+        }
+    }
+
+    /// Components in the constrained rows.
+    fn components(&self, rows: &[usize]) -> DVector<f64> {
+        let parts = [self.linear, self.angular];
+        let values = rows.iter().map(|row| parts[row / 3][row % 3]);
+        DVector::from_iterator(rows.len(), values)
+    }
 }
 
 /// Closure residual of a leg, in the constrained components.
 fn miss(rows: &[usize], last: &Isometry3<f64>, target: &Isometry3<f64>) -> DVector<f64> {
-    let linear = target.translation.vector - last.translation.vector;
-    let angular = (target.rotation * last.rotation.inverse()).scaled_axis();
-    counted((linear, angular), rows)
-}
-
-/// Motion of a platform point at `arm` from the origin for a unit twist coordinate.
-fn end_velocity(coordinate: TwistCoordinate, arm: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-    let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
-    match coordinate {
-        TwistCoordinate::Linear(axis) => (unit(axis), Vector3::zeros()),
-        TwistCoordinate::Angular(axis) => (unit(axis).cross(&arm), unit(axis)),
-    }
+    let motion = EndMotion {
+        linear: target.translation.vector - last.translation.vector,
+        angular: (target.rotation * last.rotation.inverse()).scaled_axis(),
+    };
+    motion.components(rows)
 }
 
 /// ∂f/∂p: derivative of the closure residual with respect to a length.

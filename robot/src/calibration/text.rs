@@ -63,7 +63,7 @@ pub(super) fn calibrated(
     }
     if calibration.offsets().iter().any(|offset| *offset != 0.0) {
         offsets(&mut document, robot, calibration)
-            .ok_or_else(|| problem("`[data]` is no table"))?;
+            .ok_or_else(|| problem("`[data]` is not a table"))?;
     }
     Ok(heading(calibration) + &document.to_string())
 }
@@ -81,9 +81,7 @@ fn heading(calibration: &Calibration) -> String {
         )
     };
     let lines: String = calibration.estimated.iter().map(line).collect();
-    format!(
-        "# Calibrated from the closure of the loops; added to what was described before:\n{lines}\n"
-    )
+    format!("# Calibrated from the closure of the loops; added to the described values:\n{lines}\n")
 }
 
 fn signed(one: &CalibratedParameter) -> String {

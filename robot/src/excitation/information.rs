@@ -17,15 +17,20 @@ use std::collections::BTreeMap;
 /// Ridge on normalised information; a parameter without information then has a finite cost.
 const RIDGE: f64 = 1e-8;
 
+/// Noise and sampling frequency of the measured torques.
+pub(super) struct TorqueMeasurement {
+    /// Standard deviation of each actuator's torque noise, N m or N.
+    pub(super) noise: Vec<f64>,
+    /// Frequency at which torques are measured, Hz.
+    pub(super) sampling: f64,
+}
+
 /// Criterion by which runs are judged.
 pub(super) struct Question {
     columns: ColumnSet,
     base: BaseParameters,
     projections: Vec<Projection>,
-    /// Standard deviation of each actuator's torque noise, N m or N.
-    noise: Vec<f64>,
-    /// Frequency at which torques are measured, Hz.
-    sampling: f64,
+    measurement: TorqueMeasurement,
     /// Values of the base parameters, if known.
     values: Vec<Option<f64>>,
     /// Normalisation factors of the parameters.
@@ -57,7 +62,7 @@ impl Question {
         frames: &[Frame],
         settings: &Settings,
         truth: Option<&BTreeMap<String, f64>>,
-        (noise, sampling): (Vec<f64>, f64),
+        measurement: TorqueMeasurement,
     ) -> Result<Self, Error> {
         let loaded = frames.iter().filter(|frame| frame.payload).count();
         let payload = match loaded {
@@ -71,13 +76,12 @@ impl Question {
             settings.asymmetric_friction,
             settings.seed,
         )?
-        .with_reversals(bench.model, settings)?;
+        .with_friction_signs(bench.model, settings)?;
         let base = base_parameters(bench.model, &columns, payload, settings.seed)?;
         let sizes = bench.info.sizes;
         if sizes.actuators < sizes.dof {
             let message = "the robot has fewer actuators than coordinates";
-            let help =
-                "exciting runs are searched for robots whose actuators drive all coordinates";
+            let help = "the search for exciting runs requires that actuators drive all coordinates";
             return Err(Problem::new(Code::EXCITATION, message).help(help).into());
         }
         let projections = if sizes.actuators == sizes.dof {
@@ -94,8 +98,7 @@ impl Question {
             scales: vec![normal; projections.len()],
             columns,
             projections,
-            noise,
-            sampling,
+            measurement,
             values: values.unwrap_or_default(),
             base,
         })
@@ -129,7 +132,7 @@ impl Question {
                 picked,
             )
             .ok()?;
-        let weight = frame.duration * self.sampling / course.samples as f64;
+        let weight = frame.duration * self.measurement.sampling / course.samples as f64;
         let of = |projection: &Projection| match projection.kept(&bench.info) {
             None => Some(self.sum(&lines, &self.platform_noise(bench, course), weight)),
             Some(kept) => {
@@ -159,7 +162,7 @@ impl Question {
         for (row, noise) in course
             .jacobian
             .chunks_exact(r)
-            .zip(self.noise.iter().cycle())
+            .zip(self.measurement.noise.iter().cycle())
         {
             for (sum, entry) in sums.iter_mut().zip(row) {
                 *sum += (entry * noise).powi(2) / course.samples as f64;
@@ -195,7 +198,7 @@ impl Question {
                 }
             }
             for (a, variance) in variances.iter_mut().enumerate() {
-                for (row, noise) in jacobian.chunks_exact(r).zip(&self.noise) {
+                for (row, noise) in jacobian.chunks_exact(r).zip(&self.measurement.noise) {
                     let share: f64 = (0..r).map(|line| inverse[(line, a)] * row[line]).sum();
                     *variance += (share * noise).powi(2) / course.samples as f64;
                 }

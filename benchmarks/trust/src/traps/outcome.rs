@@ -230,7 +230,7 @@ fn honest(
 fn is_stated(result: &Identification, (kind, name, size): (CheckKind, (&str, &str), f64)) -> bool {
     let found = looked_for(result, (kind, name));
     found.is_some_and(|(check, one)| {
-        check.passed && one.moves > LARGEST_ERROR && size.abs() <= one.size
+        check.passed && one.shift_deviations > LARGEST_ERROR && size.abs() <= one.size
     })
 }
 

@@ -37,7 +37,8 @@ impl std::convert::From<Problem> for Lack {
 pub(super) fn inputs(
     robot: &InterpretedRobot,
     program: &Program,
-    (from, parameters): (MotionInput, GivenParameters),
+    from: MotionInput,
+    parameters: GivenParameters,
     states: &States,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut gatherer = Gatherer {
@@ -86,7 +87,7 @@ fn lacking(at: usize, missing: &[String], states: &States, takes: &[String]) -> 
         help += "; `--parameters FILE` gives those of all states";
     }
     let missing = quoted(&mut missing.iter().map(String::as_str));
-    let message = format!("missing {missing}; the state holds {held}");
+    let message = format!("missing {missing}; the state has {held}");
     states.problem(at, &message).help(help)
 }
 

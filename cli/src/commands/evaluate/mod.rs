@@ -38,10 +38,10 @@ pub(crate) struct Arguments {
     /// `pose[0],pose[1]`; `-` is stdin
     #[arg(long, value_name = "FILE")]
     states: PathBuf,
-    /// What to evaluate from [default: what the states hold]
+    /// Inputs to evaluate from [default: those of the states]
     #[arg(long, value_enum)]
     from: Option<Source>,
-    /// Which columns an identification model has, or which parameters dynamics take [default: standard]
+    /// Columns of an identification model, or parameters of dynamics [default: standard]
     #[arg(long, value_enum)]
     columns: Option<ColumnsOf>,
     /// Kept actuators of case 2 [default: those of the description]
@@ -128,7 +128,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         }
         None => GivenParameters::default(),
     };
-    let values = evaluate(&robot, &program, (from, given), &states)?;
+    let values = evaluate(&robot, &program, from, given, &states)?;
     let width = program.entries.len();
     let rows = (0..states.len()).map(|at| &values[at * width..(at + 1) * width]);
     let shape = program.output.shape.clone();
@@ -215,10 +215,11 @@ impl GivenParameters {
 fn evaluate(
     robot: &InterpretedRobot,
     program: &Program,
-    (from, parameters): (MotionInput, GivenParameters),
+    from: MotionInput,
+    parameters: GivenParameters,
     states: &States,
 ) -> Result<Vec<f64>, Failure> {
-    let inputs = gather::inputs(robot, program, (from, parameters), states)?;
+    let inputs = gather::inputs(robot, program, from, parameters, states)?;
     let rows: Vec<Rows<'_>> = inputs
         .iter()
         .map(|values| Rows {

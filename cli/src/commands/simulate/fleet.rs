@@ -103,7 +103,8 @@ struct Made {
 /// A folder that is not empty, numbers out of range, or runs that fail.
 pub(super) fn run(
     arguments: &Arguments,
-    (robot, experiment): (&Robot, &VirtualExperiment<'_>),
+    robot: &Robot,
+    experiment: &VirtualExperiment<'_>,
     folder: &Path,
     as_json: bool,
 ) -> Result<(), Failure> {
@@ -133,7 +134,7 @@ pub(super) fn run(
     for day in 0..arguments.days {
         for (file, members) in work.members.chunks(ROBOTS_OF_A_FILE).enumerate() {
             if arguments.factors {
-                work.factors((day, file), members, &mut made)?
+                work.factors(day, file, members, &mut made)?
             } else {
                 work.logs(day, members, &mut made)?
             }
@@ -190,7 +191,7 @@ fn new_folder(folder: &Path) -> Result<(), Failure> {
         Failure::from(problem.help("give the name of a new folder"))
     };
     std::fs::create_dir_all(folder)
-        .map_err(|error| refuse(format!("the folder can't be made: {error}")))?;
+        .map_err(|error| refuse(format!("the folder can't be created: {error}")))?;
     let mut entries = std::fs::read_dir(folder)
         .map_err(|error| refuse(format!("the folder can't be read: {error}")))?;
     match entries.next() {
@@ -233,7 +234,8 @@ impl Work<'_> {
 
     fn factors(
         &self,
-        (day, file): (usize, usize),
+        day: usize,
+        file: usize,
         members: &[Member],
         made: &mut Made,
     ) -> Result<(), Failure> {

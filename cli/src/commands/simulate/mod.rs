@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// run goes to stdout
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
-    /// Make only this run (again for others)
+    /// Simulate only this run (repeat for others)
     #[arg(long = "run", value_name = "RUN")]
     runs: Vec<String>,
     /// Standard parameters of the virtual robot [default: the description's]
@@ -78,7 +78,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.fleet.fleet.is_some() {
         let folder = arguments.output.as_deref().unwrap_or(Path::new("."));
         warn(experiment.without_effect(), as_json);
-        return fleet::run(&arguments.fleet, (&robot, &experiment), folder, as_json);
+        return fleet::run(&arguments.fleet, &robot, &experiment, folder, as_json);
     }
     let files = files(experiment.plan(), output::file(arguments.output.as_ref()))?;
     let outputs: Vec<&Path> = files.iter().flatten().map(PathBuf::as_path).collect();
@@ -90,7 +90,9 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let records = experiment.records(&|fraction, run| bar.at(fraction, run))?;
     drop(bar);
     let logs = records.iter().map(csv).collect::<Result<Vec<_>, _>>()?;
-    let summaries: Vec<Summary> = records.iter().zip(&files).map(summary).collect();
+    let summaries: Vec<Summary> = { records.iter().zip(&files) }
+        .map(|(record, file)| summary(record, file.as_deref()))
+        .collect();
     let document = serde_json::json!({ "robot": robot.model().info().name, "runs": summaries });
     if files.iter().all(Option::is_none) && !as_json {
         let text = logs
@@ -139,7 +141,8 @@ fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<Pa
     let runs = &experiment.runs;
     let Some(output) = output else {
         if runs.len() > 1 {
-            let message = "several runs need files to be written to: add `-o log.csv`, or choose one with `--run`";
+            let message =
+                "several runs need output files: add `-o log.csv`, or choose one with `--run`";
             return Err(Failure::Usage(message.to_owned()));
         }
         return Ok(vec![None; runs.len()]);
@@ -183,10 +186,11 @@ fn csv(record: &Record) -> Result<Vec<u8>, Problem> {
     Ok(log)
 }
 
-fn summary((record, file): (&Record, &Option<PathBuf>)) -> Summary {
+/// Summary of a run and the file of its log.
+fn summary(record: &Record, file: Option<&Path>) -> Summary {
     Summary {
         name: record.name.clone(),
-        file: file.as_ref().map(|file| file.display().to_string()),
+        file: file.map(|file| file.display().to_string()),
         payload: record.payload,
         samples: record.time.len(),
         sampling_hz: record.sampling_hz,

@@ -2,13 +2,13 @@
 
 use super::{
     Context,
+    fault_hypotheses::{harm, only, parabola},
     level::{level, origin},
-    suspected::{harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::Suspect,
+        hypotheses::FaultHypothesis,
     },
     error::Error,
     significant,
@@ -22,39 +22,39 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let found = only(scores, Suspect::Clock);
+    let found = only(scores, FaultHypothesis::Clock);
     let level = level(1);
     let checks = found.iter().map(|one| {
-        let accused = &one.accused;
+        let wald = &one.wald;
         let percent = |value: f64| significant(100.0 * value, 3);
         let check = Check::new(CheckKind::Clock, About::Model, "")
-            .measured(accused.size().abs() / accused.deviation, "standard deviations")
-            .against(accused.quantile(level), origin(1))
-            .detecting(vec![one.detectable((context, scores), (String::new(), ""), accused.visible(level))])
+            .measured(wald.size().abs() / wald.deviation, "standard deviations")
+            .against(wald.quantile(level), origin(1))
+            .detecting(vec![one.detectable((context, scores), (String::new(), ""), wald.visible(level))])
             .shown_by(parabola(
-                accused,
+                wald,
                 "Residual for other sampling frequencies",
                 ("error of the sampling frequency", "%", 100.0),
             ));
-        if accused.probability >= level {
+        if wald.probability >= level {
             let words = format!(
-                "the sampling frequency agrees with the model; an error of {} % would have been seen",
-                percent(accused.visible(level))
+                "the sampling frequency agrees with the model; the detection limit is {} %",
+                percent(wald.visible(level))
             );
             return Check { words, ..check };
         }
         let harm = harm(context, scores, one);
-        let sense = if accused.size() > 0.0 { "high" } else { "low" };
-        let deviation = percent(accused.deviation);
-        let words = if accused.size().abs() > LARGEST { format!(
-                "gravity and motion do not go together in the torques, as if the sampling frequency were far too {sense}; {}. Check the time column and its unit, `gravity` of the description, and whether the log has the whole torques: with a compensation of gravity that the drive adds",
+        let sense = if wald.size() > 0.0 { "high" } else { "low" };
+        let deviation = percent(wald.deviation);
+        let words = if wald.size().abs() > LARGEST { format!(
+                "gravity and motion are inconsistent in the torques, as if the sampling frequency were far too {sense}; {}. Check the time column and its unit, `gravity` of the description, and whether the log contains the complete torques, including any gravity compensation by the drive",
                 harm.words()
             ) } else { format!(
                 "the sampling frequency looks {} % too {sense} (standard deviation {deviation} %); {}. Check the time column and its unit",
-                percent(accused.size().abs()),
+                percent(wald.size().abs()),
                 harm.words()
             ) };
-        Check { words, ..check }.because(&harm)
+        Check { words, ..check }.with_harm(&harm)
     });
     Ok(checks.collect())
 }

@@ -2,13 +2,13 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, parabola, tested, worst_harm},
     level::{level, origin},
-    suspected::{Tested, parabola, tested, worst_harm},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::{Group, Scores, Suspect},
+        hypotheses::{FaultHypothesis, Group, Scores},
     },
     error::Error,
     significant,
@@ -32,13 +32,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let mut whose = Vec::new();
     let mut found: Vec<Tested> = Vec::new();
-    for (place, suspect) in scores.suspects.iter().enumerate() {
-        let actuator = match *suspect {
-            Suspect::Delay => None,
-            Suspect::Late(actuator) => Some(actuator),
+    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
+        let actuator = match *hypothesis {
+            FaultHypothesis::Delay => None,
+            FaultHypothesis::DriveDelay(actuator) => Some(actuator),
             _ => continue,
         };
-        for one in tested(scores, std::iter::once(Group::suspect(place))) {
+        for one in tested(scores, std::iter::once(Group::hypothesis(place))) {
             whose.push(actuator);
             found.push(one);
         }
@@ -47,27 +47,28 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let intervals = context.dataset.runs.iter();
     let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
     let harmless = intervals.fold(0.0, f64::max);
-    let beyond = |one: &&Tested| one.accused.probability_beyond(harmless) < level;
-    let guilty = found.iter().filter(beyond);
-    let guilty = guilty.max_by(|a, b| a.accused.explained.total_cmp(&b.accused.explained));
-    let Some(shown) = guilty.or(found.first()) else {
+    let beyond = |one: &&Tested| one.wald.probability_beyond(harmless) < level;
+    let most_significant = found.iter().filter(beyond);
+    let most_significant =
+        most_significant.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained));
+    let Some(shown) = most_significant.or(found.first()) else {
         return Ok(Vec::new());
     };
-    let told = Told {
+    let limits = TestLimits {
         tests: found.len(),
         level,
         harmless,
     };
-    let check = told.check((context, scores), shown);
-    let accused = &shown.accused;
-    let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
+    let check = limits.check((context, scores), shown);
+    let wald = &shown.wald;
+    let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
     let number = |value: f64| significant(value, 3);
-    if guilty.is_none() {
+    if most_significant.is_none() {
         let words = format!(
-            "torques and motion are of the same time: {} ± {} ms; a delay of {} ms would have been seen",
+            "torques and motion are synchronous: delay {} ± {} ms; the detection limit is {} ms",
             number(size),
             number(deviation),
-            number(1e3 * (harmless + accused.visible(level)))
+            number(1e3 * (harmless + wald.visible(level)))
         );
         return Ok(vec![Check { words, ..check }]);
     }
@@ -76,19 +77,19 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let name = actuator.and_then(|actuator| context.model.info().actuators.get(actuator));
     let harm = worst_harm(context, scores, (&found, shown), level);
     let whose = name.map_or_else(
-        || String::from("the torques come"),
-        |name| format!("the torque of `{name}` alone comes"),
+        || String::from("the torques are"),
+        |name| format!("only the torque of `{name}` is"),
     );
     let paces = scores.paces();
     let fastest = paces.iter().flatten().map(|pace| pace.frequency);
-    let is_far = accused.size().abs() * fastest.fold(0.0, f64::max) > LARGEST;
+    let is_far = wald.size().abs() * fastest.fold(0.0, f64::max) > LARGEST;
     let by = if is_far {
         String::from("far")
     } else {
         format!("{} ms", number(size.abs()))
     };
     let words = format!(
-        "{whose} {by} {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no key shifts them: {}or give the two their own times in two files",
+        "{whose} {by} {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no TOML key shifts them: {}or log the two with their own times in two files",
         if size > 0.0 { "behind" } else { "before" },
         number(deviation),
         harm.words(),
@@ -98,7 +99,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             format!("{}, ", shifted(size, context))
         }
     );
-    let check = Check { words, ..check }.because(&harm);
+    let check = Check { words, ..check }.with_harm(&harm);
     Ok(vec![match name {
         Some(name) => check.of_actuator(name),
         None => check,
@@ -127,23 +128,23 @@ fn shifted(delay: f64, context: &Context<'_>) -> String {
 }
 
 /// Number of tests, level and threshold of the delay tests.
-struct Told {
+struct TestLimits {
     tests: usize,
     level: f64,
     /// Harmless delay, s.
     harmless: f64,
 }
 
-impl Told {
+impl TestLimits {
     /// The check of one delay, without words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
-        let accused = &one.accused;
-        let [size, deviation] = [accused.size(), accused.deviation].map(|s| 1e3 * s);
+        let wald = &one.wald;
+        let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
         let beyond = (size.abs() - 1e3 * self.harmless).max(0.0);
         Check::new(CheckKind::Delay, About::Model, "")
             .measured(beyond / deviation, "standard deviations")
             .against(
-                accused.quantile(self.level),
+                wald.quantile(self.level),
                 format!(
                     "{}, of what exceeds {HARMLESS} sampling intervals",
                     origin(self.tests)
@@ -152,10 +153,10 @@ impl Told {
             .detecting(vec![one.detectable(
                 of,
                 (String::new(), "s"),
-                self.harmless + accused.visible(self.level),
+                self.harmless + wald.visible(self.level),
             )])
             .shown_by(parabola(
-                accused,
+                wald,
                 "Residual for torques that are shifted in time",
                 ("delay of the torques", "ms", 1e3),
             ))

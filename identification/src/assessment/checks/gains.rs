@@ -2,13 +2,13 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, most_significant, parabola, tested, worst_harm},
     level::{level, origin},
-    suspected::{Tested, guilty, parabola, tested, worst_harm},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Detectable},
-        suspects::{Group, Scores, Suspect},
+        hypotheses::{FaultHypothesis, Group, Scores},
     },
     error::Error,
     significant,
@@ -25,11 +25,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let names = context.model.info().actuators;
     let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
     let (mut actuators, mut found, mut untold) = (Vec::new(), Vec::new(), Vec::new());
-    for (place, suspect) in scores.suspects.iter().enumerate() {
-        let Suspect::Gain(actuator) = *suspect else {
+    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
+        let FaultHypothesis::Gain(actuator) = *hypothesis else {
             continue;
         };
-        match tested(scores, std::iter::once(Group::suspect(place))).pop() {
+        match tested(scores, std::iter::once(Group::hypothesis(place))).pop() {
             Some(one) => {
                 actuators.push(actuator);
                 found.push(one);
@@ -38,29 +38,27 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         }
     }
     if found.is_empty() {
-        return Ok(none_told(names).into_iter().collect());
+        return Ok(none_separable(names).into_iter().collect());
     }
     let level = level(found.len() + untold.len());
     let told = actuators.iter().zip(&found).map(|(actuator, one)| {
         let own = (name(*actuator).to_owned(), "");
-        one.detectable((context, scores), own, one.accused.visible(level))
+        one.detectable((context, scores), own, one.wald.visible(level))
     });
     let hidden = untold
         .iter()
         .map(|actuator| Detectable::never(name(*actuator)));
     let detectable: Vec<Detectable> = told.chain(hidden).collect();
-    let worst = guilty(&found, level);
+    let worst = most_significant(&found, level);
     let said = worst.map_or_else(
-        || innocent(&found, &detectable),
+        || passed_check(&found, &detectable),
         |worst| {
             let place = found.iter().position(|one| std::ptr::eq(one, worst));
             let actuator = place.map_or("", |place| name(actuators[place]));
-            unlike((context, scores), (&found, worst), actuator, level)
+            failed_check((context, scores), (&found, worst), actuator, level)
         },
     );
-    let limit = worst
-        .or(found.first())
-        .map(|one| one.accused.quantile(level));
+    let limit = worst.or(found.first()).map(|one| one.wald.quantile(level));
     let count = found.len() + untold.len();
     Ok(vec![
         said.against(limit.unwrap_or_default(), origin(count))
@@ -74,7 +72,7 @@ fn percent(value: f64) -> String {
 }
 
 /// The passed check, with its detection limits.
-fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
+fn passed_check(found: &[Tested], detectable: &[Detectable]) -> Check {
     let visible: Vec<String> = detectable
         .iter()
         .map(|one| {
@@ -88,45 +86,45 @@ fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
     let which = if detectable.iter().all(|one| one.size.is_finite()) {
         "no drive"
     } else {
-        "no drive of which these data tell"
+        "no testable drive"
     };
     let words = format!(
-        "{which} has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",
+        "{which} has a gain that differs from the others'; detection limits of an error of one drive: {}",
         visible.join(", ")
     );
     let largest = found
         .iter()
-        .map(|one| one.accused.size().abs() / one.accused.deviation)
+        .map(|one| one.wald.size().abs() / one.wald.deviation)
         .fold(0.0, f64::max);
     Check::new(CheckKind::WrongGain, About::Model, words).measured(largest, "standard deviations")
 }
 
 /// The failed check of one drive.
-fn unlike(
+fn failed_check(
     (context, scores): (&Context<'_>, &Scores),
     (found, worst): (&[Tested], &Tested),
     actuator: &str,
     level: f64,
 ) -> Check {
     let harm = worst_harm(context, scores, (found, worst), level);
-    let size = worst.accused.size();
+    let size = worst.wald.size();
     let by = match size {
         // The first-order test has no valid size for large errors.
-        size if size.abs() > LARGEST => String::from("unlike"),
-        size if size < 0.0 => format!("{} % too small beside", percent(-size)),
-        size => format!("{} % too large beside", percent(size)),
+        size if size.abs() > LARGEST => String::from("differently from"),
+        size if size < 0.0 => format!("{} % too small compared with", percent(-size)),
+        size => format!("{} % too large compared with", percent(size)),
     };
     let words = format!(
-        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant, its gear ratio and whether it is filtered unlike the others",
-        percent(worst.accused.deviation),
+        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant, its gear ratio and whether it is filtered differently from the others",
+        percent(worst.wald.deviation),
         harm.words()
     );
     Check::new(CheckKind::WrongGain, About::Model, words)
         .of_actuator(actuator)
-        .measured(size.abs() / worst.accused.deviation, "standard deviations")
-        .because(&harm)
+        .measured(size.abs() / worst.wald.deviation, "standard deviations")
+        .with_harm(&harm)
         .shown_by(parabola(
-            &worst.accused,
+            &worst.wald,
             &format!("Residual for other gains of {actuator}"),
             ("error of the gain", "%", 100.0),
         ))
@@ -135,8 +133,8 @@ fn unlike(
 /// The check if no gain can be separated from the drive's own parameters.
 ///
 /// A single drive has only a common gain, so there is no check.
-fn none_told(names: &[&str]) -> Option<Check> {
-    let words = "nothing in these data tells whether the gain of one drive is unlike the others'";
+fn none_separable(names: &[&str]) -> Option<Check> {
+    let words = "these data cannot test whether the gain of one drive differs from the others'";
     let check = || Check::new(CheckKind::WrongGain, About::Model, words);
     let never = names.iter().map(|name| Detectable::never(name)).collect();
     (names.len() > 1).then(|| check().detecting(never))

@@ -8,8 +8,8 @@
 //! answers encoder noise. That effect falls with the seventh power of the bandwidth. A filter has
 //! the same size in every band that it passes.
 
-use super::{Context, suspected::only};
-use crate::{assessment::suspects::Suspect, error::Error};
+use super::{Context, fault_hypotheses::only};
+use crate::{assessment::hypotheses::FaultHypothesis, error::Error};
 
 /// Fraction of the size that must remain in half the band if there is a filter.
 const LEFT: f64 = 0.5;
@@ -17,7 +17,11 @@ const LEFT: f64 = 0.5;
 /// Whether a fault of `size` is also found in half the band.
 ///
 /// True if half the band cannot be tested.
-pub(super) fn confirms(context: &Context<'_>, suspect: Suspect, size: f64) -> Result<bool, Error> {
+pub(super) fn confirms(
+    context: &Context<'_>,
+    hypothesis: FaultHypothesis,
+    size: f64,
+) -> Result<bool, Error> {
     let Some(narrow) = (context.narrow)()? else {
         return Ok(true);
     };
@@ -27,10 +31,10 @@ pub(super) fn confirms(context: &Context<'_>, suspect: Suspect, size: f64) -> Re
     {
         return Ok(true);
     }
-    let Some(one) = only(&narrow, suspect) else {
+    let Some(one) = only(&narrow, hypothesis) else {
         return Ok(true);
     };
-    Ok(remains(size, one.accused.size()))
+    Ok(remains(size, one.wald.size()))
 }
 
 /// Whether enough of the size remains in half the band.

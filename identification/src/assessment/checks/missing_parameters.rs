@@ -4,16 +4,16 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Harm, Tested, harm, most_significant, tested, worst_harm},
     level::{level, origin},
-    suspected::{Harm, Tested, guilty, harm, tested, worst_harm},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Grade},
         evidence::{Axis, Curve, Evidence},
-        suspects::{Group, Scores, Shape, Suspect},
+        hypotheses::{FaultHypothesis, Group, Scores, Shape},
     },
-    called::called,
+    display_names::called,
     error::Error,
     significant,
 };
@@ -23,20 +23,23 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let (suspects, found) = all_tested(scores);
+    let (hypotheses, found) = all_tested(scores);
     if found.is_empty() {
         return Ok(Vec::new());
     }
     let (tests, level) = (found.len(), level(found.len()));
-    let ratio = |one: &Tested| one.accused.strength();
-    let worst = guilty(&found, level);
-    let limit = worst.unwrap_or(&found[0]).accused.quantile(level);
-    let check = Check::new(CheckKind::MissingParameter, About::Model, "")
-        .shown_by(evidence(&suspects, &found, limit));
+    let ratio = |one: &Tested| one.wald.strength();
+    let worst = most_significant(&found, level);
+    let limit = worst.unwrap_or(&found[0]).wald.quantile(level);
+    let check = Check::new(CheckKind::MissingParameter, About::Model, "").shown_by(evidence(
+        &hypotheses,
+        &found,
+        limit,
+    ));
     let Some(worst) = worst else {
         let largest = found.iter().map(ratio).fold(0.0, f64::max);
         let words = format!(
-            "what is left unexplained depends on no velocity, acceleration, position or time that the model lacks ({tests} columns tried)"
+            "the residual depends on no further function of velocity, acceleration, position or time ({tests} columns tested)"
         );
         return Ok(vec![
             Check { words, ..check }
@@ -47,23 +50,23 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let place = found.iter().position(|one| std::ptr::eq(one, worst));
     let place = place.unwrap_or(0);
     let mut harm = worst_harm(context, scores, (&found, worst), level);
-    let others = others((context, scores), (&suspects, &found, place), level);
+    let others = others((context, scores), (&hypotheses, &found, place), level);
     for (_, other) in &others {
         harm.with(context, other);
     }
     let rest = format!(
         "which explains {} % of the residual's square; {}{}",
-        significant(100.0 * worst.accused.explained, 2),
+        significant(100.0 * worst.wald.explained, 2),
         harm.words(),
         too(&others)
     );
-    let words = words(context, suspects[place], worst, rest);
+    let words = words(context, hypotheses[place], worst, rest);
     let check = Check { words, ..check }
         .measured(ratio(worst), "standard deviations")
         .against(limit, origin(tests))
-        .because(&harm);
-    let actuator = match suspects[place].0 {
-        Suspect::Torque(actuator, _) => context.model.info().actuators.get(actuator),
+        .with_harm(&harm);
+    let actuator = match hypotheses[place].0 {
+        FaultHypothesis::Torque(actuator, _) => context.model.info().actuators.get(actuator),
         _ => None,
     };
     Ok(vec![match actuator {
@@ -73,45 +76,47 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 }
 
 /// All testable torque and force hypotheses, with their shapes.
-fn all_tested(scores: &Scores) -> (Vec<(Suspect, Shape)>, Vec<Tested>) {
-    let (mut suspects, mut found) = (Vec::new(), Vec::new());
-    for (place, suspect) in scores.suspects.iter().enumerate() {
-        if let Suspect::Torque(_, shape) | Suspect::Force(_, shape) = *suspect {
-            for one in tested(scores, std::iter::once(Group::suspect(place))) {
-                suspects.push((*suspect, shape));
+fn all_tested(scores: &Scores) -> (Vec<(FaultHypothesis, Shape)>, Vec<Tested>) {
+    let (mut hypotheses, mut found) = (Vec::new(), Vec::new());
+    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
+        if let FaultHypothesis::Torque(_, shape) | FaultHypothesis::Force(_, shape) = *hypothesis {
+            for one in tested(scores, std::iter::once(Group::hypothesis(place))) {
+                hypotheses.push((*hypothesis, shape));
                 found.push(one);
             }
         }
     }
-    (suspects, found)
+    (hypotheses, found)
 }
 
 /// Describes the strongest hypothesis; `rest` is the consequence.
 fn words(
     context: &Context<'_>,
-    (suspect, shape): (Suspect, Shape),
+    (hypothesis, shape): (FaultHypothesis, Shape),
     worst: &Tested,
     rest: String,
 ) -> String {
     let info = context.model.info();
-    let (what, name) = match suspect {
-        Suspect::Force(line, _) => ("force on", info.coordinates.get(line)),
-        Suspect::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
+    let (what, name) = match hypothesis {
+        FaultHypothesis::Force(line, _) => ("force on", info.coordinates.get(line)),
+        FaultHypothesis::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
         _ => ("", None),
     };
-    let told = Told {
+    let finding = Finding {
         what: format!("{what} {}", called(name.copied().unwrap_or_default())),
-        size: worst.accused.largest(),
-        strength: worst.accused.strength(),
+        size: worst.wald.largest(),
+        strength: worst.wald.strength(),
         rest,
     };
-    match suspect {
-        Suspect::Torque(actuator, Shape::Stribeck) => told.near_standstill(context, actuator),
-        Suspect::Torque(actuator, _) => {
-            let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
-            told.words(shape, shape.unit(revolute))
+    match hypothesis {
+        FaultHypothesis::Torque(actuator, Shape::Stribeck) => {
+            finding.near_standstill(context, actuator)
         }
-        _ => told.words(shape, ""),
+        FaultHypothesis::Torque(actuator, _) => {
+            let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
+            finding.words(shape, shape.unit(revolute))
+        }
+        _ => finding.words(shape, ""),
     }
 }
 
@@ -120,25 +125,25 @@ fn words(
 /// If all drives share a fault, chance decides which of them has the strongest result.
 fn others(
     (context, scores): (&Context<'_>, &Scores),
-    (suspects, found, worst): (&[(Suspect, Shape)], &[Tested], usize),
+    (hypotheses, found, worst): (&[(FaultHypothesis, Shape)], &[Tested], usize),
     level: f64,
 ) -> Vec<(String, Harm)> {
     let info = context.model.info();
-    let place = |suspect: Suspect| match suspect {
-        Suspect::Torque(actuator, _) => (0, actuator),
-        Suspect::Force(line, _) => (1, line),
+    let place = |hypothesis: FaultHypothesis| match hypothesis {
+        FaultHypothesis::Torque(actuator, _) => (0, actuator),
+        FaultHypothesis::Force(line, _) => (1, line),
         _ => (2, 0),
     };
-    let mut places: Vec<(usize, usize)> = suspects.iter().map(|(one, _)| place(*one)).collect();
+    let mut places: Vec<(usize, usize)> = hypotheses.iter().map(|(one, _)| place(*one)).collect();
     let own = places[worst];
     places.sort_unstable();
     places.dedup();
     places.retain(|one| *one != own);
     let worst_of = |at: (usize, usize)| {
-        let all = suspects.iter().zip(found);
-        let beyond = all
-            .filter(|((one, _), tested)| place(*one) == at && tested.accused.probability < level);
-        let explained = |one: &Tested| one.accused.explained;
+        let all = hypotheses.iter().zip(found);
+        let beyond =
+            all.filter(|((one, _), tested)| place(*one) == at && tested.wald.probability < level);
+        let explained = |one: &Tested| one.wald.explained;
         let (_, tested) = beyond.max_by(|a, b| explained(a.1).total_cmp(&explained(b.1)))?;
         let harm = harm(context, scores, tested);
         let names = match at.0 {
@@ -157,12 +162,12 @@ fn too(others: &[(String, Harm)]) -> String {
     if names.is_empty() {
         String::new()
     } else {
-        format!("; the same test finds {}, too", names.join(", "))
+        format!("; the same test also fails for {}", names.join(", "))
     }
 }
 
 /// Data for the words of a finding.
-struct Told {
+struct Finding {
     /// The dependent torque or force.
     what: String,
     /// δ, with its sign.
@@ -173,7 +178,7 @@ struct Told {
     rest: String,
 }
 
-impl Told {
+impl Finding {
     /// Sentence for a shape whose size has a unit.
     fn words(&self, shape: Shape, unit: &str) -> String {
         let size = format!(", by {} {unit}", significant(self.size, 3));
@@ -183,7 +188,7 @@ impl Told {
             _ => size.trim_end(),
         };
         format!(
-            "the {} depends on {} beyond the model{by} ({:.1} standard deviations), {}. Add what is missing to the description, or look for what else differs from it",
+            "the {} depends on {} beyond the model{by} ({:.1} standard deviations), {}. Add the missing term to the description, or look for other differences from it",
             self.what,
             shape.words(),
             self.strength,
@@ -206,7 +211,7 @@ impl Told {
         let limits = &context.settings.standstill_velocity;
         let left_out = match limits.get(actuator) {
             Some(limit) if *limit > 0.0 => format!(
-                " Equations below `standstill_velocity`, {} {rate}, are left out, so that nothing nearer to standstill is seen.",
+                " Equations below `standstill_velocity`, {} {rate}, are skipped, so lower velocities are not tested.",
                 significant(*limit, 2)
             ),
             _ => String::new(),
@@ -214,12 +219,12 @@ impl Told {
         let (does, advice) = if self.size > 0.0 {
             (
                 "rises",
-                "Give the joint `stribeck`, the velocity over which its friction rises, or look for what else differs near standstill",
+                "Set `stribeck` of the joint, the velocity over which its friction rises, or look for other causes near standstill",
             )
         } else {
             (
                 "falls",
-                "That is not Stribeck's friction, which rises there: look at how low velocities are measured and filtered, at a dry friction that is reached gradually, or leave out more equations by `standstill_velocity`",
+                "That is not Stribeck's friction, which rises there: check how low velocities are measured and filtered, consider presliding friction, or skip more equations with `standstill_velocity`",
             )
         };
         format!(
@@ -233,10 +238,11 @@ impl Told {
 }
 
 /// Plot of size by standard deviation for all hypotheses, grouped by shape.
-fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], limit: f64) -> Evidence {
+fn evidence(hypotheses: &[(FaultHypothesis, Shape)], found: &[Tested], limit: f64) -> Evidence {
     let mut points: Vec<(Shape, Curve)> = Vec::new();
-    for ((suspect, shape), one) in suspects.iter().zip(found) {
-        let (Suspect::Torque(number, _) | Suspect::Force(number, _)) = *suspect else {
+    for ((hypothesis, shape), one) in hypotheses.iter().zip(found) {
+        let (FaultHypothesis::Torque(number, _) | FaultHypothesis::Force(number, _)) = *hypothesis
+        else {
             continue;
         };
         let place = points.iter().position(|(own, _)| own == shape);
@@ -248,10 +254,10 @@ fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], limit: f64) -> Evid
         curve.x.push((number + 1) as f64);
         curve
             .y
-            .push(one.accused.strength() * one.accused.largest().signum());
+            .push(one.wald.strength() * one.wald.largest().signum());
     }
     Evidence {
-        title: String::from("What the model may lack"),
+        title: String::from("Possible missing terms of the model"),
         x: Axis::new("number of the actuator or coordinate", ""),
         y: Axis::new("size by standard deviation", ""),
         points: points.into_iter().map(|(_, curve)| curve).collect(),

@@ -5,19 +5,20 @@
 mod clock;
 mod closure;
 mod consistency;
-mod course;
 mod delay;
 mod excitation;
+mod fault_hypotheses;
 mod gains;
 mod geometry;
 mod half_band;
 mod held_out;
 pub(crate) mod level;
 mod missing_parameters;
+mod motion_length;
 mod negative_parameters;
 mod partition;
 mod payload_labels;
-pub(crate) mod raw_numbers;
+pub(crate) mod raw_samples;
 mod regressor_errors;
 mod relative_error;
 mod repeated;
@@ -25,18 +26,17 @@ mod residual_correlation;
 mod reversals;
 mod rotation;
 pub(super) mod smoothing;
-mod suspected;
 mod torque_faults;
 pub(crate) mod units;
 
 use overact::Model;
 
-pub(super) use suspected::HARMFUL;
+pub(super) use fault_hypotheses::HARMFUL;
 
-use super::{check::Check, suspects::Scores};
+use super::{check::Check, hypotheses::Scores};
 use crate::{
-    called::with_joints,
     data::{Dataset, Log},
+    display_names::with_joints,
     error::Error,
     estimation::{
         base::BaseParameters, column_noise::ColumnNoise, instruments::regressor::ErrorsInRegressor,
@@ -116,11 +116,11 @@ type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order of the report.
 const CHECKS: [Function; 22] = [
-    raw_numbers::check,
+    raw_samples::check,
     units::check,
     repeated::check,
     excitation::check,
-    course::check,
+    motion_length::check,
     closure::check,
     torque_faults::check,
     delay::check,

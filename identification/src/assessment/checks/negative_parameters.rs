@@ -39,8 +39,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .of_model(estimate.model)
             .measured(worst, "standard deviations below zero")
             .against(CLEARLY_NEGATIVE, "chance is below 3e-7 for each parameter")
-            .allowing(grade)
-            .spoiling(negative.iter().map(|one| one.name.clone()).collect())
+            .with_grade(grade)
+            .with_unusable_parameters(negative.iter().map(|one| one.name.clone()).collect())
     };
     Ok(context.estimates_of(Stage::Base).map(of_model).collect())
 }

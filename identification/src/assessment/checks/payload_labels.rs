@@ -4,13 +4,13 @@ use overact::StandardParameter;
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, harm, tested},
     level::{level, origin},
-    suspected::{Tested, harm, tested},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Grade},
-        suspects::{Group, Scores},
+        hypotheses::{Group, Scores},
     },
     data::Log,
     error::Error,
@@ -65,13 +65,13 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
         .find(|one| one.interval_95[1] < 0.0);
     if let Some(mass) = negative {
         let words = format!(
-            "the payload's mass comes out negative (`{}` = {} {}), as if the runs with the payload were those without it and the other way round: check the labels",
+            "the payload's mass is negative (`{}` = {} {}), as if the labels of runs with and without payload were exchanged: check them",
             mass.name,
             significant(mass.value, 3),
             mass.unit
         );
         let check = Check::new(CheckKind::PayloadLabel, About::Model, words);
-        return Some(check.found().allowing(Grade::DoNotUse));
+        return Some(check.found().with_grade(Grade::DoNotUse));
     }
     if of_load.is_empty() || !of_load.iter().all(holds_zero) {
         return None;
@@ -82,7 +82,7 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
         format!("`{}` = {value} ± {half} {}", one.name, one.unit)
     });
     let words = format!(
-        "what is estimated of the payload may as well be zero ({}): check that it was mounted in the runs that are labelled so",
+        "no parameter of the payload differs from zero ({}): check that it was mounted in the runs with this label",
         told.collect::<Vec<_>>().join(", ")
     );
     Some(Check::new(CheckKind::PayloadLabel, About::Model, words).found())
@@ -95,18 +95,18 @@ fn of_run(
     one: &Tested,
     level: f64,
 ) -> Check {
-    let accused = &one.accused;
+    let wald = &one.wald;
     let check = Check::new(CheckKind::PayloadLabel, About::Model, "")
         .in_run(log.name())
-        .measured(accused.probability, "probability")
+        .measured(wald.probability, "probability")
         .against(level, origin(runs));
     let label = if log.payload() { "with" } else { "without" };
-    if accused.probability >= level {
-        let words = format!("the run is one {label} the payload, as its label says");
+    if wald.probability >= level {
+        let words = format!("the run is one {label} the payload, as labelled");
         return Check { words, ..check };
     }
     let harm = harm(context, scores, one);
-    let differences: Vec<String> = accused
+    let differences: Vec<String> = wald
         .sizes
         .iter()
         .filter_map(|(place, size)| {
@@ -119,9 +119,9 @@ fn of_run(
         differences.join(", "),
         harm.words()
     );
-    let check = Check { words, ..check }.because(&harm);
-    if accused.explained > WRONG {
-        return check.found().allowing(Grade::DoNotUse);
+    let check = Check { words, ..check }.with_harm(&harm);
+    if wald.explained > WRONG {
+        return check.found().with_grade(Grade::DoNotUse);
     }
     check
 }

@@ -10,7 +10,7 @@ use crate::{
     assessment::{
         check::{About, Check, CheckKind},
         evidence::{Axis, Curve, Evidence},
-        suspects::Correlation,
+        hypotheses::Correlation,
     },
     error::Error,
     estimation::intervals::distributions::student_quantile,
@@ -36,22 +36,22 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let (tests, level) = (pairs.len(), level(pairs.len()));
     let beyond = |one: &&Correlation| one.probability < level && one.value.abs() >= SMALLEST;
-    let guilty = pairs.iter().filter(beyond);
-    let guilty = guilty.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    let most_significant = pairs.iter().filter(beyond);
+    let most_significant = most_significant.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
     let names = context.model.info().actuators;
     let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
-    let shown = guilty.unwrap_or(most);
+    let shown = most_significant.unwrap_or(most);
     let (first, second) = (name(shown.actuators.0), name(shown.actuators.1));
     let found = format!(
-        "what is left unexplained of `{first}` and of `{second}` hangs together: correlation {} ({:.1} standard deviations)",
+        "the residuals of `{first}` and `{second}` are correlated: correlation {} ({:.1} standard deviations)",
         significant(shown.value, 2),
         shown.strength
     );
-    let words = match guilty {
+    let words = match most_significant {
         Some(_) => format!(
-            "{found}. Something acts on both that the model lacks: a force on the platform, a cable, one drive's current in the other's measurement, or errors of the geometry"
+            "{found}. The model lacks an effect on both: a force on the platform, a cable, crosstalk between current measurements, or an error of the geometry"
         ),
-        None => String::from("what is left unexplained of each actuator is its own"),
+        None => String::from("the residuals of the actuators are uncorrelated"),
     };
     let check = Check::new(CheckKind::ResidualCorrelation, About::Fit, words)
         .measured(shown.strength, "standard deviations")
@@ -60,7 +60,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             format!("{}, and a correlation of {SMALLEST}", origin(tests)),
         )
         .shown_by(evidence(&pairs, &name));
-    Ok(vec![match guilty {
+    Ok(vec![match most_significant {
         Some(_) => check.found(),
         None => check,
     }])
@@ -81,7 +81,7 @@ fn evidence<'a>(pairs: &[Correlation], name: &dyn Fn(usize) -> &'a str) -> Evide
         }
     }
     Evidence {
-        title: String::from("Correlation of what is left unexplained"),
+        title: String::from("Correlation of the residuals"),
         x: Axis::new("number of the actuator", ""),
         y: Axis::new("correlation", ""),
         points: curves.into_iter().map(|(_, curve)| curve).collect(),

@@ -11,15 +11,15 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
     half_band::confirms,
     level::{level, origin},
     smoothing::{OF_MEAN, UNIT, harmless},
-    suspected::{Tested, dry_friction, harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::{Scores, Suspect},
+        hypotheses::{FaultHypothesis, Scores},
     },
     error::Error,
     significant,
@@ -32,38 +32,40 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     // Smoothing a step w removes s Σ ẇ²/Σ w² of it, and Σ ẇ² grows with the bandwidth.
     let wider = |one: Tested| Tested {
-        more: scores.narrower as f64,
+        band_factor: scores.narrower as f64,
         ..one
     };
-    let friction = only(scores, Suspect::Dulled).map(wider);
-    let all = only(scores, Suspect::Alike).map(wider);
+    let friction = only(scores, FaultHypothesis::FrictionSmoothing).map(wider);
+    let all = only(scores, FaultHypothesis::CommonFilter).map(wider);
     let tests = friction.iter().chain(&all).count();
-    let told = Told {
+    let limits = TestLimits {
         tests,
         level: level(tests),
     };
-    let bent = friction.filter(|one| one.accused.probability < told.level);
-    if let Some(found) = filtered(context, all.as_ref(), told.level)? {
-        let explains = |one: &Tested| one.accused.explained;
+    let bent = friction.filter(|one| one.wald.probability < limits.level);
+    if let Some(found) = filtered(context, all.as_ref(), limits.level)? {
+        let explains = |one: &Tested| one.wald.explained;
         if bent
             .as_ref()
             .is_none_or(|one| explains(one) <= explains(found))
         {
-            return Ok(vec![told.filtered((context, scores), found)]);
+            return Ok(vec![limits.filtered((context, scores), found)]);
         }
     }
     if let Some(bent) = &bent {
-        return Ok(vec![told.bent((context, scores), bent)]);
+        return Ok(vec![limits.bent((context, scores), bent)]);
     }
-    let shown = only(scores, Suspect::Dulled).map(wider).or(all);
-    let innocent = shown.map(|one| {
-        let visible = one.accused.visible(told.level);
-        told.check((context, scores), &one, format!(
-            "dry friction changes where velocities change their signs; a mean of all signals over {} ms would have been seen",
+    let shown = only(scores, FaultHypothesis::FrictionSmoothing)
+        .map(wider)
+        .or(all);
+    let passed_check = shown.map(|one| {
+        let visible = one.wald.visible(limits.level);
+        limits.check((context, scores), &one, format!(
+            "dry friction changes where velocities change sign; the detection limit is a mean of all signals over {} ms",
             time(visible)
         ))
     });
-    Ok(innocent.into_iter().collect())
+    Ok(passed_check.into_iter().collect())
 }
 
 /// Length of the moving average with the same smoothing, ms.
@@ -80,37 +82,34 @@ fn filtered<'a>(
     let Some(one) = all else {
         return Ok(None);
     };
-    let (accused, harmless) = (&one.accused, harmless(context));
-    let is_beyond = accused.size() > 0.0 && accused.probability_beyond(harmless) < level;
-    let is_there = is_beyond && confirms(context, Suspect::Alike, accused.size())?;
+    let (wald, harmless) = (&one.wald, harmless(context));
+    let is_beyond = wald.size() > 0.0 && wald.probability_beyond(harmless) < level;
+    let is_there = is_beyond && confirms(context, FaultHypothesis::CommonFilter, wald.size())?;
     Ok(is_there.then_some(one))
 }
 
 /// Number and level of the tests.
-struct Told {
+struct TestLimits {
     tests: usize,
     level: f64,
 }
 
-impl Told {
+impl TestLimits {
     /// A check with its words.
     fn check(&self, of: (&Context<'_>, &Scores), one: &Tested, words: String) -> Check {
-        let accused = &one.accused;
+        let wald = &one.wald;
         Check::new(CheckKind::Reversals, About::Model, words)
-            .measured(
-                accused.size().abs() / accused.deviation,
-                "standard deviations",
-            )
-            .against(accused.quantile(self.level), origin(self.tests))
+            .measured(wald.size().abs() / wald.deviation, "standard deviations")
+            .against(wald.quantile(self.level), origin(self.tests))
             .detecting(vec![one.detectable(
                 of,
                 (String::new(), UNIT),
-                accused.visible(self.level),
+                wald.visible(self.level),
             )])
             .shown_by(parabola(
-                accused,
-                "Residual for dry friction that is smoothed",
-                ("half of the mean square of the filter's time", "ms²", 1e6),
+                wald,
+                "Residual for smoothed dry friction",
+                ("half of the filter's mean square delay", "ms²", 1e6),
             ))
     }
 
@@ -120,28 +119,28 @@ impl Told {
         // The filter also rounds reversals.
         harm.spoil(dry_friction(of.0));
         let words = format!(
-            "positions and torques look filtered alike, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without, or with a cutoff far above the motion",
-            time(one.accused.size()),
+            "positions and torques look equally filtered, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without it, or with a cutoff far above the motion",
+            time(one.wald.size()),
             harm.words()
         );
-        self.check(of, one, words).because(&harm)
+        self.check(of, one, words).with_harm(&harm)
     }
 
     /// The failed check of dry friction that differs around reversals.
     fn bent(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
         let harm = harm(of.0, of.1, one);
-        let words = if one.accused.size() > 0.0 {
+        let words = if one.wald.size() > 0.0 {
             format!(
-                "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. So it is where positions and torques have passed the same filter before they were logged, or where friction bends before it slides: log without filters, or leave out equations near standstill (`standstill_velocity`)",
-                time(one.accused.size()),
+                "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. Possible causes are one filter for positions and torques before logging, or presliding friction: log without filters, or skip equations near standstill (`standstill_velocity`)",
+                time(one.wald.size()),
                 harm.words()
             )
         } else {
             format!(
-                "dry friction is larger around reversals than the signs of the velocities make it; {}. Look at how velocities are filtered (`velocity_dead_band`, the cutoff), or leave out equations near standstill (`standstill_velocity`)",
+                "dry friction around reversals is larger than the signs of the velocities predict; {}. Check how velocities are filtered (`velocity_dead_band`, the cutoff), or skip equations near standstill (`standstill_velocity`)",
                 harm.words()
             )
         };
-        self.check(of, one, words).because(&harm)
+        self.check(of, one, words).with_harm(&harm)
     }
 }

@@ -11,14 +11,14 @@
 
 use super::{
     Context,
+    fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
     half_band::confirms,
     level::{level, origin},
-    suspected::{Tested, dry_friction, harm, only, parabola},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind},
-        suspects::Suspect,
+        hypotheses::FaultHypothesis,
     },
     error::Error,
     significant,
@@ -45,27 +45,27 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let Some(one) = only(scores, Suspect::Smoothing) else {
+    let Some(one) = only(scores, FaultHypothesis::Smoothing) else {
         return Ok(Vec::new());
     };
     // Effect on all parameters, including dry friction, at the size found without dry friction.
-    let whole = only(scores, Suspect::Rounding).map(|whole| Tested {
-        size: Some(one.accused.size()),
+    let whole = only(scores, FaultHypothesis::SmoothingWithFriction).map(|whole| Tested {
+        size: Some(one.wald.size()),
         ..whole
     });
     let whole = whole.as_ref().unwrap_or(&one);
     let level = level(1);
     let harmless = harmless(context);
-    let accused = &one.accused;
+    let wald = &one.wald;
     // Length of the moving average with the same smoothing, ms.
     let time = |size: f64| significant(1e3 * (OF_MEAN * size.abs()).sqrt(), 2);
-    let beyond = (accused.size().abs() - harmless).max(0.0);
-    let visible = harmless + accused.visible(level);
+    let beyond = (wald.size().abs() - harmless).max(0.0);
+    let visible = harmless + wald.visible(level);
     let check = |words: String| {
         Check::new(CheckKind::Filters, About::Model, words)
-            .measured(beyond / accused.deviation, "standard deviations")
+            .measured(beyond / wald.deviation, "standard deviations")
             .against(
-                accused.quantile(level),
+                wald.quantile(level),
                 format!(
                     "{}, of what exceeds a mean over {HARMLESS} sampling intervals",
                     origin(1)
@@ -77,36 +77,36 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 visible,
             )])
             .shown_by(parabola(
-                accused,
-                "Residual for torques that are smoothed",
-                ("half of the mean square of the filter's time", "ms²", 1e6),
+                wald,
+                "Residual for smoothed torques",
+                ("half of the filter's mean square delay", "ms²", 1e6),
             ))
     };
-    if accused.probability_beyond(harmless) >= level {
+    if wald.probability_beyond(harmless) >= level {
         return Ok(vec![check(format!(
-            "torques and motion are smoothed alike; a mean of the torques over {} ms would have been seen",
+            "torques and motion are equally smooth; the detection limit is a mean of the torques over {} ms",
             time(visible)
         ))]);
     }
-    if !confirms(context, Suspect::Smoothing, accused.size())? {
+    if !confirms(context, FaultHypothesis::Smoothing, wald.size())? {
         return Ok(vec![check(format!(
-            "torques and motion are smoothed alike: what looks like a mean over {} ms is not there in half of the band, as where errors of the encoders make it",
-            time(accused.size())
+            "torques and motion are equally smooth: an apparent mean over {} ms is absent in half of the band, which indicates encoder errors",
+            time(wald.size())
         ))]);
     }
     let mut harm = harm(context, scores, whole);
-    harm.explained = accused.explained;
+    harm.explained = wald.explained;
     // The test omits reversals, but the filter rounds them, too.
     harm.spoil(dry_friction(context));
-    let (what, beside) = if accused.size() > 0.0 {
+    let (what, reference) = if wald.size() > 0.0 {
         ("the torques are", "the motion")
     } else {
         ("the motion is", "the torques")
     };
     let words = format!(
-        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without",
-        time(accused.size()),
+        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log on one of the two, or for interpolated samples: log both without them",
+        time(wald.size()),
         harm.words()
     );
-    Ok(vec![check(words).because(&harm)])
+    Ok(vec![check(words).with_harm(&harm)])
 }

@@ -3,9 +3,9 @@
 //! Faults of a drive or label are a wrong sign or gain, swapped drives, and a wrong payload label.
 //! Faults of the whole robot are swapped joints, and reversed or absent gravity.
 //!
-//! - `doubt`: the residual after correcting a fault, from one pass over the runs.
+//! - `fault_residual`: the residual after correcting a fault, from one pass over the runs.
 
-mod doubt;
+mod fault_residual;
 
 use overact::Model;
 use rayon::prelude::*;
@@ -13,10 +13,10 @@ use rayon::prelude::*;
 use super::{
     check::{About, Check, CheckKind, Grade},
     positions,
-    whole::Whole,
+    run_level_faults::RunLevelFault,
 };
 use crate::{data::Log, error::Error, settings::Settings};
-use doubt::{Columns, Doubt, Fault, Way};
+use fault_residual::{Columns, EquationOptions, Fault, FaultResidual};
 
 /// A fault explains the torques if at most this fraction of the error remains.
 const EXPLAINED: f64 = 0.5;
@@ -44,9 +44,10 @@ pub(crate) fn explanation(
     settings: &Settings,
 ) -> Result<Option<Check>, Error> {
     let columns = Columns::new(model, settings)?;
-    let doubt = columns.doubt((model, runs), settings, Way::ONE_BY_ONE)?;
-    let before = doubt.error(None);
-    let of_one = of_one(model, runs, &doubt, before);
+    let fault_residual =
+        columns.fault_residual((model, runs), settings, EquationOptions::ONE_BY_ONE)?;
+    let before = fault_residual.error(None);
+    let of_one = of_one(model, runs, &fault_residual, before);
     Ok(of_one.or_else(|| of_all((model, &columns), runs, settings, before)))
 }
 
@@ -62,11 +63,12 @@ pub(super) fn errors_with(
     let columns = Columns::new(model, settings).ok()?;
     let repaired = runs
         .iter()
-        .map(|log| Whole::Positions(fault).repaired(model, log));
+        .map(|log| RunLevelFault::Positions(fault).repaired(model, log));
     let repaired: Vec<Log> = repaired.collect::<Result<_, _>>().ok()?;
     let error = |runs: &[Log]| {
-        let doubt = columns.doubt((model, runs), settings, Way::TOGETHER);
-        Some(doubt.ok()?.error(None))
+        let fault_residual =
+            columns.fault_residual((model, runs), settings, EquationOptions::TOGETHER);
+        Some(fault_residual.ok()?.error(None))
     };
     Some((error(runs)?, error(&repaired)?))
 }
@@ -74,14 +76,19 @@ pub(super) fn errors_with(
 /// States the evidence for a fault.
 fn so(before: f64, after: f64) -> String {
     format!(
-        "then {:.1} % of the inputs are left unexplained, instead of {:.1} %",
+        "with the correction the relative residual is {:.1} % instead of {:.1} %",
         100.0 * after,
         100.0 * before
     )
 }
 
 /// The fault of a drive or label that explains the torques; `before` is the relative residual.
-fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Option<Check> {
+fn of_one(
+    model: &dyn Model,
+    runs: &[Log],
+    fault_residual: &FaultResidual<'_>,
+    before: f64,
+) -> Option<Check> {
     let info = model.info();
     let n = info.sizes.actuators;
     let mut faults: Vec<Fault> = Vec::new();
@@ -92,7 +99,7 @@ fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Op
     }
     let errors = faults
         .into_par_iter()
-        .map(|fault| (fault, doubt.error(Some(fault))));
+        .map(|fault| (fault, fault_residual.error(Some(fault))));
     let errors: Vec<(Fault, f64)> = errors.collect();
     // The error is a mean over lines; in a serial robot a drive affects its own line most.
     let lines = info.sizes.dof as f64;
@@ -114,7 +121,8 @@ fn of_one(model: &dyn Model, runs: &[Log], doubt: &Doubt<'_>, before: f64) -> Op
             .iter()
             .filter(|(other, error)| matches!(other, Fault::Label(_)) && *error <= AS_GOOD * after);
         let heavy = as_good.map(|(other, _)| *other);
-        let mut heavy = heavy.filter(|other| doubt.mass(*other).is_some_and(|mass| mass > 0.0));
+        let mut heavy =
+            heavy.filter(|other| fault_residual.mass(*other).is_some_and(|mass| mass > 0.0));
         fault = heavy.next().unwrap_or(fault);
     }
     let told = told(model, runs, fault, &so(before, after));
@@ -128,23 +136,25 @@ fn of_all(
     settings: &Settings,
     before: f64,
 ) -> Option<Check> {
-    let whole = Whole::all(model).into_par_iter().filter_map(|fault| {
-        let repaired = |log: &Log| fault.repaired(model, log);
-        let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
-        // A correction that leaves the workspace explains nothing.
-        let way = match fault {
-            Whole::Gravity => Way::TOGETHER.without_gravity(2.0),
-            Whole::Weightless => Way::TOGETHER.without_gravity(1.0),
-            _ => Way::TOGETHER,
-        };
-        let doubt = columns.doubt((model, &runs.ok()?), settings, way);
-        Some((fault, doubt.ok()?.error(None)))
-    });
-    let whole: Vec<(Whole, f64)> = whole.collect();
-    let explains = |(fault, after): &(Whole, f64)| {
+    let faults = RunLevelFault::all(model)
+        .into_par_iter()
+        .filter_map(|fault| {
+            let repaired = |log: &Log| fault.repaired(model, log);
+            let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
+            // A correction that leaves the workspace explains nothing.
+            let options = match fault {
+                RunLevelFault::Gravity => EquationOptions::TOGETHER.without_gravity(2.0),
+                RunLevelFault::Weightless => EquationOptions::TOGETHER.without_gravity(1.0),
+                _ => EquationOptions::TOGETHER,
+            };
+            let fault_residual = columns.fault_residual((model, &runs.ok()?), settings, options);
+            Some((fault, fault_residual.ok()?.error(None)))
+        });
+    let faults: Vec<(RunLevelFault, f64)> = faults.collect();
+    let explains = |(fault, after): &(RunLevelFault, f64)| {
         *after < fault.explained(model, EXPLAINED) * before && before - after > WORTHWHILE
     };
-    let best = whole.into_iter().filter(explains);
+    let best = faults.into_iter().filter(explains);
     let (fault, after) = best.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let part = fault.explained(model, EXPLAINED);
     let told = fault.check(model, &so(before, after));
@@ -153,10 +163,7 @@ fn of_all(
 
 /// A check with the residual after the correction, and the fraction allowed as threshold.
 fn measured(check: Check, (before, after): (f64, f64), part: f64) -> Check {
-    let origin = format!(
-        "{:.0} % of what is left unexplained with the fault",
-        100.0 * part
-    );
+    let origin = format!("{:.0} % of the residual with the fault", 100.0 * part);
     check
         .measured(100.0 * after, "%")
         .against(100.0 * part * before, origin)
@@ -172,7 +179,7 @@ fn told(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
             None,
             Some(i),
             format!(
-                "the torque of `{}` looks reversed: check the sign of its drive (a negative `torque_gain` in the table [data] turns it round)",
+                "the torque of `{}` looks reversed: check the sign of its drive (a negative `torque_gain` in the table [data] reverses it)",
                 name(i)
             ),
         ),
@@ -215,6 +222,6 @@ fn told(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
     Check {
         run,
         actuator: actuator.map(|index| name(index).to_owned()),
-        ..Check::new(kind, About::Model, format!("{message}; {so}")).allowing(Grade::DoNotUse)
+        ..Check::new(kind, About::Model, format!("{message}; {so}")).with_grade(Grade::DoNotUse)
     }
 }

@@ -16,14 +16,14 @@ pub(super) const BEGINNING: usize = 28;
 
 /// Header of a chunk.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Said {
+pub(super) struct ChunkHeader {
     /// Unpacked size of its records.
     size: u64,
     /// Checksum of its records; `None` if it was not computed.
     sum: Option<u32>,
 }
 
-impl Said {
+impl ChunkHeader {
     /// Reads the header from the chunk's first bytes.
     pub(super) fn of(beginning: &[u8; BEGINNING]) -> Option<Self> {
         let mut fields = Fields(&beginning[16..]);
@@ -41,7 +41,7 @@ pub(super) struct Chunk {
     input: Unpacking,
     /// Position in the file, for messages.
     pub(super) place: u64,
-    said: Said,
+    header: ChunkHeader,
     /// Number of bytes read.
     position: u64,
     sum: Hasher,
@@ -56,7 +56,7 @@ enum Unpacking {
 
 impl fmt::Debug for Chunk {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "chunk at byte {}, {:?}", self.place, self.said)
+        write!(f, "chunk at byte {}, {:?}", self.place, self.header)
     }
 }
 
@@ -68,7 +68,7 @@ impl Chunk {
     pub(super) fn new(
         input: BufReader<Section>,
         packing: &str,
-        (place, said): (u64, Said),
+        (place, header): (u64, ChunkHeader),
     ) -> Result<Self, String> {
         let input = match packing {
             "" => Unpacking::None(input),
@@ -79,12 +79,16 @@ impl Chunk {
                     unpacking.map_err(|error| format!("it can't be unpacked: {error}"))?;
                 Unpacking::Zstandard(Box::new(unpacking))
             }
-            other => return Err(format!("it is packed by `{other}`, which is not read")),
+            other => {
+                return Err(format!(
+                    "it is compressed by `{other}`, which is not supported"
+                ));
+            }
         };
         Ok(Self {
             input,
             place,
-            said,
+            header,
             position: 0,
             sum: Hasher::new(),
         })
@@ -92,7 +96,7 @@ impl Chunk {
 
     /// Number of unread bytes.
     pub(super) const fn left(&self) -> u64 {
-        self.said.size - self.position
+        self.header.size - self.position
     }
 
     /// Fills `bytes`.
@@ -102,7 +106,7 @@ impl Chunk {
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> Result<(), String> {
         let count = bytes.len() as u64;
         if count > self.left() {
-            return Err(String::from("a record ends behind its end"));
+            return Err(String::from("a record ends after its end"));
         }
         let read = match &mut self.input {
             Unpacking::None(input) => input.read_exact(bytes),
@@ -110,11 +114,11 @@ impl Chunk {
             Unpacking::Zstandard(input) => input.read_exact(bytes),
         };
         read.map_err(|error| match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => String::from("it has fewer bytes than it says"),
+            std::io::ErrorKind::UnexpectedEof => String::from("it has fewer bytes than declared"),
             _ => format!("it can't be unpacked: {error}"),
         })?;
         self.position += count;
-        if self.said.sum.is_some() {
+        if self.header.sum.is_some() {
             self.sum.update(bytes);
         }
         Ok(())
@@ -139,9 +143,9 @@ impl Chunk {
     /// # Errors
     /// A wrong checksum.
     pub(super) fn check(&self) -> Result<(), String> {
-        match self.said.sum {
+        match self.header.sum {
             Some(sum) if sum != self.sum.clone().finalize() => Err(String::from(
-                "its checksum is another one: some bytes were changed",
+                "its checksum does not match: some bytes were changed",
             )),
             _ => Ok(()),
         }

@@ -3,7 +3,7 @@
 use overact::Code;
 use std::path::{Path, PathBuf};
 
-use super::{joint_state::JointState, topics::Found};
+use super::{joint_state::JointState, topics::TopicChannels};
 use crate::{
     data::problems::{legible, shown},
     error::Problem,
@@ -52,7 +52,11 @@ pub(super) enum Source {
 
 impl Topic {
     /// A topic with the joints of its first message; `None` without a message.
-    pub(super) fn new(file: &str, path: &Path, found: Found) -> Result<Option<Self>, Problem> {
+    pub(super) fn new(
+        file: &str,
+        path: &Path,
+        found: TopicChannels,
+    ) -> Result<Option<Self>, Problem> {
         let Some((recorded, content)) = found.first else {
             return Ok(None);
         };
@@ -108,10 +112,10 @@ impl Topic {
 /// The problem of a file that cannot be read.
 pub(super) fn broken(file: &str, why: &str) -> Problem {
     let message = format!(
-        "the file starts as MCAP does, but can't be read: {}",
+        "the file starts like MCAP, but can't be read: {}",
         legible(why)
     );
     Problem::new(Code::LOG_FORMAT, message).file(file).help(
-        "if its writer was stopped, `mcap recover FILE -o NEW.mcap` saves what there is; if it was copied, copy it again",
+        "if its writer was stopped, use `mcap recover FILE -o NEW.mcap`; if it was copied, copy it again",
     )
 }

@@ -21,7 +21,7 @@ const END: u64 = 29 + 8;
 
 /// A topic, collected from the channels of a file.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct TopicChannels {
     pub(super) topic: String,
     pub(super) channels: Vec<u16>,
     /// Recording time (ns) and content of the first message; `None` without a message.
@@ -41,7 +41,10 @@ impl Topics {
     ///
     /// # Errors
     /// A description of the defect and its position.
-    pub(super) fn find(file: &Arc<File>, length: u64) -> Result<(Self, Vec<Found>), String> {
+    pub(super) fn find(
+        file: &Arc<File>,
+        length: u64,
+    ) -> Result<(Self, Vec<TopicChannels>), String> {
         let mut topics = Self::default();
         let summary = summary(file, length)?;
         let mut content = Vec::new();
@@ -70,11 +73,11 @@ impl Topics {
                 _ => topics.note(&record, &content),
             }
         }
-        let mut found: Vec<Found> = Vec::new();
+        let mut found: Vec<TopicChannels> = Vec::new();
         for (channel, topic) in topics.joints() {
             let first = firsts.remove(&channel);
             match found.iter_mut().find(|own| own.topic == topic) {
-                None => found.push(Found {
+                None => found.push(TopicChannels {
                     topic: topic.to_owned(),
                     channels: vec![channel],
                     first,
@@ -148,7 +151,7 @@ impl Topics {
 /// # Errors
 /// A file with an invalid end.
 fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
-    let cut_off = || String::from("it is cut off: its end is missing");
+    let cut_off = || String::from("it is truncated: its end is missing");
     let start = length.checked_sub(END).ok_or_else(cut_off)?;
     let mut end = [0; END as usize];
     let mut input = &**file;
@@ -162,15 +165,13 @@ fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
     let (kind, rest) = (end[0], &end[1..]);
     let mut fields = Fields(rest);
     if kind != FOOTER || fields.long() != Some(20) {
-        return Err(String::from(
-            "its last record is not the one that ends a file",
-        ));
+        return Err(String::from("its last record is not a footer"));
     }
     match fields.long() {
         None | Some(0) => Ok(None),
         Some(place) if place < start => Ok(Some(place)),
         Some(place) => Err(format!(
-            "its summary is said to start at byte {place}, behind its end"
+            "its summary should start at byte {place}, after its end"
         )),
     }
 }

@@ -6,14 +6,14 @@
 //!
 //! - `dialect`: separators, decimal commas and names;
 //! - `lines`, `cells`: plain lines and their numbers;
-//! - `closely`: error messages for a row;
+//! - `row_diagnostics`: error messages for a row;
 //! - `squeeze`: columns separated by several blanks;
 //! - `rows`: rows of plain lines, or of records with quotation marks.
 
 mod cells;
-mod closely;
 mod dialect;
 mod lines;
+mod row_diagnostics;
 mod rows;
 mod squeeze;
 

@@ -5,9 +5,9 @@ use std::io::{Read, Result as IoResult};
 
 use super::{
     BUFFER, Text, cells,
-    closely::{Row, Told},
     dialect::Dialect,
     lines::{Lines, Next, Rest},
+    row_diagnostics::{Row, RowDiagnostics},
     squeeze::Squeeze,
 };
 use crate::{data::medium::Opened, error::Error};
@@ -25,7 +25,7 @@ pub(in crate::data) struct Rows<'a> {
     line: usize,
     /// Whether nothing more can be read.
     is_broken: bool,
-    told: Told,
+    diagnostics: RowDiagnostics,
 }
 
 /// Source of the rows.
@@ -53,7 +53,7 @@ impl<'a> Rows<'a> {
             source: Source::Lines(Lines::new(input, bytes)),
             line: 0,
             is_broken: false,
-            told: Told::new(),
+            diagnostics: RowDiagnostics::new(),
         };
         if text.dialect.has_header {
             rows.pass_header()?;
@@ -108,7 +108,7 @@ impl<'a> Rows<'a> {
             self.line = lines.passed();
             let form = (separator, self.text.dialect.most);
             if !decimal_comma && cells::read(line, form, &self.order, values) {
-                self.told.is_first = false;
+                self.diagnostics.is_first = false;
                 return Ok(true);
             }
             let cells = cells::split(line, separator);
@@ -117,7 +117,7 @@ impl<'a> Rows<'a> {
                 line: self.line,
                 cells: &cells,
             };
-            return self.told.read(&row, &self.wanted, values);
+            return self.diagnostics.read(&row, &self.wanted, values);
         }
         if !self.advance()? {
             return Ok(false);
@@ -131,7 +131,7 @@ impl<'a> Rows<'a> {
             line: self.line,
             cells: &cells,
         };
-        self.told.read(&row, &self.wanted, values)
+        self.diagnostics.read(&row, &self.wanted, values)
     }
 
     /// Skips the header.

@@ -14,7 +14,7 @@
 //! A significant parameter that matters is kept, and the elimination ends there. The path is
 //! recorded as far as r_σ alone would go, to compare both ends.
 
-mod held_out;
+mod cross_validation;
 
 use serde::Serialize;
 
@@ -29,7 +29,7 @@ use crate::{
     thresholds::Thresholds,
 };
 
-pub(crate) use held_out::HeldOut;
+pub(crate) use cross_validation::CrossValidationFolds;
 
 /// Relative error in percent below which the fit is exact up to rounding.
 ///
@@ -102,7 +102,7 @@ pub struct Essential {
     /// Correlation of the base estimate's residual.
     pub(crate) noise: Option<Noise>,
     /// Folds of the cross-validation.
-    pub(crate) folds: Option<HeldOut>,
+    pub(crate) folds: Option<CrossValidationFolds>,
 }
 
 /// Eliminates parameters, starting from the estimation `start` of the columns `selected`.
@@ -118,21 +118,21 @@ pub fn essential(
     start: &Estimation,
     settings: &Settings,
 ) -> Result<Essential, Error> {
-    let walk = Walk::new(system, selected, names, start, settings);
-    let mut here = Place {
-        held_out: walk.held_out(selected),
+    let elimination = Elimination::new(system, selected, names, start, settings);
+    let mut here = EliminationState {
+        held_out: elimination.held_out(selected),
         selected: selected.to_vec(),
         names: names.to_vec(),
         estimation: start.clone(),
     };
     let mut end = None;
     let mut removals: Vec<Removal> = Vec::new();
-    while let Some(worst) = walk.worst(&here) {
-        let next = walk.without(&here, worst)?;
-        let mut removal = walk.removal(&here, worst, &next);
+    while let Some(worst) = elimination.worst(&here) {
+        let next = elimination.without(&here, worst)?;
+        let mut removal = elimination.removal(&here, worst, &next);
         if end.is_some() {
             removal.accepted = false;
-            removal.reason = String::from("only r_σ alone would have come here");
+            removal.reason = String::from("only r_σ alone reaches this");
         } else if !removal.accepted {
             end = Some(here);
         }
@@ -151,17 +151,17 @@ pub fn essential(
         },
         removals,
         stop,
-        noise: walk.noise,
-        folds: walk.folds,
+        noise: elimination.noise,
+        folds: elimination.folds,
     })
 }
 
 /// Reason for the end of the elimination; `last` is where r_σ alone ends.
-fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
+fn stop(removals: &[Removal], last: &EliminationState, settings: &Settings) -> String {
     let refused = removals.iter().find(|removal| !removal.accepted);
     match refused {
         Some(refused) => format!(
-            "the second opinion keeps `{}`: {}; r_σ = {} alone would have ended at {} parameter{}",
+            "the additional criterion keeps `{}`: {}; r_σ = {} alone would have kept {} parameter{}",
             refused.name,
             refused.reason,
             settings.r_sigma,
@@ -171,9 +171,9 @@ fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
         None if last.estimation.relative_error_percent <= EXACT_PERCENT => {
             String::from("the model fits exactly")
         }
-        None if last.selected.len() == 1 => String::from("a single parameter is left"),
+        None if last.selected.len() == 1 => String::from("one parameter is left"),
         None => format!(
-            "the largest relative deviation is {:.3} times the smallest one, less than r_σ = {}",
+            "the largest relative standard deviation is {:.3} times the smallest, less than r_σ = {}",
             last.estimation.deviation_ratio(),
             settings.r_sigma
         ),
@@ -181,7 +181,7 @@ fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
 }
 
 /// State of the elimination.
-struct Place {
+struct EliminationState {
     selected: Vec<usize>,
     names: Vec<String>,
     estimation: Estimation,
@@ -189,18 +189,18 @@ struct Place {
 }
 
 /// Data that all steps share.
-struct Walk<'a> {
+struct Elimination<'a> {
     system: &'a System,
     settings: &'a Settings,
     thresholds: Thresholds,
     noise: Option<Noise>,
-    folds: Option<HeldOut>,
+    folds: Option<CrossValidationFolds>,
     /// Significant base parameters.
-    base: Vec<Known>,
+    base: Vec<SignificantParameter>,
 }
 
 /// A significant base parameter.
-struct Known {
+struct SignificantParameter {
     column: usize,
     value: f64,
     deviation: f64,
@@ -208,7 +208,7 @@ struct Known {
     influence: f64,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> Elimination<'a> {
     fn new(
         system: &'a System,
         selected: &[usize],
@@ -221,7 +221,7 @@ impl<'a> Walk<'a> {
         let noise = Noise::new(system, selected, start);
         let deviations = deviations(noise.as_ref(), selected, start);
         let all = selected.iter().zip(&start.values).zip(deviations);
-        let base = all.map(|((&column, &value), deviation)| Known {
+        let base = all.map(|((&column, &value), deviation)| SignificantParameter {
             column,
             value,
             deviation,
@@ -231,7 +231,7 @@ impl<'a> Walk<'a> {
             base: base
                 .filter(|one| one.value.abs() > thresholds.significance * one.deviation)
                 .collect(),
-            folds: HeldOut::new(system, selected, &start.weights),
+            folds: CrossValidationFolds::new(system, selected, &start.weights),
             system,
             settings,
             thresholds,
@@ -245,7 +245,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The parameter that r_σ would remove next; `None` where r_σ stops.
-    fn worst(&self, here: &Place) -> Option<usize> {
+    fn worst(&self, here: &EliminationState) -> Option<usize> {
         let estimation = &here.estimation;
         if here.selected.len() < 2
             || estimation.relative_error_percent <= EXACT_PERCENT
@@ -259,11 +259,11 @@ impl<'a> Walk<'a> {
     }
 
     /// The state without one of the parameters.
-    fn without(&self, here: &Place, worst: usize) -> Result<Place, Error> {
+    fn without(&self, here: &EliminationState, worst: usize) -> Result<EliminationState, Error> {
         let (mut selected, mut names) = (here.selected.clone(), here.names.clone());
         selected.remove(worst);
         names.remove(worst);
-        Ok(Place {
+        Ok(EliminationState {
             estimation: fit(self.system, &selected, self.settings)?,
             held_out: self.held_out(&selected),
             selected,
@@ -272,7 +272,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The step between two states, with its tests.
-    fn removal(&self, here: &Place, worst: usize, next: &Place) -> Removal {
+    fn removal(&self, here: &EliminationState, worst: usize, next: &EliminationState) -> Removal {
         let (estimation, rest) = (&here.estimation, &next.estimation);
         let value = estimation.values[worst];
         let own = deviations(self.noise.as_ref(), &here.selected, estimation)[worst];
@@ -292,19 +292,19 @@ impl<'a> Walk<'a> {
         let moved = drift.as_ref().filter(|drift| self.measure(drift) > 1.0);
         let matters = grows || moved.is_some() || self.settings.keep_significant;
         let reason = if !significant {
-            format!("the data do not speak for it: |χ|/σ = {ratio:.1}")
+            format!("the data do not require it: |χ|/σ = {ratio:.1}")
         } else if let (false, Some(drift)) = (grows, moved) {
             format!(
-                "the data speak for it, |χ|/σ = {ratio:.0}, and without it `{}` would move by {:.0} %",
+                "the data require it, |χ|/σ = {ratio:.0}, and without it `{}` would shift by {:.0} %",
                 drift.parameter, drift.percent
             )
         } else if matters {
             format!(
-                "the data speak for it, |χ|/σ = {ratio:.0}, and without it another {growth:.2} % of the held-out inputs would go unexplained"
+                "the data require it, |χ|/σ = {ratio:.0}, and without it the validation residual would grow by {growth:.2} %"
             )
         } else {
             format!(
-                "the data speak for it, |χ|/σ = {ratio:.0}, but without it only another {growth:.2} % of the held-out inputs go unexplained"
+                "the data require it, |χ|/σ = {ratio:.0}, but without it the validation residual grows by only {growth:.2} %"
             )
         };
         Removal {
@@ -327,7 +327,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The significant parameter with the largest drift, in units of the tolerance.
-    fn drift(&self, next: &Place) -> Option<Drift> {
+    fn drift(&self, next: &EliminationState) -> Option<Drift> {
         let places = next.selected.iter().enumerate();
         let drifts = places.filter_map(|(place, column)| {
             let base = self.base.iter().find(|base| base.column == *column)?;

@@ -1,7 +1,7 @@
 //! 95 % confidence intervals that hold for any residual and after elimination of parameters.
 //!
 //! - `scores`: covariance of the base estimate for any residual, with degrees of freedom.
-//! - `repeats`: its increase from residuals at the frequencies of the motion.
+//! - `periodic_power`: its increase from residuals at the frequencies of the motion.
 //! - `periods`: its increase from residuals that are equal in all periods.
 //! - `parts`: covariance from sums over parts of the runs, if only their factors are stored.
 //! - `distributions`: Student's and related distributions.
@@ -25,8 +25,8 @@
 
 pub(crate) mod distributions;
 mod parts;
+pub(crate) mod periodic_power;
 mod periods;
-pub(crate) mod repeats;
 pub(crate) mod scores;
 
 use nalgebra::{DMatrix, DVector};
@@ -34,7 +34,7 @@ use nalgebra::{DMatrix, DVector};
 use super::estimate::Estimation;
 use crate::regression::system::System;
 use distributions::student_quantile;
-use repeats::ratios;
+use periodic_power::ratios;
 use scores::{Context, Covariance};
 
 /// Probability that an interval misses the true value.

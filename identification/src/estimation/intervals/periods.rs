@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::scores::Context;
 use crate::{
-    estimation::returning::{Mean, Stray},
+    estimation::periodic_variance::{Mean, SumVariance},
     regression::system::System,
 };
 
@@ -25,7 +25,7 @@ pub(super) fn ratios(
         combinations += influence.columns(p, p).transpose();
     }
     let places: Vec<usize> = (0..p).collect();
-    let mut strays = vec![Stray::default(); p];
+    let mut sum_variances = vec![SumVariance::default(); p];
     for folds in &system.folds {
         let weighted = |line: usize, rows: DMatrix<f64>| {
             let weight = context.estimation.weights[line];
@@ -39,8 +39,8 @@ pub(super) fn ratios(
             continue;
         };
         let left = mean.left(&places, &context.inverse);
-        let own = mean.strays(&combinations, &left, None);
-        for (all, own) in strays.iter_mut().zip(own) {
+        let own = mean.sum_variances(&combinations, &left, None);
+        for (all, own) in sum_variances.iter_mut().zip(own) {
             *all = all.and(own);
         }
     }
@@ -48,14 +48,14 @@ pub(super) fn ratios(
         return vec![(1.0, f64::INFINITY); p];
     }
     let squares = context.inverse.diagonal();
-    let each = strays.iter().zip(variances).zip(squares.iter());
-    let told = each
+    let each = sum_variances.iter().zip(variances).zip(squares.iter());
+    let ratios = each
         .zip(freedoms)
-        .map(|(((stray, variance), square), own)| {
-            let (ratio, freedom) = stray.by(*variance, *square);
-            Told::new(ratio, freedom, *own)
+        .map(|(((sum_variance, variance), square), own)| {
+            let (ratio, freedom) = sum_variance.by(*variance, *square);
+            VarianceRatio::new(ratio, freedom, *own)
         });
-    enlarged(&told.collect::<Vec<_>>())
+    enlarged(&ratios.collect::<Vec<_>>())
 }
 
 /// Smallest mean log ratio that increases the covariance.
@@ -65,7 +65,7 @@ const LEAST_MEAN: f64 = 0.5;
 
 /// Estimated ratio of two variances.
 #[derive(Debug, Clone, Copy)]
-struct Told {
+struct VarianceRatio {
     /// Its logarithm, corrected for bias.
     logarithm: f64,
     /// Sampling variance of the logarithm.
@@ -73,12 +73,12 @@ struct Told {
     freedom: f64,
 }
 
-impl Told {
-    /// Ratio of two variances with `freedom` and `told` degrees of freedom.
-    fn new(ratio: f64, freedom: f64, told: f64) -> Self {
+impl VarianceRatio {
+    /// Ratio of two variances with `freedom` and `other_freedom` degrees of freedom.
+    fn new(ratio: f64, freedom: f64, other_freedom: f64) -> Self {
         Self {
-            logarithm: ratio.ln() + 1.0 / freedom - 1.0 / told,
-            variance: 2.0 / freedom + 2.0 / told,
+            logarithm: ratio.ln() + 1.0 / freedom - 1.0 / other_freedom,
+            variance: 2.0 / freedom + 2.0 / other_freedom,
             freedom,
         }
     }
@@ -92,17 +92,17 @@ impl Told {
 ///
 /// Single ratios scatter, and using only those above one would overestimate the variance. They are
 /// shrunk towards their mean as far as their spread is random (James and Stein).
-fn enlarged(told: &[Told]) -> Vec<(f64, f64)> {
-    let sound = || told.iter().filter(|one| one.is_sound());
+fn enlarged(ratios: &[VarianceRatio]) -> Vec<(f64, f64)> {
+    let sound = || ratios.iter().filter(|one| one.is_sound());
     let weights: f64 = sound().map(|one| 1.0 / one.variance).sum();
     let mean = sound().map(|one| one.logarithm / one.variance).sum::<f64>() / weights;
     if weights.is_nan() || mean < LEAST_MEAN {
-        return vec![(1.0, f64::INFINITY); told.len()];
+        return vec![(1.0, f64::INFINITY); ratios.len()];
     }
     let apart = sound().map(|one| (one.logarithm - mean).powi(2) / one.variance - 1.0);
     // Variance of the true ratios.
     let between = (apart.sum::<f64>() / weights).max(0.0);
-    let enlarged = |one: &Told| {
+    let enlarged = |one: &VarianceRatio| {
         if !one.is_sound() {
             return (1.0, f64::INFINITY);
         }
@@ -114,15 +114,15 @@ fn enlarged(told: &[Told]) -> Vec<(f64, f64)> {
             (1.0, f64::INFINITY)
         }
     };
-    told.iter().map(enlarged).collect()
+    ratios.iter().map(enlarged).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{LEAST_MEAN, Told, enlarged};
+    use super::{LEAST_MEAN, VarianceRatio, enlarged};
 
-    fn told(ratios: &[f64]) -> Vec<Told> {
-        let one = |ratio: &f64| Told::new(*ratio, 20.0, 40.0);
+    fn told(ratios: &[f64]) -> Vec<VarianceRatio> {
+        let one = |ratio: &f64| VarianceRatio::new(*ratio, 20.0, 40.0);
         ratios.iter().map(one).collect()
     }
 

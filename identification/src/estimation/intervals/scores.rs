@@ -76,22 +76,28 @@ impl Covariance {
         let noise = noise.reduce(|| DMatrix::zeros(p, p), |a, b| a + b);
         let inverse = &context.estimation.inverse;
         let noise = inverse.transpose() * noise * inverse;
-        let shares: Vec<Share> = stretches()
-            .filter_map(|stretch| context.share(stretch, &noise))
+        let contributions: Vec<StretchContribution> = stretches()
+            .filter_map(|stretch| context.contribution(stretch, &noise))
             .collect();
-        let kept: usize = shares.iter().map(|share| share.equations).sum();
+        let kept: usize = contributions
+            .iter()
+            .map(|contribution| contribution.equations)
+            .sum();
         let equations = system.lines.iter().map(|line| line.equations()).max()?;
         if kept == 0 {
             return None;
         }
         let mut matrix = DMatrix::zeros(p, p);
-        for share in &shares {
-            matrix += &share.matrix;
+        for contribution in &contributions {
+            matrix += &contribution.matrix;
         }
         let (mut factors, mut freedoms) = (Vec::new(), Vec::new());
         for i in 0..p {
             let sum = |of: fn(&Moments) -> f64| -> f64 {
-                shares.iter().map(|share| of(&share.moments[i])).sum()
+                contributions
+                    .iter()
+                    .map(|contribution| of(&contribution.moments[i]))
+                    .sum()
             };
             let (expected, squares) = (sum(|own| own.expected), sum(|own| own.squares));
             // An estimate independent of the data has no variance.
@@ -135,7 +141,7 @@ pub(crate) struct Context<'a> {
 }
 
 /// Contribution of a stretch to the covariance.
-struct Share {
+struct StretchContribution {
     equations: usize,
     /// (1/B) Σ_b T_b T_bᵀ.
     matrix: DMatrix<f64>,
@@ -221,7 +227,7 @@ impl<'a> Context<'a> {
         sum
     }
 
-    fn share(&self, stretch: &Stretch, noise: &DMatrix<f64>) -> Option<Share> {
+    fn contribution(&self, stretch: &Stretch, noise: &DMatrix<f64>) -> Option<StretchContribution> {
         let (cosines, sections) = counts(stretch)?;
         let told = self.sections(stretch, sections);
         let waves = DMatrix::from_fn(sections, cosines, |k, b| {
@@ -229,7 +235,7 @@ impl<'a> Context<'a> {
         });
         let sums = self.influence() * &told.scores * &waves;
         let matrix = &sums * sums.transpose() / cosines as f64;
-        Some(Share {
+        Some(StretchContribution {
             equations: stretch.lines.first()?.nrows(),
             matrix,
             moments: self.moments(&told, &waves, noise),

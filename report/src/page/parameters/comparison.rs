@@ -43,13 +43,13 @@ pub(super) fn table(contents: &Contents<'_>) -> String {
     }
     let rows = names.iter().map(|name| {
         let mut row = vec![Cell::text(name)];
-        for pair in &pairs {
-            row.extend(cells(*pair, name));
+        for (own, other) in &pairs {
+            row.extend(cells(own, other, name));
         }
         row
     });
     let table = Table {
-        caption: String::from("Parameters by the r_σ rule beside published ones"),
+        caption: String::from("Parameters by the r_σ rule compared with published ones"),
         header: vec![groups, columns],
         rows: rows.collect(),
     };
@@ -57,7 +57,7 @@ pub(super) fn table(contents: &Contents<'_>) -> String {
 }
 
 /// Own estimate, published estimate, and their difference.
-fn cells((own, other): (&Estimate, &PublishedEstimate), name: &str) -> Vec<Cell> {
+fn cells(own: &Estimate, other: &PublishedEstimate, name: &str) -> Vec<Cell> {
     let own = find(own, name);
     let other = other.parameters.get(name);
     let difference = own.zip(other).and_then(|(own, other)| {
@@ -80,7 +80,7 @@ fn explanation(published: &Published) -> String {
     let note = published.note.as_deref();
     let note = note.map_or_else(String::new, |note| format!(" {note}"));
     format!(
-        "Published: {}. The deviations of both are those of eq. (47), which takes residuals as white: they compare with each other, and are too small to be trusted; the intervals above are not.{note}",
+        "Published: {}. Both standard deviations follow eq. (47), which assumes white residuals. They are comparable but too small; the intervals above allow for correlation.{note}",
         published.source.trim_end_matches('.')
     )
 }

@@ -366,13 +366,13 @@ fn checks() -> Vec<Check> {
         .of_model(ModelKind::Platform)
         .measured(0.001, "probability")
         .against(0.01, "false alarms in 1 % of all reports")
-        .spoiling(vec![HOSTILE.to_owned()])
-        .allowing(Grade::UseListed),
+        .with_unusable_parameters(vec![HOSTILE.to_owned()])
+        .with_grade(Grade::UseListed),
         Check::new(CheckKind::ClippedTorque, About::Data, "clipped")
             .in_run(HOSTILE)
             .of_actuator("leg1")
             .of_model(ModelKind::Actuators)
-            .allowing(Grade::DoNotUse)
+            .with_grade(Grade::DoNotUse)
             .shown_by(evidence),
     ]
 }

@@ -48,7 +48,7 @@ use crate::{
     data::Scales,
     error::Error,
     monitor::Monitor,
-    units::{Quantity, Slip, explanation},
+    units::{Quantity, UnitError, explanation},
 };
 
 /// Checks all runs and the estimates.
@@ -90,7 +90,7 @@ pub(super) struct Finding {
     /// Quantities out of their bounds, the farthest first.
     contradictions: Vec<Quantity>,
     /// The unit error that brings them back, if there is one.
-    slip: Option<&'static Slip>,
+    unit_error: Option<&'static UnitError>,
 }
 
 impl Finding {
@@ -111,14 +111,14 @@ impl Finding {
         (!contradictions.is_empty()).then(|| Self {
             run: run.name.clone(),
             actuator: actuator.map(str::to_owned),
-            slip: explanation(quantities, run.kinds(), actuator.is_some()),
+            unit_error: explanation(quantities, run.kinds(), actuator.is_some()),
             contradictions,
         })
     }
 
     /// The finding as a check.
     fn check(&self) -> Check {
-        let check = words::check(self).allowing(Grade::DoNotUse);
+        let check = words::check(self).with_grade(Grade::DoNotUse);
         match &self.actuator {
             Some(actuator) => check.of_actuator(actuator),
             None => check,
@@ -130,8 +130,10 @@ impl Finding {
 fn merged(found: Vec<Finding>, runs: usize) -> Vec<Check> {
     let mut groups: BTreeMap<(Option<String>, Option<&str>), Vec<Finding>> = BTreeMap::new();
     for finding in found {
-        let slip = finding.slip.map(|slip| slip.unit);
-        let group = groups.entry((finding.actuator.clone(), slip)).or_default();
+        let unit_error = finding.unit_error.map(|unit_error| unit_error.unit);
+        let group = groups
+            .entry((finding.actuator.clone(), unit_error))
+            .or_default();
         group.push(finding);
     }
     let of_group = |group: Vec<Finding>| -> Vec<Check> {

@@ -4,8 +4,8 @@ use overact::Model;
 
 use super::Finding;
 use crate::{
-    called::called,
     data::Scales,
+    display_names::called,
     monitor::Monitor,
     units::{Kinds, Powers, Quantity, Range},
 };

@@ -4,7 +4,7 @@ use super::Finding;
 use crate::{
     assessment::check::{About, Check, CheckKind},
     significant,
-    units::{Quantity, Slip},
+    units::{Quantity, UnitError},
 };
 
 /// Largest number of quantities named in a message.
@@ -24,8 +24,8 @@ pub(super) fn check(found: &Finding) -> Check {
     let check = check
         .measured(worst.value, worst.unit)
         .against(bound, "physical scales of robots and of the description");
-    match found.slip {
-        Some(slip) => check.in_unit(slip.signal.name(), slip.factor),
+    match found.unit_error {
+        Some(unit_error) => check.in_unit(unit_error.signal.name(), unit_error.factor),
         None => check,
     }
 }
@@ -34,7 +34,7 @@ pub(super) fn check(found: &Finding) -> Check {
 pub(super) fn hint(found: &Finding) -> String {
     let text = sentence(found);
     match &found.actuator {
-        Some(actuator) => format!("{}: {text}", crate::called::titled(actuator)),
+        Some(actuator) => format!("{}: {text}", crate::display_names::titled(actuator)),
         None => text,
     }
 }
@@ -48,11 +48,7 @@ fn sentence(found: &Finding) -> String {
         .map(quantity)
         .collect();
     let advice = found.slip.map_or_else(
-        || {
-            String::from(
-                "check the units of time, positions and torques: they have to be those of SI",
-            )
-        },
+        || String::from("check the units of time, positions and torques: they must be SI units"),
         Slip::advice,
     );
     format!("implausible: {}; {advice}", told.join(", "))

@@ -1,0 +1,319 @@
+//! Consequences of a fault hypothesis: significance and unusable parameters.
+
+use super::Context;
+use crate::{
+    assessment::{
+        check::{Check, Detectable, Grade},
+        evidence::{Axis, Curve, Evidence},
+        hypotheses::{FaultHypothesis, Group, Scores, WaldTest},
+    },
+    result::{Estimate, ParameterEstimate, Stage},
+};
+
+/// A fault is harmful if it shifts a parameter by more than this many standard deviations.
+pub(in crate::assessment) const HARMFUL: f64 = 3.0;
+
+/// A harmful fault spoils all parameters shifted by more than this many standard deviations.
+const SPOILING: f64 = 1.0;
+
+/// Another hypothesis is likely if it explains this fraction of the best one's part.
+const LIKELY: f64 = 0.5;
+
+/// Half width of a 95 % interval, in standard deviations.
+const HALF_WIDTH: f64 = 1.96;
+
+/// A tested fault hypothesis.
+pub(super) struct Tested {
+    pub(super) group: Group,
+    pub(super) wald: WaldTest,
+    /// Size to use instead of the fitted one, if another test determines it better.
+    pub(super) size: Option<f64>,
+    /// Factor of the parameter shifts in the estimate, whose band is wider than the test's.
+    pub(super) band_factor: f64,
+}
+
+impl Tested {
+    /// Detection limit of the fault, with `size` as the detectable size.
+    pub(super) fn detectable(
+        &self,
+        (context, scores): (&Context<'_>, &Scores),
+        (name, unit): (String, &'static str),
+        size: f64,
+    ) -> Detectable {
+        let all = self.shift_deviations(context, scores);
+        let most = all.iter().find(|(by, _)| by.is_finite());
+        let base = context.estimates_of(Stage::Base).next();
+        Detectable {
+            name,
+            unit,
+            is_length: false,
+            deviation: self.wald.deviation,
+            size,
+            parameter: base
+                .zip(most)
+                .map_or_else(String::new, |(base, (_, column))| self::name(base, *column)),
+            shift_deviations: most.map_or(0.0, |(by, _)| {
+                let own = self.size.unwrap_or_else(|| self.wald.size());
+                by * size / own.abs().max(f64::MIN_POSITIVE)
+            }),
+        }
+    }
+
+    /// Shifts of base and recommended parameters of the first model, with their columns.
+    ///
+    /// In standard deviations, largest first.
+    fn shift_deviations(&self, context: &Context<'_>, scores: &Scores) -> Vec<(f64, usize)> {
+        let Some(base) = context.estimates_of(Stage::Base).next() else {
+            return Vec::new();
+        };
+        let mut recommended = context.estimates_of(Stage::Recommended);
+        let smaller = recommended.find(|one| one.model == base.model);
+        let of_size = |wald: &WaldTest| -> Vec<(usize, f64)> {
+            let factor = self.band_factor * self.size.map_or(1.0, |size| size / wald.size());
+            let shifts = wald.shifts.iter();
+            shifts.map(|(column, by)| (*column, by * factor)).collect()
+        };
+        let recommended_shifts = smaller.and_then(|one| {
+            let wald = scores.test(&self.group, &one.columns())?;
+            Some((one, of_size(&wald)))
+        });
+        let mut all = by_deviation(base, &of_size(&self.wald));
+        all.extend(
+            recommended_shifts
+                .iter()
+                .flat_map(|(one, shifts)| by_deviation(one, shifts)),
+        );
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all
+    }
+}
+
+/// Effect of a fault on the parameters.
+pub(super) struct Harm {
+    /// Fraction of the squared residual that the likeliest fault explains.
+    pub(super) explained: f64,
+    /// Largest shift of a parameter in standard deviations, and the parameter.
+    pub(super) worst: f64,
+    pub(super) parameter: String,
+    /// Unusable parameters.
+    pub(super) spoiled: Vec<String>,
+    pub(super) grade: Grade,
+}
+
+/// Tests groups of columns against the base parameters; skips untestable ones.
+pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Vec<Tested> {
+    groups
+        .filter_map(|group| {
+            let wald = scores.test(&group, scores.selected())?;
+            let size = None;
+            Some(Tested {
+                group,
+                wald,
+                size,
+                band_factor: 1.0,
+            })
+        })
+        .collect()
+}
+
+/// Tests one hypothesis against the base parameters; `None` if absent or untestable.
+pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<Tested> {
+    let place = scores.hypotheses.iter().position(|one| *one == wanted)?;
+    tested(scores, std::iter::once(Group::hypothesis(place))).pop()
+}
+
+/// The hypothesis that explains most of the residual, among those significant at `level`.
+pub(super) fn most_significant(all: &[Tested], level: f64) -> Option<&Tested> {
+    let beyond = all.iter().filter(|one| one.wald.probability < level);
+    beyond.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))
+}
+
+/// Names of the base parameters of dry friction.
+pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
+    let Some(base) = context.estimates_of(Stage::Base).next() else {
+        return Vec::new();
+    };
+    let is_dry = |one: &&ParameterEstimate| {
+        let column = context.base.columns.get(one.column);
+        let column = column.and_then(|&column| context.columns.as_slice().get(column));
+        column.is_some_and(|column| column.symbol.has_sign())
+    };
+    let dry = base.parameters.iter().filter(is_dry);
+    dry.map(|one| one.name.clone()).collect()
+}
+
+/// Effect of all likely faults: the worst shift, and all parameters that any of them spoils.
+pub(super) fn worst_harm(
+    context: &Context<'_>,
+    scores: &Scores,
+    (all, most_significant): (&[Tested], &Tested),
+    level: f64,
+) -> Harm {
+    let likely = all.iter().filter(|one| {
+        one.wald.probability < level
+            && one.wald.explained >= LIKELY * most_significant.wald.explained
+    });
+    let harms: Vec<Harm> = likely.map(|one| harm(context, scores, one)).collect();
+    let count = context
+        .estimates_of(Stage::Base)
+        .next()
+        .map_or(0, |one| one.parameters.len());
+    let mut spoiled: Vec<String> = Vec::new();
+    for name in harms.iter().flat_map(|harm| &harm.spoiled) {
+        if !spoiled.contains(name) {
+            spoiled.push(name.clone());
+        }
+    }
+    let worst = harms
+        .into_iter()
+        .max_by(|a, b| a.worst.total_cmp(&b.worst))
+        .unwrap_or_else(Harm::none);
+    Harm {
+        grade: Harm::grade(spoiled.len(), count),
+        explained: most_significant.wald.explained,
+        spoiled,
+        ..worst
+    }
+}
+
+/// Effect of a fault on the base and recommended parameters of the first model.
+pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> Harm {
+    let Some(base) = context.estimates_of(Stage::Base).next() else {
+        return Harm::none();
+    };
+    let all = tested.shift_deviations(context, scores);
+    let Some(&(worst, column)) = all.first() else {
+        return Harm::none();
+    };
+    let name = |column: usize| name(base, column);
+    let mut harm = Harm {
+        explained: tested.wald.explained,
+        worst,
+        parameter: name(column),
+        ..Harm::none()
+    };
+    if worst <= HARMFUL {
+        return harm;
+    }
+    for (by, column) in all {
+        let name = name(column);
+        if by > SPOILING && !harm.spoiled.contains(&name) {
+            harm.spoiled.push(name);
+        }
+    }
+    harm.grade = Harm::grade(harm.spoiled.len(), base.parameters.len());
+    harm
+}
+
+impl Check {
+    /// Sets the grade that the harm allows.
+    pub(super) fn with_harm(self, harm: &Harm) -> Self {
+        let mut check = self
+            .with_grade(harm.grade)
+            .with_unusable_parameters(harm.spoiled.clone());
+        check.explained = Some(harm.explained);
+        if harm.counts() { check.found() } else { check }
+    }
+}
+
+impl Harm {
+    /// No effect.
+    fn none() -> Self {
+        Self {
+            explained: 0.0,
+            worst: 0.0,
+            parameter: String::new(),
+            spoiled: Vec::new(),
+            grade: Grade::Use,
+        }
+    }
+
+    /// Adds unusable parameters.
+    pub(super) fn spoil(&mut self, names: Vec<String>) {
+        if !names.is_empty() {
+            self.grade = self.grade.max(Grade::UseListed);
+        }
+        for name in names {
+            if !self.spoiled.contains(&name) {
+                self.spoiled.push(name);
+            }
+        }
+    }
+
+    /// Adds the effect of another fault.
+    pub(super) fn with(&mut self, context: &Context<'_>, other: &Self) {
+        self.spoil(other.spoiled.clone());
+        let base = context.estimates_of(Stage::Base).next();
+        let count = base.map_or(0, |one| one.parameters.len());
+        self.grade = self.grade.max(Self::grade(self.spoiled.len(), count));
+        if other.worst > self.worst {
+            self.worst = other.worst;
+            self.parameter.clone_from(&other.parameter);
+        }
+    }
+
+    /// The grade for a number of spoiled parameters among all.
+    fn grade(spoiled: usize, parameters: usize) -> Grade {
+        match spoiled {
+            0 => Grade::Use,
+            _ if 2 * spoiled > parameters => Grade::DoNotUse,
+            _ => Grade::UseListed,
+        }
+    }
+
+    /// Whether a parameter shifts by more than one standard deviation.
+    pub(super) fn counts(&self) -> bool {
+        self.worst > SPOILING
+    }
+
+    /// The effect as the end of a sentence.
+    pub(super) fn words(&self) -> String {
+        if self.grade == Grade::Use {
+            return format!("it shifts no parameter by more than {:.1} σ", self.worst);
+        }
+        format!("it shifts `{}` by {:.0} σ", self.parameter, self.worst)
+    }
+}
+
+/// Absolute parameter shifts of an estimate in standard deviations, each with its column.
+fn by_deviation(estimate: &Estimate, shifts: &[(usize, f64)]) -> Vec<(f64, usize)> {
+    let deviation = |column: usize| {
+        let own = estimate.parameters.iter().find(|one| one.column == column);
+        let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
+        half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
+    };
+    let shifts = shifts.iter();
+    shifts
+        .map(|(column, by)| (by.abs() / deviation(*column), *column))
+        .collect()
+}
+
+fn name(estimate: &Estimate, column: usize) -> String {
+    let own = estimate.parameters.iter().find(|one| one.column == column);
+    own.map_or_else(String::new, |one: &ParameterEstimate| one.name.clone())
+}
+
+/// Plot of the squared residual over the size of a fault.
+///
+/// It is a parabola with its minimum at the fitted size.
+pub(super) fn parabola(wald: &WaldTest, title: &str, axis: (&str, &str, f64)) -> Evidence {
+    const POINTS: usize = 41;
+    let (label, unit, scale) = axis;
+    let (size, reach) = (wald.size(), 2.0 * wald.size().abs() + 6.0 * wald.deviation);
+    let x: Vec<f64> = (0..POINTS)
+        .map(|i| reach * (2.0 * i as f64 / (POINTS - 1) as f64 - 1.0))
+        .collect();
+    let remaining = |at: f64| {
+        let off = if size == 0.0 { 0.0 } else { 1.0 - at / size };
+        100.0 * (1.0 - wald.explained * (1.0 - off * off)).max(0.0).sqrt()
+    };
+    let y: Vec<f64> = x.iter().map(|at| remaining(*at)).collect();
+    let x: Vec<f64> = x.iter().map(|at| scale * at).collect();
+    Evidence {
+        title: title.to_owned(),
+        x: Axis::new(label, unit),
+        y: Axis::new("remaining residual", "%"),
+        lines: vec![Curve::new("", &x, &y)],
+        ..Evidence::default()
+    }
+}

@@ -1,0 +1,126 @@
+//! Implausible raw numbers: clipped torques, stuck encoders, lost samples, standstill, degrees.
+
+use overact::{Model, StandardParameter};
+
+use super::Context;
+use super::rotation;
+use crate::{
+    assessment::check::{About, Check, CheckKind, Grade},
+    error::Error,
+    kinematics::conditioning::couples,
+    monitor::{Monitor, Suspicion, Trouble},
+};
+
+/// Checks all runs.
+pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let of_run = |(log, watched): (&crate::data::Log, &super::Watched)| {
+        suspicions(context.model, log.name(), watched.monitor.clone())
+    };
+    let mut checks: Vec<Check> = context.runs().flat_map(of_run).collect();
+    checks.extend(rotation::checks(context)?);
+    let stands = |run: &crate::data::Log| {
+        let mut own = checks
+            .iter()
+            .filter(|one| one.kind == CheckKind::Standstill);
+        own.any(|one| one.run.as_deref() == Some(run.name()))
+    };
+    let all = context.dataset.runs.iter().all(stands);
+    // The sign of a velocity that is only noise is random.
+    let spoiled: Vec<String> = match context.settings.velocity_dead_band {
+        0.0 => dry_friction(context),
+        _ => Vec::new(),
+    };
+    for check in &mut checks {
+        if check.kind != CheckKind::Standstill {
+            continue;
+        }
+        if all {
+            check.grade = Grade::DoNotUse;
+        } else if !spoiled.is_empty() {
+            check.grade = Grade::UseListed;
+            check.spoiled.clone_from(&spoiled);
+        }
+    }
+    if checks.is_empty() {
+        checks.push(Check::new(
+            CheckKind::DroppedSamples,
+            About::Data,
+            "no torque is clipped, no encoder is stuck, and no sample is lost",
+        ));
+    }
+    Ok(checks)
+}
+
+/// Names of base parameters of dry friction and offsets, which a standstill does not separate.
+fn dry_friction(context: &Context<'_>) -> Vec<String> {
+    let columns = context.columns.as_slice();
+    let base = context.base.columns.iter().zip(&context.base.names);
+    let is_dry = |column: usize| {
+        let symbol = columns.get(column).map(|column| column.symbol);
+        symbol.is_some_and(|symbol| symbol.has_sign() || symbol == StandardParameter::Off)
+    };
+    base.filter(|(column, _)| is_dry(**column))
+        .map(|(_, name)| name.clone())
+        .collect()
+}
+
+/// Findings in the raw numbers of a run, without those that need a fit.
+pub(crate) fn suspicious(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
+    let degrees =
+        rotation::degrees(model, run, &monitor).filter(|_| !rotation::rotates(model, &monitor));
+    let mut checks = suspicions(model, run, monitor);
+    checks.extend(degrees);
+    checks
+}
+
+/// Findings in the raw numbers of a run, except for angles of many turns.
+fn suspicions(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
+    let suspicions = monitor.suspicions(model.info().actuators, couples(model));
+    suspicions.into_iter().map(|one| told(run, one)).collect()
+}
+
+/// A suspicion as a check.
+fn told(run: &str, suspicion: Suspicion) -> Check {
+    let (kind, grade, origin) = match suspicion.trouble {
+        Trouble::Clipped => (
+            CheckKind::ClippedTorque,
+            Grade::DoNotUse,
+            "a smooth peak is not so flat",
+        ),
+        Trouble::Stuck => (
+            CheckKind::StuckEncoder,
+            Grade::DoNotUse,
+            "a joint needs time to stop",
+        ),
+        Trouble::Dropped => (
+            CheckKind::DroppedSamples,
+            Grade::DoNotUse,
+            "the steps of the run itself",
+        ),
+        Trouble::Duplicate => (
+            CheckKind::DuplicateColumns,
+            Grade::DoNotUse,
+            "two measured signals are never equal throughout",
+        ),
+        Trouble::Zero => (
+            CheckKind::ZeroTorque,
+            Grade::DoNotUse,
+            "a measured torque is never zero throughout",
+        ),
+        Trouble::Standstill => (
+            CheckKind::Standstill,
+            Grade::Use,
+            "the range of noise by its steps",
+        ),
+    };
+    let check = Check::new(kind, About::Data, suspicion.message)
+        .in_run(run)
+        .measured(suspicion.statistic, suspicion.unit)
+        .against(suspicion.threshold, origin)
+        .found()
+        .with_grade(grade);
+    match suspicion.actuator {
+        Some(actuator) => check.of_actuator(&actuator),
+        None => check,
+    }
+}

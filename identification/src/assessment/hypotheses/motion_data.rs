@@ -1,0 +1,265 @@
+//! Data of all samples of a motion, from which the rows of any samples are computed.
+
+use std::ops::Range;
+
+use overact::Function;
+
+use super::{
+    columns::{FaultHypothesis, Sample, actuator_states, rates},
+    misreading::Misreading,
+    pass::Pass,
+    prediction::{Prediction, dot},
+    shapes::ActuatorState,
+};
+use crate::{
+    blocks::{BLOCK, evaluate, slice},
+    error::Error,
+    kinematics::{Motion, distribution::least_torques},
+    regression::columns::Reversal,
+};
+
+/// Data of a motion; samples are consecutive.
+pub(super) struct MotionData<'a> {
+    pass: &'a Pass<'a>,
+    /// J_p^inv, n × r.
+    jacobians: &'a [f64],
+    pose: &'a [f64],
+    /// Rows of the base parameter columns, by block and line of Γ¹.
+    base: Vec<Vec<Vec<f64>>>,
+    /// Measured inputs, r per sample.
+    inputs: Vec<f64>,
+    /// For each line, the rates of the dry friction columns.
+    friction: Vec<Vec<f64>>,
+    /// Positions of the actuators.
+    pub(super) positions: Vec<f64>,
+    /// Torques and their derivatives, see [`Sample`].
+    torques: Vec<f64>,
+    torque_rates: Vec<f64>,
+    torque_bends: Vec<f64>,
+    torque_turns: Vec<f64>,
+    pub(super) actuators: Vec<ActuatorState>,
+    clock: Vec<f64>,
+    common_filter: Vec<f64>,
+    misread: Vec<f64>,
+    lengths: Vec<f64>,
+    /// Payload columns, r rows per sample.
+    payload: Vec<f64>,
+}
+
+/// Inputs that the estimate predicts for a motion.
+struct Explained {
+    /// Predicted Γ¹, samples × r.
+    all: Vec<f64>,
+    /// Its part from dry friction.
+    dry: Vec<f64>,
+}
+
+impl<'a> MotionData<'a> {
+    /// Collects the data of a motion.
+    pub(super) fn new(
+        pass: &'a Pass<'a>,
+        motion: &'a Motion,
+        jacobians: &'a [f64],
+    ) -> Result<Self, Error> {
+        let sizes = pass.model.info().sizes;
+        let (n, frequency) = (sizes.actuators, motion.sampling_frequency);
+        let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
+        let ask = |function: Function, inputs: &[&[f64]]| -> Result<Vec<f64>, Error> {
+            let all = evaluate(pass.model, function, inputs, motion.samples);
+            all.map_err(|error| motion.outside(error.sample, error.error).into())
+        };
+        let positions = ask(Function::ActuatorPositions, &states[..1])?;
+        let base = base(pass, motion)?;
+        let explained = explained(pass, &base);
+        let inputs = measured(motion, jacobians, (n, sizes.dof));
+        let [torques, smooth] = torques_without_residual(motion, jacobians, (&inputs, &explained));
+        let torque_rates = rates(&torques, n, frequency);
+        let prediction = Prediction {
+            model: pass.model,
+            columns: pass.columns,
+            base: pass.base,
+            values: pass.frame.values,
+        };
+        let [velocities, accelerations] = prediction.actuators(motion, jacobians)?;
+        let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
+        let actuators = actuator_states((motion, Reversal::new(pass.settings)), signals);
+        let torque_turns = rates(&torque_rates, n, frequency);
+        let common_filter =
+            prediction.common_filter(motion, [&torques, &torque_turns], jacobians, &actuators)?;
+        let hypotheses = pass.frame.hypotheses;
+        let moved = hypotheses
+            .iter()
+            .any(|one| matches!(one, FaultHypothesis::Offset(_)));
+        let misread = if moved {
+            prediction.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?
+        } else {
+            Vec::new()
+        };
+        let payload = match sizes.payload_parameters {
+            0 => Vec::new(),
+            _ => ask(Function::IdmRedPayload, &states)?,
+        };
+        Ok(Self {
+            friction: friction(pass, &base, frequency),
+            torque_turns,
+            torque_bends: rates(&rates(&smooth, n, frequency), n, frequency),
+            common_filter,
+            clock: prediction.clock(motion, &explained.all)?,
+            lengths: prediction.lengths(motion, pass.variants, &explained.all)?,
+            pose: &motion.pose,
+            pass,
+            jacobians,
+            base,
+            inputs,
+            positions,
+            torques,
+            torque_rates,
+            actuators,
+            misread,
+            payload,
+        })
+    }
+
+    /// Data of one sample.
+    fn sample(&self, sample: usize) -> Sample<'_> {
+        let sizes = self.pass.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let part = |all, width| slice(all, width, sample, 1);
+        Sample {
+            jacobian: part(self.jacobians, n * r),
+            torques: part(&self.torques, n),
+            torque_rates: part(&self.torque_rates, n),
+            torque_bends: part(&self.torque_bends, n),
+            torque_turns: part(&self.torque_turns, n),
+            actuators: &self.actuators[sample * n..(sample + 1) * n],
+            position_ranges: self.pass.frame.position_ranges,
+            pose: part(self.pose, sizes.pose),
+            clock: part(&self.clock, r),
+            common_filter: part(&self.common_filter, r),
+            misread: part(&self.misread, Misreading::ALL.len() * n * r),
+            lengths: part(&self.lengths, self.pass.variants.len() * r),
+        }
+    }
+
+    /// Overwrites `lines` with the rows of some samples, one vector per line of Γ¹.
+    ///
+    /// Column order: base parameters, friction rates, Y, hypotheses, payload.
+    pub(super) fn rows(&self, samples: Range<usize>, lines: &mut [Vec<f64>]) {
+        let (pass, r) = (self.pass, lines.len());
+        let (width, p, count) = (pass.width(), pass.base.len(), pass.friction.len());
+        let load = pass.model.info().sizes.payload_parameters;
+        for rows in &mut *lines {
+            rows.resize(samples.len() * width, 0.0);
+        }
+        // Waves come last and are computed from decimated positions.
+        let narrow = width - p - count - 1 - load;
+        let hypotheses = &pass.frame.hypotheses[..narrow];
+        let mut factors = vec![0.0; narrow];
+        for (place, sample) in samples.enumerate() {
+            let here = self.sample(sample);
+            let all = factors.iter_mut().zip(hypotheses);
+            all.for_each(|(factor, hypothesis)| *factor = here.factor(*hypothesis));
+            let (block, inside) = (&self.base[sample / BLOCK], sample % BLOCK);
+            for (line, rows) in lines.iter_mut().enumerate() {
+                let row = &mut rows[place * width..(place + 1) * width];
+                let (base, row) = row.split_at_mut(p);
+                base.copy_from_slice(slice(&block[line], p, inside, 1));
+                let (late, row) = row.split_at_mut(count);
+                let rates = slice(&self.friction[line], count, sample, 1);
+                late.iter_mut()
+                    .zip(rates)
+                    .for_each(|(to, rate)| *to = -rate);
+                row[0] = self.inputs[sample * r + line];
+                let (own, payload) = row[1..].split_at_mut(narrow);
+                here.entries(hypotheses, &factors, line, own);
+                payload.copy_from_slice(slice(&self.payload, load, sample * r + line, 1));
+            }
+        }
+    }
+}
+
+/// Rows of the base parameter columns, by block and line.
+fn base(pass: &Pass<'_>, motion: &Motion) -> Result<Vec<Vec<Vec<f64>>>, Error> {
+    let sizes = pass.model.info().sizes;
+    let block = |first: usize| {
+        let count = BLOCK.min(motion.samples - first);
+        let states = [
+            slice(&motion.pose, sizes.pose, first, count),
+            slice(&motion.twist, sizes.dof, first, count),
+            slice(&motion.acceleration, sizes.dof, first, count),
+        ];
+        let time = (count, 1.0 / motion.sampling_frequency);
+        let picked = (pass.base, 0);
+        let rows = { pass.columns }.evaluate(pass.model, &states, time, motion.carried(), picked);
+        rows.map_err(|error| motion.outside(first + error.sample, error.error).into())
+    };
+    let blocks = (0..motion.samples).step_by(BLOCK);
+    blocks.map(block).collect()
+}
+
+/// Inputs that the estimate predicts for all samples.
+fn explained(pass: &Pass<'_>, base: &[Vec<Vec<f64>>]) -> Explained {
+    let p = pass.base.len();
+    let values = &pass.frame.values[..p];
+    let (mut all, mut dry) = (Vec::new(), Vec::new());
+    for block in base {
+        let samples = block.first().map_or(0, |rows| rows.len() / p.max(1));
+        for sample in 0..samples {
+            for rows in block {
+                let row = slice(rows, p, sample, 1);
+                let friction = pass.friction.iter();
+                all.push(dot(row, values));
+                dry.push(friction.map(|place| row[*place] * values[*place]).sum());
+            }
+        }
+    }
+    Explained { all, dry }
+}
+
+/// Measured inputs Γ¹, samples × r.
+fn measured(motion: &Motion, jacobians: &[f64], (n, r): (usize, usize)) -> Vec<f64> {
+    let mut inputs = vec![0.0; motion.samples * r];
+    let torques = motion.torques.chunks_exact(n);
+    let jacobians = jacobians.chunks_exact(n * r).zip(torques);
+    for (own, (jacobian, torques)) in inputs.chunks_exact_mut(r).zip(jacobians) {
+        for (row, torque) in jacobian.chunks_exact(r).zip(torques) {
+            let sums = own.iter_mut().zip(row);
+            sums.for_each(|(sum, share)| *sum += share * torque);
+        }
+    }
+    inputs
+}
+
+/// Torques without the residual, and torques without residual and dry friction.
+fn torques_without_residual(
+    motion: &Motion,
+    jacobians: &[f64],
+    (inputs, explained): (&[f64], &Explained),
+) -> [Vec<f64>; 2] {
+    let of_sample = |all: &[f64]| all.len() / motion.samples.max(1);
+    let sizes = (of_sample(&motion.torques), of_sample(inputs));
+    let left = inputs.iter().zip(&explained.all).map(|(y, all)| y - all);
+    let left: Vec<f64> = left.collect();
+    let rough = left
+        .iter()
+        .zip(&explained.dry)
+        .map(|(left, dry)| left + dry);
+    let rough: Vec<f64> = rough.collect();
+    let taken = least_torques(jacobians, sizes, [&left, &rough]);
+    taken.map(|taken| {
+        let both = motion.torques.iter().zip(taken);
+        both.map(|(torque, taken)| torque - taken).collect()
+    })
+}
+
+/// Rates ẇ of the dry friction columns, by line.
+fn friction(pass: &Pass<'_>, base: &[Vec<Vec<f64>>], frequency: f64) -> Vec<Vec<f64>> {
+    let (p, count) = (pass.base.len(), pass.friction.len());
+    let line = |line: usize| {
+        let blocks = base.iter().map(|block| &block[line]);
+        let rows = blocks.flat_map(|rows| rows.chunks_exact(p.max(1)));
+        let columns = rows.flat_map(|row| pass.friction.iter().map(|place| row[*place]));
+        rates(&columns.collect::<Vec<_>>(), count, frequency)
+    };
+    (0..pass.model.info().sizes.dof).map(line).collect()
+}

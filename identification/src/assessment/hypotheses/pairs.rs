@@ -1,0 +1,171 @@
+//! Correlation of the residuals of two actuators.
+//!
+//! If torque errors e cause the residual, ρ = Jᵀ e with J = J_p^inv (the identity for a joint
+//! model). With the rows J_k of J,
+//!
+//! ```text
+//! E ρ ρᵀ = Σ_k σ_kk J_k J_kᵀ + Σ_(k<l) σ_kl (J_k J_lᵀ + J_l J_kᵀ).
+//! ```
+//!
+//! The σ are fitted to ρ ρᵀ of all samples by least squares; σ_kl is zero for independent
+//! actuators. With a_k = J_k · ρ and M_kl = J_k · J_l the products are
+//!
+//! ```text
+//! ⟨ρ ρᵀ, kl⟩ = 2 a_k a_l,   ⟨kl, mn⟩ = 2 (M_km M_ln + M_kn M_lm),
+//! ```
+//!
+//! each halved for k = l or m = n.
+
+use nalgebra::{DMatrix, DMatrixView, DVector};
+
+use super::scaled::Scaled;
+use crate::estimation::intervals::distributions::fisher_tail;
+
+/// Largest standard deviation of a correlation that is reported.
+const LARGEST_DEVIATION: f64 = 0.1;
+
+/// Products of actuator pairs: one column for each section of a run, or each cosine.
+#[derive(Debug, Clone)]
+pub(super) struct Pairs {
+    /// Pairs (k, l) with k ≤ l.
+    pairs: Vec<(usize, usize)>,
+    /// Products of the pairs with each other, flattened, and with ρ ρᵀ.
+    gram: DMatrix<f64>,
+    scores: DMatrix<f64>,
+}
+
+/// Correlation of the residuals of two actuators.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Correlation {
+    /// The two actuators.
+    pub(crate) actuators: (usize, usize),
+    /// σ_kl/√(σ_kk σ_ll).
+    pub(crate) value: f64,
+    /// Size by standard deviation, and the degrees of freedom of the latter.
+    pub(crate) strength: f64,
+    pub(crate) freedom: f64,
+    /// p-value.
+    pub(crate) probability: f64,
+}
+
+impl Pairs {
+    /// Products without samples.
+    pub(super) fn new(actuators: usize, sections: usize) -> Self {
+        let of = |k: usize| (k..actuators).map(move |l| (k, l));
+        let pairs: Vec<(usize, usize)> = (0..actuators).flat_map(of).collect();
+        Self {
+            gram: DMatrix::zeros(pairs.len().pow(2), sections),
+            scores: DMatrix::zeros(pairs.len(), sections),
+            pairs,
+        }
+    }
+
+    /// Adds a sample to a section: J, n × r, and ρ.
+    pub(super) fn add(&mut self, section: usize, jacobian: &DMatrix<f64>, residual: &DVector<f64>) {
+        let (torques, products) = (jacobian * residual, jacobian * jacobian.transpose());
+        let half = |(k, l): (usize, usize)| if k == l { 0.5 } else { 1.0 };
+        let count = self.pairs.len();
+        for (i, &(k, l)) in self.pairs.iter().enumerate() {
+            let twice = 2.0 * half((k, l));
+            self.scores[(i, section)] += twice * torques[k] * torques[l];
+            for (j, &(m, n)) in self.pairs.iter().enumerate() {
+                let both =
+                    products[(k, m)] * products[(l, n)] + products[(k, n)] * products[(l, m)];
+                self.gram[(j * count + i, section)] += twice * half((m, n)) * both;
+            }
+        }
+    }
+
+    /// Sums of the sections over cosines.
+    pub(super) fn over(&self, waves: &DMatrix<f64>) -> Self {
+        Self {
+            pairs: self.pairs.clone(),
+            gram: &self.gram * waves,
+            scores: &self.scores * waves,
+        }
+    }
+
+    /// Products of the pairs with each other over cosine m.
+    fn gram(&self, m: usize) -> DMatrixView<'_, f64> {
+        let count = self.pairs.len();
+        let all = &self.gram.as_slice()[m * count * count..(m + 1) * count * count];
+        DMatrixView::from_slice(all, count, count)
+    }
+}
+
+/// Correlations of all pairs that the motion determines; each run has its number of cosines.
+///
+/// Each pair is fitted separately, together with the variances σ_kk. For a pair,
+/// `periodic_variance` is the variance that periodic residuals add to the mean of a product. Its
+/// second value is the square of that by its degrees of freedom.
+pub(super) fn correlations<'a>(
+    runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
+    periodic_variance: &dyn Fn((usize, usize)) -> [f64; 2],
+) -> Vec<Correlation> {
+    let Some((first, _)) = runs.clone().next() else {
+        return Vec::new();
+    };
+    let places = || first.pairs.iter().enumerate();
+    let own: Vec<usize> = places()
+        .filter(|(_, (k, l))| k == l)
+        .map(|(place, _)| place)
+        .collect();
+    let off_diagonal = places().filter(|(_, (k, l))| k != l);
+    off_diagonal
+        .filter_map(|(place, &actuators)| {
+            let mut chosen = own.clone();
+            chosen.push(place);
+            correlation(
+                actuators,
+                &chosen,
+                (runs.clone(), periodic_variance(actuators)),
+            )
+        })
+        .collect()
+}
+
+/// Correlation of a pair, which is the last of the `chosen` indices.
+fn correlation<'a>(
+    actuators: (usize, usize),
+    chosen: &[usize],
+    (runs, [periodic_variance, scatter]): (
+        impl Iterator<Item = (&'a Pairs, usize)> + Clone,
+        [f64; 2],
+    ),
+) -> Option<Correlation> {
+    let count = chosen.len();
+    let of = |run: &Pairs, m: usize| run.gram(m).select_rows(chosen).select_columns(chosen);
+    let (mut gram, mut score) = (DMatrix::zeros(count, count), DMatrix::zeros(count, 1));
+    for (run, _) in runs.clone() {
+        gram += of(run, 0);
+        score += run.scores.select_rows(chosen).columns(0, 1);
+    }
+    let factor = Scaled::new(&gram)?;
+    let sizes = factor.solve(&score).column(0).clone_owned();
+    let (mut variance, mut squares) = (0.0, 0.0);
+    for (run, cosines) in runs {
+        let scores = run.scores.select_rows(chosen);
+        let sums: Vec<DVector<f64>> = (1..=cosines)
+            .map(|b| scores.column(b) - of(run, b) * &sizes)
+            .collect();
+        let sums = factor.solve(&DMatrix::from_columns(&sums));
+        // The cosines of a covariance have the mean square 1.
+        let share = 2.0 * sums.row(count - 1).norm_squared() / cosines as f64;
+        variance += share;
+        squares += share * share / cosines as f64;
+    }
+    let by_chance = variance.sqrt();
+    (variance, squares) = (variance + periodic_variance, squares + scatter);
+    let scale = (sizes[actuators.0] * sizes[actuators.1]).sqrt();
+    let strength = sizes[count - 1].abs() / variance.sqrt();
+    let freedom = variance * variance / squares;
+    let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
+    let is_determined = by_chance <= LARGEST_DEVIATION * scale;
+    (sound && is_determined).then(|| Correlation {
+        actuators,
+        value: sizes[count - 1] / scale,
+        strength,
+        freedom,
+        probability: fisher_tail(strength * strength, 1.0, freedom),
+    })
+}

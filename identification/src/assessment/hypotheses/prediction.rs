@@ -1,0 +1,312 @@
+//! Columns of hypotheses that change the motion, by finite differences.
+//!
+//! They compare the estimate's prediction for the motion with that for a slightly different one.
+
+use overact::{Function, Model};
+
+use super::{columns::rates, misreading::Misreading, shapes::ActuatorState};
+use crate::{
+    blocks::{BLOCK, evaluate, slice},
+    data::Variant,
+    error::Error,
+    kinematics::{
+        Motion,
+        distribution::{least_norm, transposed_product},
+    },
+    regression::columns::ColumnSet,
+};
+
+/// Step of a position (m, rad), and relative step of the clock.
+const STEP: f64 = 1e-5;
+
+/// Step of the time, s.
+const INSTANT: f64 = 1e-6;
+
+/// Step of a smoothing, s²: that of a moving average over 5 ms.
+///
+/// It is large enough to move a reversal by more than its noise.
+const SQUARE: f64 = 1e-6;
+
+/// An estimate that predicts torques for a motion.
+pub(super) struct Prediction<'a> {
+    pub(super) model: &'a dyn Model,
+    pub(super) columns: &'a ColumnSet,
+    pub(super) base: &'a [usize],
+    /// Estimate of each base parameter.
+    pub(super) values: &'a [f64],
+}
+
+impl<'a> Prediction<'a> {
+    /// The same parameters for another robot.
+    fn of(&self, model: &'a dyn Model) -> Self {
+        Self { model, ..*self }
+    }
+
+    /// Predicted Γ¹, samples × r, for samples one `interval` (s) apart.
+    fn explained(
+        &self,
+        motion: &Motion,
+        states: [&[f64]; 3],
+        interval: f64,
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let r = sizes.dof;
+        let mut all = Vec::with_capacity(motion.samples * r);
+        for first in (0..motion.samples).step_by(BLOCK) {
+            let count = BLOCK.min(motion.samples - first);
+            let widths = [sizes.pose, r, r];
+            let parts = [0, 1, 2].map(|i| slice(states[i], widths[i], first, count));
+            let lines = self
+                .columns
+                .evaluate(
+                    self.model,
+                    &parts,
+                    (count, interval),
+                    motion.carried(),
+                    (self.base, 0),
+                )
+                .map_err(|error| motion.outside(first + error.sample, error.error))?;
+            let p = self.base.len();
+            for sample in 0..count {
+                all.extend(
+                    lines
+                        .iter()
+                        .map(|rows| dot(slice(rows, p, sample, 1), &self.values[..p])),
+                );
+            }
+        }
+        Ok(all)
+    }
+
+    /// Actuator velocities J v and accelerations J v̇ + J̇ v, samples × n, with J = J_p^inv.
+    pub(super) fn actuators(
+        &self,
+        motion: &Motion,
+        jacobians: &[f64],
+    ) -> Result<[Vec<f64>; 2], Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let mut poses = motion.pose.clone();
+        let steps: Vec<f64> = motion.twist.iter().map(|v| v * INSTANT).collect();
+        let moved = poses.chunks_exact_mut(sizes.pose);
+        moved
+            .zip(steps.chunks_exact(r))
+            .for_each(|(pose, step)| self.model.displace(pose, step));
+        let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
+        let function = Function::InverseJacobian;
+        let later = evaluate(self.model, function, &[&poses], motion.samples).map_err(at)?;
+        let mut all = [vec![0.0; motion.samples * n], vec![0.0; motion.samples * n]];
+        for place in 0..motion.samples * n {
+            let sample = place / n;
+            let rows = [jacobians, &later].map(|all| slice(all, r, place, 1));
+            let rates = [&motion.twist, &motion.acceleration].map(|all| slice(all, r, sample, 1));
+            let product = |row: &[f64], rate: &[f64]| -> f64 {
+                row.iter().zip(rate).map(|(a, b)| a * b).sum()
+            };
+            let velocity = product(rows[0], rates[0]);
+            let change = (product(rows[1], rates[0]) - velocity) / INSTANT;
+            all[0][place] = velocity;
+            all[1][place] = product(rows[0], rates[1]) + change;
+        }
+        Ok(all)
+    }
+
+    /// Derivative of Y - W χ with respect to the relative error of the clock, samples × r.
+    ///
+    /// The sampling interval changes, too, so that velocities reverse at the same fraction of an
+    /// interval. `here` is W χ of the motion as it is.
+    pub(super) fn clock(&self, motion: &Motion, here: &[f64]) -> Result<Vec<f64>, Error> {
+        let faster = 1.0 + STEP;
+        let twist: Vec<f64> = motion.twist.iter().map(|v| v * faster).collect();
+        let acceleration: Vec<f64> = motion
+            .acceleration
+            .iter()
+            .map(|a| a * faster * faster)
+            .collect();
+        let interval = 1.0 / motion.sampling_frequency;
+        let states: [&[f64]; 3] = [&motion.pose, &twist, &acceleration];
+        let there = self.explained(motion, states, interval / faster)?;
+        Ok(here
+            .iter()
+            .zip(there)
+            .map(|(a, b)| (a - b) / STEP)
+            .collect())
+    }
+
+    /// Derivative of Y - W χ with respect to errors of the lengths, samples × lengths × r.
+    ///
+    /// `here` is W χ of the motion as it is.
+    pub(super) fn lengths(
+        &self,
+        motion: &Motion,
+        variants: &[Variant<'a>],
+        here: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        if variants.is_empty() {
+            return Ok(Vec::new());
+        }
+        let r = self.model.info().sizes.dof;
+        let interval = 1.0 / motion.sampling_frequency;
+        let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
+        let mut all = vec![0.0; here.len() * variants.len()];
+        for (number, variant) in variants.iter().enumerate() {
+            let there = self.of(variant.model).explained(motion, states, interval)?;
+            for (place, (a, b)) in here.iter().zip(&there).enumerate() {
+                let (sample, line) = (place / r, place % r);
+                all[(sample * variants.len() + number) * r + line] = (a - b) / variant.step;
+            }
+        }
+        Ok(all)
+    }
+
+    /// Derivative of Y - W χ with respect to position errors, samples × n × errors × r.
+    ///
+    /// `torques` are those of the actuators; `jacobians` has n × r entries per sample.
+    pub(super) fn misread(
+        &self,
+        motion: &Motion,
+        (torques, jacobians): (&[f64], &[f64]),
+        actuators: &[ActuatorState],
+        errors: &[Misreading],
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let rates: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
+        let changes: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
+        let here = self.left(motion, &motion.pose, torques, (&rates, &changes))?;
+        let revolute = self.model.info().actuator_is_revolute;
+        let count = errors.len();
+        let mut all = vec![0.0; motion.samples * n * count * r];
+        for (number, (actuator, error)) in (0..n)
+            .flat_map(|actuator| errors.iter().map(move |error| (actuator, error)))
+            .enumerate()
+        {
+            if !error.concerns(revolute.get(actuator) == Some(&true)) {
+                continue;
+            }
+            let (mut poses, mut rates, mut changes) =
+                (motion.pose.clone(), rates.clone(), changes.clone());
+            for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {
+                let place = sample * n + actuator;
+                let [shift, rate, change] = error.at(actuators[place]);
+                rates[place] += STEP * rate;
+                changes[place] += STEP * change;
+                let jacobian = slice(jacobians, n * r, sample, 1);
+                if let Some(distribution) = least_norm(jacobian, r) {
+                    let row = &distribution[actuator * r..(actuator + 1) * r];
+                    let step: Vec<f64> = row.iter().map(|part| STEP * shift * part).collect();
+                    self.model.displace(pose, &step);
+                }
+            }
+            let there = self.left(motion, &poses, torques, (&rates, &changes))?;
+            for (place, (a, b)) in here.iter().zip(&there).enumerate() {
+                let (sample, line) = (place / r, place % r);
+                all[(sample * n * count + number) * r + line] = (b - a) / STEP;
+            }
+        }
+        Ok(all)
+    }
+
+    /// Derivative of Y - W χ with respect to s when each signal x becomes x + s ẍ, samples × r.
+    ///
+    /// A filter that positions and torques pass has this effect, apart from its delay; see
+    /// `checks::smoothing`. Terms that are linear in the motion do not change. `torques` are the
+    /// actuator torques and their second derivatives. The result is zero if the change leaves the
+    /// workspace.
+    pub(super) fn common_filter(
+        &self,
+        motion: &Motion,
+        torques: [&[f64]; 2],
+        jacobians: &[f64],
+        actuators: &[ActuatorState],
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let velocities: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
+        let accelerations: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
+        let jerks = rates(&accelerations, n, motion.sampling_frequency);
+        let snaps = rates(&jerks, n, motion.sampling_frequency);
+        let smoothed = |values: &[f64], bends: &[f64]| -> Vec<f64> {
+            let both = values.iter().zip(bends);
+            both.map(|(value, bend)| value + SQUARE * bend).collect()
+        };
+        let mut poses = motion.pose.clone();
+        for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {
+            let bends = slice(&accelerations, n, sample, 1);
+            if let Some(distribution) = least_norm(slice(jacobians, n * r, sample, 1), r) {
+                let step = transposed_product(&distribution, bends, r);
+                let step: Vec<f64> = step.iter().map(|part| SQUARE * part).collect();
+                self.model.displace(pose, &step);
+            }
+        }
+        let here = self.left(
+            motion,
+            &motion.pose,
+            torques[0],
+            (&velocities, &accelerations),
+        )?;
+        let there = self.left(
+            motion,
+            &poses,
+            &smoothed(torques[0], torques[1]),
+            (
+                &smoothed(&velocities, &jerks),
+                &smoothed(&accelerations, &snaps),
+            ),
+        );
+        let Ok(there) = there else {
+            return Ok(vec![0.0; here.len()]);
+        };
+        let both = here.iter().zip(&there);
+        Ok(both.map(|(a, b)| (b - a) / SQUARE).collect())
+    }
+
+    /// Y - W χ at other poses, velocities and accelerations, with the same torques.
+    fn left(
+        &self,
+        motion: &Motion,
+        poses: &[f64],
+        torques: &[f64],
+        (rates, changes): (&[f64], &[f64]),
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
+        let ask = |function: Function, inputs: &[&[f64]]| {
+            evaluate(self.model, function, inputs, motion.samples).map_err(at)
+        };
+        let twist = ask(Function::TwistFromActuators, &[poses, rates])?;
+        let acceleration = ask(
+            Function::AccelerationFromActuators,
+            &[poses, &twist, changes],
+        )?;
+        let jacobians = ask(Function::InverseJacobian, &[poses])?;
+        let interval = 1.0 / motion.sampling_frequency;
+        let explained = self.explained(motion, [poses, &twist, &acceleration], interval)?;
+        let mut left = Vec::with_capacity(explained.len());
+        for sample in 0..motion.samples {
+            let jacobian = slice(&jacobians, n * r, sample, 1);
+            let inputs = transposed_product(jacobian, slice(torques, n, sample, 1), r);
+            let explained = slice(&explained, r, sample, 1);
+            left.extend(inputs.iter().zip(explained).map(|(y, w)| y - w));
+        }
+        Ok(left)
+    }
+}
+
+/// Number of partial sums of a dot product.
+const SIDE_BY_SIDE: usize = 8;
+
+/// Dot product of two vectors of equal length.
+pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
+    let (left, last) = left.as_chunks::<SIDE_BY_SIDE>();
+    let (right, end) = right.as_chunks::<SIDE_BY_SIDE>();
+    let mut sums = [0.0; SIDE_BY_SIDE];
+    for (left, right) in left.iter().zip(right) {
+        for (sum, (a, b)) in sums.iter_mut().zip(left.iter().zip(right)) {
+            *sum += a * b;
+        }
+    }
+    let rest = last.iter().zip(end).map(|(a, b)| a * b);
+    sums.iter().sum::<f64>() + rest.sum::<f64>()
+}

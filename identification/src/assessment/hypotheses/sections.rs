@@ -1,0 +1,344 @@
+//! Products of columns and residual by section of a run's time, and their cosine sums.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
+
+use super::{
+    columns::{FaultHypothesis, Layout},
+    pairs::Pairs,
+    shapes::{ActuatorState, PositionRange, Shape},
+};
+use crate::{
+    estimation::intervals::scores::cosines,
+    regression::fold::{Fold, Folds, Phases},
+};
+
+/// Sections of a run for each cosine of the covariance.
+const SECTIONS: usize = 4;
+
+/// Products of columns and residual, one column per section or cosine.
+///
+/// Cosines are cos(π m (k + 1/2)/K) over the K sections, m = 0 … 2 B. W are the columns of the base
+/// parameters, Z all columns.
+#[derive(Debug, Clone)]
+struct Products {
+    /// Wᵀ Z, p × columns, weighted.
+    cross: DMatrix<f64>,
+    /// Products of the columns of each block with each other, block by block.
+    own: DMatrix<f64>,
+    /// Zᵀ ρ.
+    scores: DMatrix<f64>,
+}
+
+/// Scores of one run, as sums over cosines of its time.
+#[derive(Debug, Clone)]
+pub(super) struct RunScores {
+    products: Products,
+    /// Products of actuator pairs.
+    pub(super) pairs: Pairs,
+    /// B, number of cosines of the covariance.
+    pub(super) cosines: usize,
+    /// Σ ρ², weighted, and its number of equations.
+    pub(super) square: f64,
+    pub(super) equations: usize,
+    /// Number of lines of the model.
+    pub(super) lines: usize,
+    /// ρ² of each sample, weighted and summed over the lines.
+    pub(super) squares: Vec<f64>,
+    /// Timing of the run and pace of the actuators.
+    pub(super) tempo: Tempo,
+    /// For periodic motion: mean rows and residual of each line at each phase.
+    pub(super) folds: Folds,
+}
+
+/// Timing of a run and pace of its motion.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tempo {
+    /// Time of the first sample from the start of the log, and sampling interval, s.
+    pub(super) start: f64,
+    pub(super) interval: f64,
+    /// Σ q̇² and Σ q̈² of each actuator over the samples.
+    pub(super) velocities: Vec<f64>,
+    pub(super) accelerations: Vec<f64>,
+}
+
+impl Tempo {
+    /// Adds velocities and accelerations of all actuators, sample by sample.
+    pub(super) fn take(&mut self, actuators: &[ActuatorState]) {
+        let n = self.velocities.len().max(1);
+        for row in actuators.chunks_exact(n) {
+            let sums = self.velocities.iter_mut().zip(&mut self.accelerations);
+            for ((velocities, accelerations), own) in sums.zip(row) {
+                *velocities += own.velocity * own.velocity;
+                *accelerations += own.acceleration * own.acceleration;
+            }
+        }
+    }
+}
+
+impl Products {
+    /// Products without rows.
+    fn new(layout: &Layout, sections: usize) -> Self {
+        Self {
+            cross: DMatrix::zeros(layout.base * layout.columns, sections),
+            own: DMatrix::zeros(layout.squares, sections),
+            scores: DMatrix::zeros(layout.columns, sections),
+        }
+    }
+
+    /// Adds rows of all columns and their residual to a section.
+    fn add(
+        &mut self,
+        layout: &Layout,
+        section: usize,
+        (all, residual): (&DMatrix<f64>, &DVector<f64>),
+    ) {
+        let size = layout.base * layout.columns;
+        let cross = &mut self.cross.as_mut_slice()[section * size..(section + 1) * size];
+        let mut cross = DMatrixViewMut::from_slice(cross, layout.base, layout.columns);
+        cross.gemm(1.0, &all.columns(0, layout.base).transpose(), all, 1.0);
+        let first = section * layout.squares;
+        for (block, place) in layout.blocks.iter().zip(&layout.places) {
+            let own = &mut self.own.as_mut_slice()[first + place.start..first + place.end];
+            let mut own = DMatrixViewMut::from_slice(own, block.len(), block.len());
+            let columns = all.columns_range(block.clone());
+            own.gemm_tr(1.0, &columns, &columns, 1.0);
+        }
+        let mut scores = self.scores.column_mut(section);
+        scores.gemv_tr(1.0, all, residual, 1.0);
+    }
+
+    /// Sums of the sections over cosines.
+    fn over(&self, waves: &DMatrix<f64>) -> Self {
+        Self {
+            cross: &self.cross * waves,
+            own: &self.own * waves,
+            scores: &self.scores * waves,
+        }
+    }
+}
+
+impl RunScores {
+    /// Wᵀ Z over cosine m.
+    pub(super) fn cross(&self, layout: &Layout, m: usize) -> DMatrixView<'_, f64> {
+        let size = layout.base * layout.columns;
+        let all = &self.products.cross.as_slice()[m * size..(m + 1) * size];
+        DMatrixView::from_slice(all, layout.base, layout.columns)
+    }
+
+    /// Products of some base parameter columns with some of all columns, over cosine m.
+    pub(super) fn cross_products(
+        &self,
+        layout: &Layout,
+        m: usize,
+        (rows, columns): (&[usize], &[usize]),
+    ) -> DMatrix<f64> {
+        let all = self.cross(layout, m);
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| all[(rows[i], columns[j])])
+    }
+
+    /// Products of the columns of a block with each other, over cosine m.
+    pub(super) fn own(&self, layout: &Layout, block: usize, m: usize) -> DMatrixView<'_, f64> {
+        let (place, first) = (&layout.places[block], m * layout.squares);
+        let all = &self.products.own.as_slice()[first + place.start..first + place.end];
+        let width = layout.blocks[block].len();
+        DMatrixView::from_slice(all, width, width)
+    }
+
+    /// Zᵀ ρ, columns × cosines.
+    pub(super) fn scores(&self) -> &DMatrix<f64> {
+        &self.products.scores
+    }
+}
+
+/// Parameters that convert decimated rows to equations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame<'a> {
+    pub(super) hypotheses: &'a [FaultHypothesis],
+    pub(super) layout: &'a Layout,
+    /// Position ranges of the actuators in all runs.
+    pub(super) position_ranges: &'a [PositionRange],
+    /// Weight of each line, and estimate of each base parameter.
+    pub(super) weights: &'a [f64],
+    pub(super) values: &'a [f64],
+}
+
+/// Accumulates the equations of a run.
+pub(super) struct Sink<'a> {
+    frame: Frame<'a>,
+    /// Number of samples so far, and in total.
+    taken: usize,
+    expected: usize,
+    /// Columns of constant torques, by which waves are multiplied.
+    constants: Vec<usize>,
+    products: Products,
+    pairs: Pairs,
+    equations: usize,
+    lines: usize,
+    squares: Vec<f64>,
+    phases: Option<Phases>,
+    folds: Folds,
+}
+
+impl<'a> Sink<'a> {
+    /// For this number of samples, with the phases of a periodic motion.
+    pub(super) fn new(frame: Frame<'a>, instants: usize, phases: Option<Phases>) -> Self {
+        let constant =
+            |one: &FaultHypothesis| matches!(one, FaultHypothesis::Torque(_, Shape::Constant));
+        let hypotheses = frame.hypotheses.iter().zip(&frame.layout.blocks);
+        let constants = hypotheses.filter(|(one, _)| constant(one));
+        let constants: Vec<usize> = constants.map(|(_, block)| block.start).collect();
+        let sections = (SECTIONS * cosines(instants)).min(instants).max(1);
+        Self {
+            frame,
+            taken: 0,
+            expected: instants,
+            pairs: Pairs::new(constants.len(), sections),
+            constants,
+            products: Products::new(frame.layout, sections),
+            equations: 0,
+            lines: 0,
+            squares: Vec::new(),
+            phases,
+            folds: Vec::new(),
+        }
+    }
+
+    /// The scores of the run with this timing.
+    pub(super) fn into_scores(self, tempo: Tempo) -> RunScores {
+        let sections = self.products.scores.ncols();
+        let cosines = cosines(self.expected).min(sections / 2).max(1);
+        let waves = DMatrix::from_fn(sections, 2 * cosines + 1, |k, m| {
+            let angle = m as f64 * (k as f64 + 0.5) / sections as f64;
+            (std::f64::consts::PI * angle).cos()
+        });
+        RunScores {
+            products: self.products.over(&waves),
+            pairs: self.pairs.over(&waves),
+            cosines,
+            square: self.squares.iter().sum(),
+            equations: self.equations,
+            lines: self.lines,
+            squares: self.squares,
+            tempo,
+            folds: self.folds,
+        }
+    }
+
+    /// Adds decimated rows of all lines, and decimated actuator positions.
+    pub(super) fn take(&mut self, lines: &[Vec<f64>], positions: &[f64]) {
+        let count = positions.len() / self.constants.len().max(1);
+        if count == 0 {
+            return;
+        }
+        let taken: Vec<(DMatrix<f64>, DVector<f64>)> = lines
+            .iter()
+            .enumerate()
+            .map(|(line, rows)| self.line(line, (rows, count), positions))
+            .collect();
+        self.fold(&taken);
+        let mut first = 0;
+        while first < count {
+            let section = self.section(first);
+            let same = (first..count).take_while(|sample| self.section(*sample) == section);
+            let part = first..first + same.count();
+            let (rows, left) = together(&taken, part.clone());
+            self.products
+                .add(self.frame.layout, section, (&rows, &left));
+            first = part.end;
+        }
+        self.equations += count * lines.len();
+        self.lines = lines.len();
+        for sample in 0..count {
+            let (n, constants) = (self.constants.len(), &self.constants);
+            let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| {
+                taken[line].0[(sample, constants[i])]
+            });
+            let residual = DVector::from_fn(lines.len(), |line, _| taken[line].1[sample]);
+            self.pairs.add(self.section(sample), &jacobian, &residual);
+            self.squares.push(residual.norm_squared());
+        }
+        self.taken += count;
+    }
+
+    /// Adds rows of all lines at their phases of the motion.
+    fn fold(&mut self, lines: &[(DMatrix<f64>, DVector<f64>)]) {
+        let Some(phases) = self.phases else {
+            return;
+        };
+        if self.folds.is_empty() {
+            let fold = |_| Fold::new(phases, self.frame.layout.columns + 1);
+            self.folds = (0..lines.len()).map(fold).collect();
+        }
+        for (fold, (rows, residual)) in self.folds.iter_mut().zip(lines) {
+            for (sample, (row, rest)) in rows.row_iter().zip(residual.iter()).enumerate() {
+                let row = row.iter().chain(std::iter::once(rest));
+                fold.add(self.taken + sample, row);
+            }
+        }
+    }
+
+    /// Section of a sample, counted from the first sample of the next rows.
+    fn section(&self, sample: usize) -> usize {
+        let sections = self.products.scores.ncols();
+        let section = (self.taken + sample) * sections / self.expected.max(1);
+        section.min(sections - 1)
+    }
+
+    /// Weighted rows of a line with all columns, and their residual.
+    fn line(
+        &self,
+        line: usize,
+        (rows, count): (&[f64], usize),
+        positions: &[f64],
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let layout = self.frame.layout;
+        let weight = self.frame.weights.get(line).copied().unwrap_or(1.0);
+        let all = DMatrix::from_row_slice(count, rows.len() / count, rows) * weight;
+        let mut residual: DVector<f64> = all.column(layout.base).clone_owned();
+        for (column, value) in self.frame.values.iter().enumerate() {
+            residual.axpy(-value, &all.column(column), 1.0);
+        }
+        let mut all = all.remove_column(layout.base);
+        all.resize_horizontally_mut(layout.columns, 0.0);
+        self.add_waves(&mut all, positions);
+        (all, residual)
+    }
+
+    /// Fills in the waves of decimated positions, multiplied by the column of a constant torque.
+    fn add_waves(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
+        let n = self.constants.len();
+        for (hypothesis, block) in self.frame.hypotheses.iter().zip(&self.frame.layout.blocks) {
+            let FaultHypothesis::Torque(actuator, Shape::Waves) = *hypothesis else {
+                continue;
+            };
+            let position_range = self.frame.position_ranges[actuator];
+            for row in 0..all.nrows() {
+                let share = all[(row, self.constants[actuator])];
+                let waves = position_range.waves(positions[row * n + actuator]);
+                for (column, wave) in block.clone().zip(waves) {
+                    all[(row, column)] = share * wave;
+                }
+            }
+        }
+    }
+}
+
+/// Rows and residual of some samples of all lines, stacked line by line.
+fn together(
+    lines: &[(DMatrix<f64>, DVector<f64>)],
+    instants: Range<usize>,
+) -> (DMatrix<f64>, DVector<f64>) {
+    let (count, columns) = (instants.len(), lines.first().map_or(0, |own| own.0.ncols()));
+    let mut rows = DMatrix::zeros(lines.len() * count, columns);
+    let mut left = DVector::zeros(lines.len() * count);
+    for (line, (all, residual)) in lines.iter().enumerate() {
+        let place = line * count;
+        rows.rows_mut(place, count)
+            .copy_from(&all.rows_range(instants.clone()));
+        left.rows_mut(place, count)
+            .copy_from(&residual.rows_range(instants.clone()));
+    }
+    (rows, left)
+}

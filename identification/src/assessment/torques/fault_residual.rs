@@ -1,0 +1,318 @@
+//! Relative residual of the torques after a fault is corrected.
+//!
+//! Any linear change of the torques changes Γ¹ = Σ_i J_iᵀ τ_i to a combination of the products J_iᵀ
+//! τ_j. The residual of any combination follows from the R factor of [W, J_1ᵀ τ_1, J_1ᵀ τ_2, …].
+//! One pass over the starts of the runs therefore tests all torque faults. Position faults that the
+//! closure does not show need one pass each.
+
+use nalgebra::{DMatrix, DVector};
+use overact::{Function, Model, StandardParameter};
+
+use crate::{
+    blocks::{BLOCK, slice},
+    data::Log,
+    error::Error,
+    estimation::base::{BaseParameters, PayloadUse, base_parameters},
+    kinematics::Motions,
+    regression::{
+        columns::ColumnSet,
+        factor::{Factor, Reduced},
+    },
+    settings::Settings,
+};
+
+/// Possible faults.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Fault {
+    /// The torque of a drive must be multiplied by a factor.
+    Gain(usize, f64),
+    /// The torques of two drives are swapped.
+    Swapped(usize, usize),
+    /// The payload label of a run is wrong.
+    Label(usize),
+}
+
+/// Columns of the model, always with those of the payload.
+pub(super) struct Columns {
+    columns: ColumnSet,
+    base: BaseParameters,
+    /// Indices of the payload columns among the base parameters.
+    payload: Vec<usize>,
+}
+
+impl Columns {
+    pub(super) fn new(model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
+        let has_payload = !model.info().payload_parameters.is_empty();
+        let columns = ColumnSet::new(
+            model,
+            has_payload,
+            settings.asymmetric_friction,
+            settings.seed,
+        )?;
+        let payload = if has_payload {
+            PayloadUse::Separate
+        } else {
+            PayloadUse::Absent
+        };
+        let base = base_parameters(model, &columns, payload, settings.seed)?;
+        let loads = columns.indices(true);
+        let places = base.columns.iter().enumerate();
+        let payload = places
+            .filter(|(_, column)| loads.contains(column))
+            .map(|(place, _)| place)
+            .collect();
+        Ok(Self {
+            columns: columns.with_friction_signs(model, settings)?,
+            base,
+            payload,
+        })
+    }
+
+    /// Reads runs and factorises their equations.
+    pub(super) fn fault_residual(
+        &self,
+        (model, runs): (&dyn Model, &[Log]),
+        settings: &Settings,
+        options: EquationOptions,
+    ) -> Result<FaultResidual<'_>, Error> {
+        let loaded = !model.info().payload_parameters.is_empty();
+        let factors = |log: &Log| {
+            let log = log.clone().with_payload(loaded);
+            run_factors(model, &log, settings, self, options)
+        };
+        Ok(FaultResidual {
+            columns: self,
+            factors: runs.iter().map(factors).collect::<Result<_, _>>()?,
+            labels: runs.iter().map(Log::payload).collect(),
+            actuators: model.info().sizes.actuators,
+            drives: options.drives,
+        })
+    }
+}
+
+/// R factors of all runs.
+pub(super) struct FaultResidual<'a> {
+    columns: &'a Columns,
+    /// For each run and line, the factor of W and of the drives' columns.
+    factors: Vec<Vec<Factor>>,
+    /// Whether each run is labelled as carrying the payload.
+    labels: Vec<bool>,
+    actuators: usize,
+    drives: Drives,
+}
+
+impl FaultResidual<'_> {
+    /// Coefficients of the drives' columns that give the inputs after correcting a fault.
+    fn share(&self, fault: Option<Fault>) -> DVector<f64> {
+        let n = self.actuators;
+        if self.drives == Drives::Together {
+            return DVector::from_element(1, 1.0);
+        }
+        let mut share = DVector::zeros(n * n);
+        for i in 0..n {
+            let (from, gain) = match fault {
+                Some(Fault::Gain(own, gain)) if own == i => (i, gain),
+                Some(Fault::Swapped(a, b)) if a == i => (b, 1.0),
+                Some(Fault::Swapped(a, b)) if b == i => (a, 1.0),
+                _ => (i, 1.0),
+            };
+            share[i * n + from] = gain;
+        }
+        share
+    }
+
+    /// Relative residual after correcting a fault, each line being divided by its norm.
+    pub(super) fn error(&self, fault: Option<Fault>) -> f64 {
+        let (all, lines) = self.stacked(fault);
+        let selected: Vec<usize> = (0..self.columns.base.columns.len()).collect();
+        all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
+    }
+
+    /// Payload mass after correcting a fault; `None` if there is none or it is undetermined.
+    pub(super) fn mass(&self, fault: Fault) -> Option<f64> {
+        let Columns { columns, base, .. } = self.columns;
+        let is_mass = |place: &&usize| {
+            let column = columns.as_slice().get(base.columns[**place]);
+            column.is_some_and(|column| column.symbol == StandardParameter::M)
+        };
+        let place = *self.columns.payload.iter().find(is_mass)?;
+        let selected: Vec<usize> = (0..base.columns.len()).collect();
+        let Reduced { triangle, rhs, .. } = self.stacked(Some(fault)).0.reduced(&selected);
+        let solved = triangle.solve_upper_triangular(&rhs)?;
+        solved.get(place).copied().filter(|mass| mass.is_finite())
+    }
+
+    /// Factor of all lines, each divided by its norm, after correcting a fault; number of lines.
+    fn stacked(&self, fault: Option<Fault>) -> (Factor, u32) {
+        let p = self.columns.base.columns.len();
+        let share = self.share(fault);
+        let lines = self.factors.first().map_or(0, Vec::len);
+        let mut stacked: Vec<DMatrix<f64>> = Vec::new();
+        let mut count = 0;
+        for line in 0..lines {
+            let mut of_line = Vec::new();
+            for (run, factors) in self.factors.iter().enumerate() {
+                let r = factors[line].matrix();
+                let sum = r.columns(p, share.len()) * &share;
+                // Below the triangle of W, only the norm of the sum matters.
+                let mut rows = DMatrix::zeros(p + 1, p + 1);
+                rows.view_mut((0, 0), (p, p))
+                    .copy_from(&r.view((0, 0), (p, p)));
+                rows.view_mut((0, p), (p, 1)).copy_from(&sum.rows(0, p));
+                rows[(p, p)] = sum.rows_range(p..).norm();
+                let relabelled = fault == Some(Fault::Label(run));
+                if self.labels[run] == relabelled {
+                    for &column in &self.columns.payload {
+                        rows.column_mut(column).fill(0.0);
+                    }
+                }
+                of_line.push(rows);
+            }
+            let squares: f64 = of_line
+                .iter()
+                .map(|rows| rows.column(p).norm_squared())
+                .sum();
+            if squares > 0.0 {
+                count += 1;
+                let scale = 1.0 / squares.sqrt();
+                stacked.extend(of_line.into_iter().map(|rows| rows * scale));
+            }
+        }
+        let mut all = Factor::new(p);
+        stacked.iter().for_each(|rows| all.push(rows));
+        (all, count)
+    }
+}
+
+/// How the torques enter the factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Drives {
+    /// Each J_iᵀ τ_j in a column of its own.
+    OneByOne,
+    /// Σ_i J_iᵀ τ_i in one column.
+    Together,
+}
+
+/// Options of the equations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EquationOptions {
+    drives: Drives,
+    /// Multiple of the gravity terms to subtract: 1 to remove gravity, 2 to reverse it.
+    without_gravity: f64,
+}
+
+impl EquationOptions {
+    pub(super) const ONE_BY_ONE: Self = Self {
+        drives: Drives::OneByOne,
+        without_gravity: 0.0,
+    };
+    pub(super) const TOGETHER: Self = Self {
+        drives: Drives::Together,
+        without_gravity: 0.0,
+    };
+
+    /// The same, with a multiple of the gravity terms subtracted.
+    pub(super) const fn without_gravity(self, times: f64) -> Self {
+        Self {
+            without_gravity: times,
+            ..self
+        }
+    }
+}
+
+/// Factor of each line of a run: W, then the drives' columns.
+fn run_factors(
+    model: &dyn Model,
+    log: &Log,
+    settings: &Settings,
+    Columns { columns, base, .. }: &Columns,
+    EquationOptions {
+        drives,
+        without_gravity,
+    }: EquationOptions,
+) -> Result<Vec<Factor>, Error> {
+    let info = model.info();
+    let (n, r) = (info.sizes.actuators, info.sizes.dof);
+    let mut motions = Motions::new(model, log, settings)?.unwatched();
+    let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
+    let more = match drives {
+        Drives::OneByOne => n * n,
+        Drives::Together => 1,
+    };
+    let (p, width) = (base.columns.len(), base.columns.len() + more);
+    let is_heavy = |place: &usize| {
+        let column = columns.as_slice().get(base.columns[*place]);
+        column.is_some_and(|column| column.symbol.is_inertial())
+    };
+    let heavy: Vec<usize> = (0..p).filter(is_heavy).collect();
+    let mut streams = (0..r)
+        .map(|_| decimator.stream(width, motions.samples()))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut factors = vec![Factor::new(width - 1); r];
+    while let Some(motion) = motions.next()? {
+        for first in (0..motion.samples).step_by(BLOCK) {
+            let count = BLOCK.min(motion.samples - first);
+            let at = |error: overact::SampleError| {
+                Error::from(motion.outside(first + error.sample, error.error))
+            };
+            let pose = slice(&motion.pose, info.sizes.pose, first, count);
+            let states = [
+                pose,
+                slice(&motion.twist, r, first, count),
+                slice(&motion.acceleration, r, first, count),
+            ];
+            let interval = 1.0 / motion.sampling_frequency;
+            let evaluate = |states: &[&[f64]; 3]| {
+                let picked = (&base.columns[..], more);
+                let carried = motion.carried();
+                let lines = columns.evaluate(model, states, (count, interval), carried, picked);
+                lines.map_err(at)
+            };
+            let mut lines = evaluate(&states)?;
+            if without_gravity > 0.0 {
+                // At rest, the columns of masses contain gravity only.
+                let rest = vec![0.0; r * count];
+                let at_rest = evaluate(&[pose, &rest, &rest])?;
+                for (own, rest) in lines.iter_mut().zip(&at_rest) {
+                    let rows = own.chunks_exact_mut(width).zip(rest.chunks_exact(width));
+                    for (own, rest) in rows {
+                        for place in heavy.iter().copied() {
+                            own[place] -= without_gravity * rest[place];
+                        }
+                    }
+                }
+            }
+            let mut jacobians = vec![0.0; count * n * r];
+            model
+                .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+                .map_err(at)?;
+            let torques = slice(&motion.torques, n, first, count);
+            for (line, rows) in lines.iter_mut().enumerate() {
+                for (sample, row) in rows.chunks_exact_mut(width).enumerate() {
+                    let jacobian = slice(&jacobians, n * r, sample, 1);
+                    let torques = slice(torques, n, sample, 1);
+                    let share = |i: usize| jacobian[i * r + line];
+                    if drives == Drives::Together {
+                        let all = torques.iter().enumerate();
+                        row[p] = all.map(|(i, torque)| share(i) * torque).sum();
+                        continue;
+                    }
+                    let products =
+                        (0..n).flat_map(|i| torques.iter().map(move |torque| share(i) * torque));
+                    row[p..]
+                        .iter_mut()
+                        .zip(products)
+                        .for_each(|(to, x)| *to = x);
+                }
+            }
+            for ((stream, rows), factor) in streams.iter_mut().zip(&lines).zip(&mut factors) {
+                let mut kept = Vec::new();
+                stream.push(rows, &mut kept);
+                if !kept.is_empty() {
+                    factor.push_rows(&kept);
+                }
+            }
+        }
+    }
+    Ok(factors)
+}
