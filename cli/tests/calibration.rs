@@ -102,7 +102,7 @@ fn an_encoder_that_is_off_is_calibrated_once_and_for_all() {
 
     let page = bench.read("report.html");
     for words in [
-        "What the loops leave unexplained",
+        "Closure residual",
         "offset_leg3",
         "Least squares and instruments agree",
         "total least squares",

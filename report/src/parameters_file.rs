@@ -9,7 +9,7 @@ use std::fmt::Write;
 pub fn parameters_file(identification: &Identification) -> Option<String> {
     let consistent: &Consistent = identification.consistent.first()?;
     let mut text = format!(
-        "# Physically consistent standard parameters of {}, SI units.\n# They leave {} % of the torques of {} unexplained, the base parameters {} %.\nrobot = \"{}\"\n\n[parameters]\n",
+        "# Physically consistent standard parameters of {}, SI units.\n# Relative residual of {2}: {1} %, with the base parameters {3} %.\nrobot = \"{4}\"\n\n[parameters]\n",
         visible(&identification.robot),
         significant(consistent.relative_error_percent, 4),
         match identification.runs.len() {

@@ -54,7 +54,7 @@ pub fn document_with_figures(identification: &Identification) -> Result<String, 
 
 fn json(document: &impl Serialize) -> Result<String, Error> {
     serde_json::to_string_pretty(document).map_err(|error| {
-        let message = format!("the result is no JSON: {error}");
+        let message = format!("the result cannot be written as JSON: {error}");
         Problem::new(Code::NO_RESULT_TEXT, message).into()
     })
 }
@@ -74,13 +74,13 @@ pub fn whole_page(
         Attachment {
             name: &csv_name,
             media_type: "text/csv",
-            what: "all numbers, one a row",
+            what: "all numbers, one per row",
             text: &csv,
         },
         Attachment {
             name: &json_name,
             media_type: "application/json",
-            what: "the same as a document, with settings and warnings",
+            what: "the same as JSON, with settings and warnings",
             text: &json,
         },
     ];

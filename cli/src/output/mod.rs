@@ -105,7 +105,7 @@ pub(crate) fn json(document: &impl Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(document).map_err(|error| {
         Problem::new(
             Code::NO_RESULT_TEXT,
-            format!("the result is no JSON: {error}"),
+            format!("the result cannot be written as JSON: {error}"),
         )
         .into()
     })

@@ -25,9 +25,9 @@ fn body(calibration: &Calibration) -> String {
         html.push_str(&residual(calibration));
         html.push_str(&changes(&calibration.estimated));
         let outcome = if calibration.is_change() {
-            "All else on this page is found with these changes."
+            "All other results on this page include these changes."
         } else {
-            "The estimation has not converged: all else on this page is found without these changes."
+            "The estimation has not converged: the other results on this page do not include these changes."
         };
         html.push_str(&note(outcome));
     }
@@ -43,7 +43,7 @@ fn introduction(calibration: &Calibration) -> String {
     let (n, r) = (calibration.sensors, calibration.coordinates);
     if n <= r {
         return format!(
-            "{n} sensors measure {r} coordinates: no reading contradicts another, and nothing can be calibrated."
+            "{n} sensors measure {r} coordinates: no reading is redundant, so nothing can be calibrated."
         );
     }
     let looked_for = match calibration.scope {
@@ -57,7 +57,7 @@ fn introduction(calibration: &Calibration) -> String {
         count => format!("{count} values are changed."),
     };
     format!(
-        "{n} sensors measure {r} coordinates, so that each pose is measured more often than needed. Where readings contradict each other by more than noise, an encoder or a length is not as described. Estimated were {looked_for}, from {} samples. {found}",
+        "{n} sensors measure {r} coordinates, so the measurement of each pose is redundant. If readings contradict each other by more than noise, an encoder or a length differs from its description. Estimated: {looked_for}, from {} samples. {found}",
         calibration.samples
     )
 }
@@ -66,9 +66,9 @@ fn introduction(calibration: &Calibration) -> String {
 fn residual(calibration: &Calibration) -> String {
     let row = |what: &str, misfit: f64| vec![Cell::text(what), Cell::digits(Some(misfit), 3)];
     let table = Table {
-        caption: String::from("What the loops leave unexplained"),
+        caption: String::from("Closure residual"),
         header: vec![vec![
-            Cell::text("lengths and encoders"),
+            Cell::text("values"),
             Cell::text("times the sensors' noise").class("n"),
         ]],
         rows: vec![
@@ -76,16 +76,16 @@ fn residual(calibration: &Calibration) -> String {
             row("as calibrated", calibration.misfit_after),
         ],
     };
-    table.html() + &note("Noise alone leaves 1.")
+    table.html() + &note("Noise alone gives 1.")
 }
 
 /// Description of a parameter type.
 const fn kind(kind: ParameterKind) -> &'static str {
     match kind {
-        ParameterKind::EncoderOffset => "what the encoder shows too much",
-        ParameterKind::Length => "length of a leg",
-        ParameterKind::PlatformPoint => "where the leg meets the platform",
-        ParameterKind::BasePoint => "where the leg stands",
+        ParameterKind::EncoderOffset => "encoder offset",
+        ParameterKind::Length => "leg length",
+        ParameterKind::PlatformPoint => "attachment point on the platform",
+        ParameterKind::BasePoint => "attachment point on the base",
         _ => "other",
     }
 }
@@ -108,14 +108,14 @@ fn changes(estimated: &[CalibratedParameter]) -> String {
     });
     let right = |title: &str| Cell::text(title).class("n");
     let table = Table {
-        caption: String::from("What is changed"),
+        caption: String::from("Calibrated values"),
         header: vec![vec![
             Cell::text("parameter"),
-            Cell::text("what it is"),
+            Cell::text("meaning"),
             right("described"),
             right("change"),
             right("95 % interval of the change"),
-            right("deviation"),
+            right("σ"),
             Cell::text("unit"),
             right("change (°)"),
         ]],
@@ -124,7 +124,7 @@ fn changes(estimated: &[CalibratedParameter]) -> String {
     let several = estimated.iter().filter(|one| !one.alternatives.is_empty());
     let several = several.map(|one| {
         note(&format!(
-            "In the place of `{}` a change of one of {} explains the data as well: measure which one is wrong.",
+            "Instead of `{}`, a change of one of {} explains the data equally well: measure which one is wrong.",
             one.name,
             one.alternatives
                 .iter()
@@ -150,7 +150,7 @@ fn held(held: &[HeldParameter]) -> String {
     let mut html = String::new();
     if !known.is_empty() {
         html.push_str(&paragraph(&format!(
-            "As described, and in brackets the deviation that a change would have been found with: {}.",
+            "Unchanged, with the standard deviation of a change in brackets: {}.",
             known.join(", ")
         )));
     }
@@ -172,8 +172,8 @@ fn held(held: &[HeldParameter]) -> String {
         )));
     }
     let summary = match held.len() {
-        1 => String::from("One value stays as described"),
-        count => format!("{count} values stay as described"),
+        1 => String::from("One value is unchanged"),
+        count => format!("{count} values are unchanged"),
     };
     details(&summary, &html)
 }

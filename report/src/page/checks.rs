@@ -28,7 +28,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     };
     Section {
         id: "checks",
-        title: "What the verdict rests on",
+        title: "Checks behind the verdict",
         body,
     }
 }
@@ -52,7 +52,7 @@ fn failed(identification: &Identification) -> String {
     let mut all: Vec<(usize, &Check)> = numbered(identification, false).collect();
     all.sort_by_key(|(_, check)| std::cmp::Reverse(check.grade));
     if all.is_empty() {
-        return paragraph("No check found anything.");
+        return paragraph("All checks passed.");
     }
     let mut html = String::new();
     for (number, check) in all {
@@ -97,7 +97,7 @@ fn measured(check: &Check) -> String {
     }
     if !check.origin.is_empty() {
         let origin = check.origin.trim_end_matches('.');
-        parts.push(format!("Where the limit comes from: {origin}."));
+        parts.push(format!("Source of the limit: {origin}."));
     }
     if parts.is_empty() {
         return String::new();
@@ -115,7 +115,7 @@ fn spoiled(check: &Check) -> String {
         .iter()
         .map(|name| format!("`{name}`"))
         .collect();
-    paragraph(&format!("Not to be used: {}.", names.join(", ")))
+    paragraph(&format!("Do not use: {}.", names.join(", ")))
 }
 
 /// Collapsed table of passed checks, followed by their plots.
@@ -143,11 +143,11 @@ fn passed(identification: &Identification) -> String {
         ("check", ""),
         ("measured", ""),
         ("limit", ""),
-        ("where the limit comes from", "screen-only"),
-        ("in words", ""),
+        ("source of the limit", "screen-only"),
+        ("result", ""),
     ];
     let table = Table {
-        caption: String::from("Checks that found nothing"),
+        caption: String::from("Passed checks"),
         header: vec![
             titles
                 .iter()
@@ -165,10 +165,10 @@ fn passed(identification: &Identification) -> String {
         })
         .collect();
     let summary = match all.len() {
-        1 => String::from("What was found in order: one result, of all models and stages"),
-        count => format!("What was found in order: {count} results, of all models and stages"),
+        1 => String::from("One passed check, over all models and stages"),
+        count => format!("{count} passed checks, over all models and stages"),
     };
-    let elsewhere = "<p class=\"note paper-only\">Where the limits come from, and what shows these results, is on the page and not on paper.</p>\n";
+    let elsewhere = "<p class=\"note paper-only\">The page on screen also shows the sources of the limits and the plots.</p>\n";
     let plots = format!("<div class=\"screen-only\">{plots}</div>\n");
     let table = format!("<div class=\"passed\">{}</div>\n", table.html());
     details(&summary, &(table + elsewhere + &plots))

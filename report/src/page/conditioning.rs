@@ -33,7 +33,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         let mut keys = String::new();
         let has_kept = has_kept(identification);
         if has_kept {
-            caption.push_str(" Case 2 rests on the kept actuators alone: where its line rises above the dashed limit, they hardly determine the platform’s motion, and case 2 amplifies noise.");
+            caption.push_str(" Case 2 uses the kept actuators only: where its line is above the dashed limit, they hardly determine the platform’s motion, and case 2 amplifies noise.");
             keys = key(&[
                 ("first", "all actuators (case 1)"),
                 ("second", "kept actuators (case 2)"),
@@ -96,7 +96,7 @@ fn table(identification: &Identification) -> String {
         ("where", ""),
     ];
     Table {
-        caption: String::from("The systems of equations and their condition numbers"),
+        caption: String::from("Condition numbers of the systems of equations"),
         header: vec![
             titles
                 .iter()
@@ -157,7 +157,7 @@ fn crossings(identification: &Identification) -> String {
         String::from("No run crosses a singularity of the kept actuators.")
     } else {
         format!(
-            "A singularity of the kept actuators is crossed: {}. There case 2 has no value, and near it no accuracy, although its relative error may look better than that of case 1.",
+            "A singularity of the kept actuators is crossed: {}. Case 2 is undefined there and inaccurate nearby, although its relative error may be lower than that of case 1.",
             places.join("; ")
         )
     }

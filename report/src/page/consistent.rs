@@ -14,20 +14,20 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let mut body = String::new();
     if !all.is_empty() {
         body.push_str(&paragraph(
-            "Base parameters are sums of the masses and inertias of single bodies, and noise can make them sums that no robot has. Here every body has a mass, a centre of mass and inertias that some distribution of matter has, and friction is positive. Among all such parameters these explain the torques best; where the data leave them open, they are the nearest to what was believed before: values and bounds of the table `prior` of the description, bodies filled uniformly between their joints elsewhere.",
+            "Base parameters are sums of masses and inertias of single bodies. Noise can give them values that no robot has. Here the pseudo-inertia of every body is positive definite, and friction and rotor inertia are positive. Among such parameters these fit the torques best. Where the data do not determine them, they stay close to the prior: values and bounds of the table `prior` of the description, otherwise bodies filled uniformly between their joints.",
         ));
         body.extend(all.iter().map(of_model));
     }
     Section {
         id: "consistent",
-        title: "Parameters that a robot can have",
+        title: "Physically consistent parameters",
         body,
     }
 }
 
 fn of_model(one: &Consistent) -> String {
     let cost = format!(
-        "{}: they leave {} % of the torques unexplained, the base parameters {} %.",
+        "{}: relative residual {} %, with the base parameters {} %.",
         case_heading(one.model),
         significant(one.relative_error_percent, 4),
         significant(one.base_relative_error_percent, 4)
@@ -52,7 +52,7 @@ fn bodies(all: &[ConsistentBody]) -> String {
         header: vec![vec![
             Cell::text("mass"),
             Cell::text("kg").class("n"),
-            Cell::text("how far from degenerate (0 to 0.25)").class("n"),
+            Cell::text("distance from degenerate (0 to 0.25)").class("n"),
         ]],
         rows: all.iter().map(row).collect(),
     }
@@ -75,8 +75,8 @@ fn parameters(all: &[ConsistentParameter]) -> String {
             Cell::text("parameter"),
             Cell::text("value").class("n"),
             Cell::text("unit"),
-            Cell::text("before the data").class("n"),
-            Cell::text("told by the data, %").class("n"),
+            Cell::text("prior").class("n"),
+            Cell::text("from the data, %").class("n"),
         ]],
         rows: all.iter().map(row).collect(),
     }

@@ -37,7 +37,7 @@ pub(super) fn files(contents: &Contents<'_>) -> Section {
         );
     }
     if !body.is_empty() {
-        let introduction = "This page is one file. All its numbers are in it as files, too:";
+        let introduction = "This page is a single file. Its numbers are attached as files:";
         body = format!("{}<ul>\n{body}</ul>\n", paragraph(introduction));
     }
     Section {
@@ -65,10 +65,10 @@ fn runs(identification: &Identification) -> String {
         ("rate (Hz)", "n"),
         ("duration (s)", "n"),
         ("payload", ""),
-        ("miss of the closure (m, rad)", "n"),
+        ("closure residual (m, rad)", "n"),
     ];
     Table {
-        caption: String::from("Runs identified from"),
+        caption: String::from("Training runs"),
         header: vec![
             titles
                 .iter()
@@ -99,32 +99,32 @@ fn settings(identification: &Identification) -> String {
         ),
         (
             "Decimation",
-            format!("one equation in {} samples", settings.decimation),
+            format!("every {}th sample", settings.decimation),
         ),
         (
-            "Samples left out of each run",
+            "Skipped samples of each run",
             format!(
                 "{} at the start, {} at the end",
                 settings.skip_start, settings.skip_end
             ),
         ),
         (
-            "Equations left out at standstill",
+            "Equations skipped at standstill",
             standstill(identification),
         ),
         ("Weighted least squares", yes(settings.weighted)),
         (
-            "Friction of its own for each direction",
+            "Direction-dependent friction",
             yes(settings.asymmetric_friction),
         ),
         (
-            "Deviation of the residual",
+            "Standard deviation of the residual",
             String::from(match settings.normalisation {
                 Normalisation::Unbiased => "unbiased, eq. (46)",
                 Normalisation::SampleVariance => "sample variance",
             }),
         ),
-        ("The r_σ rule ends below", significant(settings.r_sigma, 4)),
+        ("Limit of the r_σ rule", significant(settings.r_sigma, 4)),
         ("Seed of the random states", settings.seed.to_string()),
     ];
     Table {

@@ -36,12 +36,12 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         }
     }
     if !body.is_empty() {
-        let introduction = "Parameters are cancelled one after the other, each time the one of the largest relative standard deviation. The recommended model is the last one on this way that the data do not refute; the r_σ rule goes on until the deviations are alike.";
+        let introduction = "Parameters are cancelled one after the other, each time the one with the largest relative standard deviation. The recommended model is the last one that the data do not refute. The r_σ rule continues until the standard deviations are similar.";
         body = paragraph(introduction) + &body;
     }
     Section {
         id: "elimination",
-        title: "How the smaller models were found",
+        title: "Elimination of parameters",
         body,
     }
 }
@@ -72,7 +72,7 @@ fn because(estimate: &Estimate) -> String {
     let stop = estimate.stop.as_deref().unwrap_or_default();
     match stop.trim_end_matches('.') {
         "" => String::new(),
-        stop => format!(" and ends there because {stop}"),
+        stop => format!(". It stopped because {stop}"),
     }
 }
 
@@ -87,12 +87,12 @@ fn path(
         .zip(base)
         .map(|(one, base)| base.parameters.len().saturating_sub(one.parameters.len()));
     let errors = errors(estimate, end);
-    let mut entries = vec![("first", "runs identified from")];
+    let mut entries = vec![("first", "training runs")];
     if errors.lines.len() > 1 {
-        entries.push(("second", "held-out parts"));
+        entries.push(("second", "validation parts"));
     }
     let r_sigma = identification.settings.r_sigma;
-    let caption = "Left: the relative error hardly changes while needless parameters go, and grows from the first one that the data need: there the recommended model stops. Right: the ratio that the r_σ rule looks at; it ends below the dashed line.";
+    let caption = "Left: the relative error hardly changes while needless parameters are cancelled. It grows from the first one that the data need, where the recommended model stops. Right: the ratio that the r_σ rule tests; the rule stops below the dashed line.";
     figure(
         &format!("figure-elimination-{}", estimate.model),
         &[errors.svg(), ratio(estimate, r_sigma, end).svg()],
@@ -115,14 +115,14 @@ fn cancelled() -> Axis {
 /// Relative errors along the elimination, for training runs and for validation parts if there are
 /// any.
 fn errors(estimate: &Estimate, end: Option<usize>) -> Chart {
-    let own = "on the runs identified from";
+    let own = "on the training runs";
     let own = errors_line(&estimate.removals, own, Look::First, |one| {
         (
             Some(one.relative_error_before_percent),
             Some(one.relative_error_after_percent),
         )
     });
-    let others = "on held-out parts";
+    let others = "on validation parts";
     let others = errors_line(&estimate.removals, others, Look::Second, |one| {
         (one.held_out_before_percent, one.held_out_after_percent)
     });
@@ -144,20 +144,17 @@ fn ratio(estimate: &Estimate, r_sigma: f64, end: Option<usize>) -> Chart {
     let removals = &estimate.removals;
     let steps: Vec<f64> = (0..removals.len()).map(|step| step as f64).collect();
     let ratios: Vec<f64> = removals.iter().map(|one| one.deviation_ratio).collect();
-    let mut line = Line::new(
-        Look::First,
-        "largest by smallest deviation",
-        &steps,
-        &ratios,
-    );
+    let mut line = Line::new(Look::First, "largest by smallest σ", &steps, &ratios);
     if removals.iter().all(|one| one.accepted) {
         let end = (removals.len() as f64, last_ratio(estimate));
         line.points.push(end);
     }
     let case = case_heading(estimate.model);
     Chart {
-        title: String::from("Largest by smallest relative deviation"),
-        description: format!("{case}: ratio of relative deviations after each cancelled parameter"),
+        title: String::from("Largest by smallest relative σ"),
+        description: format!(
+            "{case}: ratio of relative standard deviations after each cancelled parameter"
+        ),
         x: cancelled(),
         y: Axis::logarithmic(""),
         lines: vec![line.with_dots()],
@@ -222,8 +219,8 @@ fn steps(estimate: &Estimate) -> String {
         ("largest by smallest % σ", "n"),
         ("F", "n"),
         ("error after (%)", "n"),
-        ("held-out error after (%)", "n"),
-        ("moves most", ""),
+        ("validation error after (%)", "n"),
+        ("largest shift", ""),
         ("step", ""),
         ("why", ""),
     ];

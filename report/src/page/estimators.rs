@@ -19,13 +19,13 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let mut body = String::new();
     if tested {
         body.push_str(&paragraph(
-            "Least squares takes the measured motion as exact. Noise of the positions pulls its estimates away from the truth, and longer runs do not mend that. Instruments are columns of the model that go with the motion but not with its noise: an estimate by instruments has no such bias, but scatters more. Where both agree, the noise does no harm. Total least squares allows errors everywhere; it stands beside them for comparison only.",
+            "Least squares assumes an exact measured motion. Position noise biases its estimates, and longer runs do not reduce that bias. Instruments are regressor columns that correlate with the motion but not with its noise. Estimates by instrumental variables have no such bias but a larger variance. If both agree, position noise is harmless. Total least squares allows errors in all columns and is shown for comparison only.",
         ));
         body.extend(all.iter().map(of_model));
     }
     Section {
         id: "estimators",
-        title: "Does noise of the positions bias the estimates?",
+        title: "Does position noise bias the estimates?",
         body,
     }
 }
@@ -41,13 +41,13 @@ fn of_model(told: &ErrorsInRegressor) -> String {
     let mut html = heading + &paragraph(&outcome);
     let differs = told.agreement.as_ref().is_some_and(|one| one.differs);
     if differs && !told.parameters.iter().any(|one| one.spoiled) {
-        html.push_str(&paragraph("No difference exceeds the deviation that least squares has already, so that nothing is spoiled by it."));
+        html.push_str(&paragraph("No difference exceeds the standard deviation of least squares, so the bias does not matter."));
     }
     let (differing, rest): (Vec<_>, Vec<_>) = told.parameters.iter().partition(|one| one.differs);
     if !differing.is_empty() {
         html.push_str(&table("Base parameters that differ", &differing));
         html.push_str(&note(
-            "A difference that is in bold exceeds the deviation of least squares, too: take the estimate by instruments. The others are biased by less than they scatter.",
+            "A difference in bold also exceeds the standard deviation of least squares: use the estimate by instruments. The bias of the others is smaller than their standard deviation.",
         ));
     }
     if !rest.is_empty() {
@@ -76,12 +76,12 @@ fn verdict(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
         "Least squares and instruments agree"
     };
     let exceeds = if agreement.together {
-        "chance alone makes as large a difference"
+        "chance alone gives such a difference"
     } else {
-        "chance alone makes one of the parameters differ as much"
+        "chance alone gives one parameter such a difference"
     };
     format!(
-        "{outcome}: {exceeds} with a probability of {}; they count as different below {}. The instruments are {source}.",
+        "{outcome}: {exceeds} with a probability of {}; the limit is {}. The instruments are {source}.",
         significant(agreement.probability, 2),
         significant(agreement.level, 2)
     )
@@ -113,7 +113,7 @@ fn table(caption: &str, parameters: &[&RegressorError]) -> String {
             right("instruments"),
             right("total least squares"),
             right("difference of the first two"),
-            right("in its deviations"),
+            right("in its σ"),
         ]],
         rows: rows.collect(),
     }

@@ -32,7 +32,7 @@ fn introduction(settings: &Settings) -> String {
         .map(|name| format!("`{name}`"))
         .collect();
     paragraph(&format!(
-        "What torque each drive gives was identified together with the parameters, relative to what is known: {}.",
+        "The torque of each drive was identified together with the parameters, relative to known values: {}.",
         known.join(", ")
     ))
 }
@@ -45,16 +45,12 @@ fn drives(gains: &[DriveGain]) -> String {
             Cell::digits(Some(one.factor), 5),
             Cell::digits(Some(one.deviation), 2),
             Cell::digits(one.total_least_squares, 5),
-            Cell::text(if one.is_wrong() {
-                "not as described"
-            } else {
-                ""
-            }),
+            Cell::text(if one.is_wrong() { "differs" } else { "" }),
         ]
     });
     let right = |title: &str| Cell::text(title).class("n");
     let table = Table {
-        caption: String::from("Gains by those of the description"),
+        caption: String::from("Gains relative to the description"),
         header: vec![vec![
             Cell::text("drive"),
             right("gain"),
@@ -66,7 +62,7 @@ fn drives(gains: &[DriveGain]) -> String {
     };
     table.html()
         + &note(
-            "All torques on this page are multiplied by these gains. Total least squares take all columns for equally wrong and stand for comparison.",
+            "All torques on this page are multiplied by these gains. Total least squares assumes equal errors in all columns and is shown for comparison.",
         )
 }
 
@@ -93,6 +89,6 @@ fn parameters(parameters: &[JointParameter]) -> String {
     };
     table.html()
         + &note(
-            "These deviations, and those and the intervals elsewhere on this page, have a part that is the gains\u{2019}.",
+            "All standard deviations and intervals on this page include the uncertainty of the gains.",
         )
 }

@@ -34,13 +34,13 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         };
         let held = own.undetermined_about.map_or_else(String::new, |axis| {
             let [x, y, z] = axis.map(|one| overact_identification::significant(one, 3));
-            note(&format!("A turn about [{x}, {y}, {z}] is not determined and held at none."))
+            note(&format!("A rotation about [{x}, {y}, {z}] is not determined and fixed at zero."))
         });
-        paragraph(&format!("Where gravity points was identified together with the parameters: {}.", angle(own)))
+        paragraph(&format!("The direction of gravity was identified together with the parameters: {}.", angle(own)))
             + &table.html()
             + &held
             + &note(&format!(
-                "For the description: {}. Deviations and intervals of parameters have a part that is the direction\u{2019}s.",
+                "For the description: {}. Standard deviations and intervals of parameters include the uncertainty of the direction.",
                 described(own)
             ))
     });

@@ -141,7 +141,7 @@ fn compared(
         .map_or((0.0, 0.0), |one| durations(one, &part));
     let which = if shown < whole {
         format!(
-            "The {} s of the run’s {} s in which the prediction misses most.",
+            "The {} s of the run’s {} s with the largest prediction error.",
             significant(shown, 2),
             significant(whole, 3)
         )
@@ -149,7 +149,7 @@ fn compared(
         format!("The whole run of {} s.", significant(whole, 3))
     };
     let caption = format!(
-        "{which} The broad line was measured, the thin one on it is predicted; the difference should look like noise about zero. The titles give the relative error of the whole run."
+        "{which} The broad line is measured, the thin one predicted. The difference should look like noise around zero. The titles give the relative error of the whole run."
     );
     let keys = key(&[
         ("measured", "measured"),

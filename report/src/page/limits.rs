@@ -22,11 +22,11 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     rows.extend(not_needed(identification));
     rows.extend(cancelled_by_rule(identification));
     let body = if rows.is_empty() {
-        paragraph("Every standard parameter of the robot was identified by itself.")
+        paragraph("Every standard parameter of the robot was identified individually.")
     } else {
-        let introduction = "Some parameters do not show in the torques of any motion, some only in sums with others, and some not in these runs.";
+        let introduction = "Some parameters affect the torques of no motion, some only in sums with others, and some not in these runs.";
         let table = Table {
-            caption: String::from("Parameters that were not identified by themselves"),
+            caption: String::from("Parameters that were not identified individually"),
             header: vec![vec![Cell::text("why"), Cell::text("which")]],
             rows: rows
                 .into_iter()
@@ -37,7 +37,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     };
     Section {
         id: "limits",
-        title: "What was not identified, and why",
+        title: "Parameters that were not identified",
         body,
     }
 }
@@ -46,7 +46,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 fn structural(identification: &Identification) -> Vec<Row> {
     let mut rows = Vec::new();
     if !identification.without_effect.is_empty() {
-        let why = "No effect on the torques, whatever the motion: the robot can’t move in a way that would show them.";
+        let why = "No effect on the torques of any motion.";
         rows.push((why.to_owned(), identification.without_effect.join(", ")));
     }
     let mut regrouped: Vec<&str> = Vec::new();
@@ -60,8 +60,7 @@ fn structural(identification: &Identification) -> Vec<Row> {
         }
     }
     if !regrouped.is_empty() {
-        let why =
-            "Only in sums with others, whatever the motion: see what the base parameters are.";
+        let why = "Only in sums with others, for any motion: see the base parameters.";
         rows.push((why.to_owned(), regrouped.join(", ")));
     }
     rows
@@ -74,7 +73,7 @@ fn on_the_data(identification: &Identification) -> Vec<Row> {
         let names = base.map(|base| base.name.as_str());
         names_without(names, estimate).join(", ")
     };
-    let why = "In these runs their effect is zero or a combination of others’ (see the warnings). Runs that move the robot in other ways would show them.";
+    let why = "In these runs their effect is zero or a combination of other effects (see the warnings). Runs with other motions can determine them.";
     let base = of_stage(identification, Stage::Base);
     for_each(&base, why, missing)
 }
@@ -87,7 +86,7 @@ fn not_needed(identification: &Identification) -> Vec<Row> {
             names_without(names, estimate).join(", ")
         })
     };
-    let why = "Count as zero in the recommended model: these runs do not refute that all of them are zero together. Their estimates and intervals stand among all base parameters.";
+    let why = "Zero in the recommended model: these runs do not refute that all of them are zero together. The table of all base parameters has their estimates and intervals.";
     for_each(
         &of_stage(identification, Stage::Recommended),
         why,

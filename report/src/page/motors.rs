@@ -21,12 +21,12 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     });
     let right = |title: &str| Cell::text(title).class("n");
     let table = Table {
-        caption: String::from("Base parameters of drives, in front of their gears"),
+        caption: String::from("Base parameters of drives, motor side"),
         header: vec![vec![
             Cell::text("motor"),
             right("ratio"),
             Cell::text("parameter"),
-            right("at the motor"),
+            right("motor side"),
             right("deviation"),
             Cell::text("unit"),
         ]],
@@ -37,7 +37,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     } else {
         table.html()
             + &note(
-                "Inertia and viscous friction are smaller by the square of the ratio, dry friction by its magnitude, an offset by the ratio. Parameters into which others are regrouped are none of the motor alone.",
+                "Inertia and viscous friction are smaller by the square of the ratio, dry friction by its magnitude, an offset by the ratio. Regrouped parameters are not those of the motor alone.",
             )
     };
     Section {

@@ -32,7 +32,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         }
     }
     if !body.is_empty() {
-        let introduction = "What is left of the measured torques when the prediction is taken away. A residual of noise alone is white: no correlation over time, the same power at all frequencies. What the model lacks shows here: other friction, ripple of the drives, flexibility. The intervals of the parameters allow for the correlation.";
+        let introduction = "Measured minus predicted torques. A residual of noise alone is white: not autocorrelated, with equal power at all frequencies. Effects that the model lacks appear here: other friction, ripple of the drives, flexibility. The intervals of the parameters allow for autocorrelation.";
         body = paragraph(introduction) + &body;
     }
     Section {

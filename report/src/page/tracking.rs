@@ -20,7 +20,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let mut body = String::new();
     if let Some(first) = tracking.first() {
         body.push_str(&paragraph(
-            "The largest difference between desired and measured position of each actuator, in simulation. Computed torques with the recommended parameters should leave much less of it than the plain controller; the percentages say how much less.",
+            "The largest difference between desired and measured position of each actuator, in simulation. Computed torques with the recommended parameters should reduce it clearly compared with the plain controller; the percentages give the remainder.",
         ));
         body.push_str(&table(contents, &first.actuators));
     }

@@ -28,17 +28,17 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         let (id, what) = if identified && !contents.units.has_platform() {
             (
                 "figure-trajectories",
-                "The runs identified from. They should use the whole range of all joints, and accelerate: where nothing accelerates, no inertia shows.",
+                "The training runs. They should use the whole range of all joints, and accelerate: inertia has no effect without acceleration.",
             )
         } else if identified {
             (
                 "figure-trajectories",
-                "The runs identified from. They should use the whole workspace, turn the platform as well as move it, and accelerate: where nothing accelerates, no inertia shows.",
+                "The training runs. They should use the whole workspace, rotate as well as translate the platform, and accelerate: inertia has no effect without acceleration.",
             )
         } else {
             (
                 "figure-trajectories-held-out",
-                "The held-out runs. They should differ from those identified from.",
+                "The validation runs. They should differ from the training runs.",
             )
         };
         body.push_str(&figure(

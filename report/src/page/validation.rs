@@ -14,11 +14,11 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let mut body = String::new();
     if identification.cross_validation.is_empty() {
         body.push_str(&paragraph(
-            "No run was held out, so nothing tells how well the model predicts what it has not seen; the torques below are those of the runs identified from.",
+            "There are no validation data, so the error on new data is unknown. The torques below are those of the training runs.",
         ));
     } else {
         body.push_str(&paragraph(
-            "Runs that no parameter was estimated from. An error here that is much larger than on the runs identified from means that the model does not generalise. Where there are more actuators than degrees of freedom, the model leaves open how they share the load: the prediction of least norm is the smallest torques that do it, and measured torques are compared as they are and without the preload that moves nothing.",
+            "Runs that are only predicted. An error that is much larger than on the training runs means that the model does not generalise. With more actuators than degrees of freedom the model does not determine internal torques: the prediction is the torques of least norm. Measured torques are compared as they are and without preload.",
         ));
         body.push_str(&table(contents, &answers(identification), false));
         let essential = of_stage(identification, Stage::Essential);
@@ -33,7 +33,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     body.push_str(&torques);
     Section {
         id: "validation",
-        title: "Prediction of held-out runs",
+        title: "Prediction of validation runs",
         body,
     }
 }
@@ -103,7 +103,7 @@ fn table(contents: &Contents<'_>, estimates: &[&Estimate], comparable: bool) -> 
     let stage = estimates.first().map_or(Stage::Base, |one| one.stage);
     let mut html = Table {
         caption: format!(
-            "Relative errors of the torques of held-out runs (%), {}",
+            "Relative errors of the torques of validation runs (%), {}",
             stage_name(stage)
         ),
         header: vec![header],

@@ -33,7 +33,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 pub(super) fn summary(identification: &Identification) -> String {
     let verdicts = &identification.verdicts;
     if verdicts.is_empty() {
-        return String::from("Nothing was judged: the numbers below have to speak for themselves.");
+        return String::from("No verdict: no check was made.");
     }
     let sentence = |one: &Verdict| {
         format!(
@@ -81,7 +81,7 @@ fn listed(names: &[String]) -> String {
     }
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     format!(
-        "<p>To be used, if the fault is the one that is named: {}.</p>",
+        "<p>Usable if the named fault is the cause: {}.</p>",
         prose(&names.join(", "))
     )
 }
@@ -99,17 +99,15 @@ fn reasons(identification: &Identification, verdict: &Verdict) -> String {
         let count = passed(identification, verdict.model, verdict.stage);
         return match count {
             0 => String::new(),
-            1 => String::from(
-                "<p>Nothing speaks against it: the <a href=\"#checks\">one check</a> that was made found nothing.</p>",
-            ),
-            _ => format!(
-                "<p>Nothing speaks against it: none of <a href=\"#checks\">{count} checks</a> found anything.</p>"
-            ),
+            1 => {
+                String::from("<p>No objection: the <a href=\"#checks\">only check</a> passed.</p>")
+            }
+            _ => format!("<p>No objection: all <a href=\"#checks\">{count} checks</a> passed.</p>"),
         };
     }
     let reason = |(number, check): &(usize, &Check)| {
         format!(
-            "<li>{} <a href=\"#{}\">Shown here.</a></li>",
+            "<li>{} <a href=\"#{}\">Details.</a></li>",
             prose(&sentence(&check.located())),
             checks::id(*number)
         )
@@ -183,13 +181,13 @@ fn assumptions(identification: &Identification) -> String {
     };
     list(
         "unseen",
-        "What these data would not have shown",
-        "Of each kind the error that does most harm, in the size from which on nine of ten such data show it; a smaller one moves parameters in proportion:",
+        "Detection limits",
+        "For each kind of fault: the most harmful one, at the size that nine of ten such data sets would reveal. A smaller fault shifts parameters in proportion:",
         &identification.unseen,
     ) + &list(
         "assumptions",
-        "What no data can show",
-        "Whatever the checks say, the result rests on this:",
+        "Assumptions",
+        "These data cannot test the following; the result relies on it:",
         &identification.assumptions,
     )
 }

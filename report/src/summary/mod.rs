@@ -62,7 +62,7 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
     if !identification.motors.is_empty() {
         line(
             &mut motors,
-            "--all has the parameters of the drives in front of their gears, too.",
+            "--all has the parameters of the drives on the motor side, too.",
         );
     }
     let room = room.saturating_sub(motors.lines().count());
@@ -83,10 +83,10 @@ fn headline(identification: &Identification) -> String {
     let still: usize = still.flat_map(|run| &run.standstill_equations).sum();
     let left_out = match still {
         0 => String::new(),
-        count => format!(", {count} equations left out at standstill"),
+        count => format!(", {count} equations skipped at standstill"),
     };
     format!(
-        "{}: identified from {runs} run{}, {} s{left_out}",
+        "{}: {runs} training run{}, {} s{left_out}",
         identification.robot,
         if runs == 1 { "" } else { "s" },
         significant(seconds, 3)
@@ -98,7 +98,7 @@ fn consistent(identification: &Identification) -> String {
     let mut text = String::new();
     if let Some(one) = identification.consistent.first() {
         let words = format!(
-            "Physically consistent standard parameters leave {} % of the torques unexplained, the base parameters {} %; --parameters FILE writes them for controllers and simulators.",
+            "Physically consistent standard parameters: relative residual {} % (base parameters {} %); --parameters FILE writes them for controllers and simulators.",
             significant(one.relative_error_percent, 4),
             significant(one.base_relative_error_percent, 4)
         );
@@ -115,7 +115,7 @@ fn unseen(identification: &Identification) -> String {
         text.push('\n');
         line(
             &mut text,
-            "Errors that can hide in these data, up to this size (--report: all that the result rests on):",
+            "Detection limits of these data (--report lists all assumptions):",
         );
         for one in &identification.unseen {
             paragraph(&mut text, "  - ", one);
@@ -150,7 +150,7 @@ fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -
         &mut text,
         "  ",
         &format!(
-            "{own} leave {:.4} % of the torques unexplained.{}{}",
+            "{own}: relative residual {:.4} % (training){}.{}",
             estimate.relative_error_percent,
             held_out(identification, estimate),
             sureness(estimate)
@@ -187,10 +187,10 @@ fn other_stages(identification: &Identification, shown: &Estimate) -> Option<Str
     let all = base.parameters.len();
     let rule = of(identification, shown.model, Stage::Essential).map(|one| {
         let count = one.parameters.len();
-        format!("; {count} by the r_sigma rule leave {}", percent(one))
+        format!("; {count} by the r_sigma rule: {}", percent(one))
     });
     Some(format!(
-        "{all} base parameters leave {errors}{}.",
+        "{all} base parameters: {errors}{}.",
         rule.unwrap_or_default()
     ))
 }
@@ -203,10 +203,7 @@ fn held_out(identification: &Identification, estimate: &Estimate) -> String {
         .filter(|one| one.model == estimate.model && one.stage == estimate.stage)
         .map(|one| one.relative_error_percent);
     errors.reduce(f64::max).map_or_else(String::new, |worst| {
-        format!(
-            " Of the runs that were held out they leave at most {} %.",
-            significant(worst, 3)
-        )
+        format!(", at most {} % (validation)", significant(worst, 3))
     })
 }
 
@@ -222,11 +219,11 @@ fn sureness(estimate: &Estimate) -> String {
         0 => String::new(),
         unsure => {
             let known = match count(10.0) {
-                0 => String::from("None of them is"),
-                1 => String::from("1 of them is"),
-                more => format!("{more} of them are"),
+                0 => String::from("None is"),
+                1 => String::from("1 is"),
+                more => format!("{more} are"),
             };
-            format!(" {known} known to 10 % or better; of {unsure} not even the sign is known.")
+            format!(" {known} known to 10 % or better; the sign of {unsure} is unknown.")
         }
     }
 }
@@ -247,7 +244,7 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
     if verdict.grade == Grade::UseListed {
         let listed: Vec<&str> = verdict.listed.iter().map(String::as_str).collect();
         let told = format!(
-            "To be used, if the fault is the one that is named: {}.",
+            "Usable if the named fault is the cause: {}.",
             list(&listed, extent)
         );
         paragraph(&mut text, "  ", &told);
@@ -256,7 +253,7 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
         let names = names.map(|one| one.name.as_str());
         let others: Vec<&str> = names.filter(|name| !listed.contains(name)).collect();
         if !others.is_empty() {
-            let told = format!("Not to be used: {}.", list(&others, extent));
+            let told = format!("Do not use: {}.", list(&others, extent));
             paragraph(&mut text, "  ", &told);
         }
     }
@@ -270,7 +267,7 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
     let count = passed(identification, verdict.model, verdict.stage);
     if found.told.is_empty() && count > 0 {
         let s = if count == 1 { "" } else { "s" };
-        line(&mut text, &format!("  {count} check{s} found nothing."));
+        line(&mut text, &format!("  {count} check{s} passed."));
     }
     if let Some(words) = &verdict.rests_on {
         paragraph(&mut text, "  ", words);
@@ -296,15 +293,15 @@ fn next(identification: &Identification, page: Option<&str>) -> String {
     if identification.cross_validation.is_empty() {
         line(
             &mut text,
-            "No run was held out: with --cross-validate and a run that was not identified from, the verdict knows more.",
+            "There are no validation data: add a run with --cross-validate to test the prediction.",
         );
     }
     line(
         &mut text,
         &match page {
-            Some(page) => format!("The evidence behind each line, with plots: {page}"),
+            Some(page) => format!("Evidence and plots: {page}"),
             None => String::from(
-                "--report report.html writes the evidence behind each line, with plots; --tables prints all tables.",
+                "--report report.html writes the evidence with plots; --tables prints all tables.",
             ),
         },
     );

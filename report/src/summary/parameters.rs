@@ -95,7 +95,7 @@ impl Rows<'_> {
         let is_whole = fits(&with_truth) && with_truth.lines().count() == names.len() + 2;
         if has_truth && !is_whole {
             text.push_str(&self.side_by_side(&names, false));
-            paragraph(&mut text, "", "--tables has the true values.");
+            paragraph(&mut text, "", "--tables prints the true values.");
         } else {
             text.push_str(&with_truth)
         }
@@ -103,7 +103,7 @@ impl Rows<'_> {
             paragraph(
                 &mut text,
                 "",
-                "* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it",
+                "* outside its own interval: cancelling other parameters moved this estimate to a value that the data contradict",
             );
         }
         if !left.is_empty() {
@@ -112,7 +112,10 @@ impl Rows<'_> {
                 .map(|&place| best_known(&self.answers, self.names[place]));
             let best = best.fold(f64::INFINITY, f64::min);
             let known = if best.is_finite() {
-                format!("; the best of them is known to {} %", significant(best, 2))
+                format!(
+                    "; the most precise one is known to {} %",
+                    significant(best, 2)
+                )
             } else {
                 String::new()
             };

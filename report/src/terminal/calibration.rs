@@ -18,7 +18,7 @@ pub(crate) fn calibration(calibration: &Calibration) -> String {
     if calibration.samples > 0 {
         let _ = writeln!(
             text,
-            "{} samples; what is left is {} times the sensors' noise as described, {} as calibrated",
+            "{} samples; the closure residual is {} times the sensors' noise as described, {} as calibrated",
             calibration.samples,
             significant(calibration.misfit_before, 3),
             significant(calibration.misfit_after, 3)
@@ -35,7 +35,7 @@ pub(crate) fn calibration(calibration: &Calibration) -> String {
 /// Table of the changes.
 fn changes(calibration: &Calibration) -> String {
     if calibration.estimated.is_empty() {
-        return String::from("nothing is changed\n");
+        return String::from("no value is changed\n");
     }
     let rows = calibration.estimated.iter().map(|one| {
         let [low, high] = one.interval_95;
@@ -69,7 +69,7 @@ fn held(held: &[HeldParameter]) -> String {
     });
     let known: Vec<String> = known.collect();
     if !known.is_empty() {
-        text.push_str("as described (in brackets the deviation that a change of it would have):\n");
+        text.push_str("unchanged (in brackets the standard deviation of a change):\n");
         text.push_str(&wrapped(&known));
     }
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
@@ -159,7 +159,7 @@ mod tests {
             warnings: Vec::new(),
         });
         for line in [
-            "2000 samples; what is left is 493 times the sensors' noise as described, 1 as calibrated",
+            "2000 samples; the closure residual is 493 times the sensors' noise as described, 1 as calibrated",
             "  base_x_leg1 (2.3e-7 m)",
             "not determined, since it has no effect on the sensors:",
             "  base_z_leg1, base_z_leg2",

@@ -14,16 +14,12 @@ pub(crate) fn gains(gains: &[DriveGain]) -> String {
             one.actuator.clone(),
             significant(one.factor, 5),
             significant(one.deviation, 2),
-            String::from(if one.is_wrong() {
-                "not as described"
-            } else {
-                ""
-            }),
+            String::from(if one.is_wrong() { "differs" } else { "" }),
         ]
     });
-    let header = ["drive", "gain by the described", "deviation", ""];
+    let header = ["drive", "gain / described", "deviation", ""];
     format!(
-        "\nGains of the drives, by which all torques below are multiplied\n{}",
+        "\nGains of the drives (all torques below are multiplied by them)\n{}",
         table(&header, rows.collect())
     )
 }
@@ -47,7 +43,7 @@ mod tests {
             line("leg1").contains("1.2034") && line("leg1").contains("0.0031"),
             "{text}"
         );
-        assert!(line("leg1").contains("not as described"), "{text}");
+        assert!(line("leg1").contains("differs"), "{text}");
         assert!(
             line("leg2").contains("1.001") && !line("leg2").contains("not"),
             "{text}"

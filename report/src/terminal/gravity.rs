@@ -19,9 +19,9 @@ pub(crate) fn angle(direction: &GravityDirection) -> String {
         [direction.tilt, direction.tilt_deviation].map(|one| significant(one.to_degrees(), 3));
     let own = format!("{tilt} deg from the described one, standard deviation {deviation} deg");
     if direction.significant {
-        format!("{own}; all below is identified with it")
+        format!("{own}; the results below include it")
     } else {
-        format!("{own}: not told from none, so all below is identified as described")
+        format!("{own}: not significant, so the results below use the described direction")
     }
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn gravity(direction: Option<&GravityDirection>) -> String {
     let header = ["m/s^2", "described", "identified", "deviation"];
     let held = own.undetermined_about.map_or_else(String::new, |axis| {
         let [x, y, z] = axis.map(|one| significant(one, 3));
-        format!("A turn about [{x}, {y}, {z}] is not determined: it is none.\n")
+        format!("A rotation about [{x}, {y}, {z}] is not determined and fixed at zero.\n")
     });
     format!(
         "\nDirection of gravity in the base's frame: {}\n{}{held}For the description: {}\n",

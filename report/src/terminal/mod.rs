@@ -61,13 +61,7 @@ fn consistent(one: &Consistent) -> String {
             format!("{:.0}", 100.0 * own.determined),
         ]
     });
-    let header = [
-        "parameter",
-        "value",
-        "unit",
-        "before the data",
-        "told by them %",
-    ];
+    let header = ["parameter", "value", "unit", "prior", "from data %"];
     format!(
         "Physically consistent parameters, {}: error {:.4} % (base parameters {:.4} %)\n{}",
         one.model.case(),
@@ -221,7 +215,7 @@ pub fn estimate(estimate: &Estimate) -> String {
         paragraph(
             &mut text,
             "",
-            "* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it",
+            "* outside its own interval: cancelling other parameters moved this estimate to a value that the data contradict",
         );
     }
     text.push_str(&quality(estimate));
@@ -265,7 +259,7 @@ fn quality(estimate: &Estimate) -> String {
             &mut text,
             "",
             &format!(
-                "condition of the kept actuators: at most {} ({}, t = {:.3} s)",
+                "condition number of the kept actuators: at most {} ({}, t = {:.3} s)",
                 significant(partition.largest, 4),
                 partition.run,
                 partition.time
@@ -293,14 +287,14 @@ fn quality(estimate: &Estimate) -> String {
             "max/min",
             "error % before",
             "after",
-            "held out",
+            "validation",
             "|value|/sigma",
             "",
         ];
         text.push_str(&table(&header, rows.collect()));
     }
     if let Some(stop) = &estimate.stop {
-        paragraph(&mut text, "", &format!("the elimination ended: {stop}"));
+        paragraph(&mut text, "", &format!("the elimination stopped: {stop}"));
     }
     text
 }

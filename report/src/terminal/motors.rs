@@ -23,12 +23,12 @@ pub(crate) fn motors(motors: &[MotorParameter]) -> String {
         "motor",
         "ratio",
         "parameter",
-        "at the motor",
+        "motor side",
         "deviation",
         "unit",
     ];
     format!(
-        "\nParameters of the drives in front of their gears\n{}",
+        "\nParameters of the drives, motor side\n{}",
         table(&header, rows.collect())
     )
 }

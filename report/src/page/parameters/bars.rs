@@ -65,12 +65,12 @@ pub(super) fn figure(identification: &Identification, estimates: &[&Estimate]) -
     };
     let plot = |rows: Vec<Row>| {
         Forest {
-            title: format!("Deviation from {reference}"),
+            title: format!("Difference from {reference}"),
             description: format!(
                 "estimates of {} parameters with their 95 % intervals, relative to {reference}",
                 rows.len()
             ),
-            x: Axis::linear(format!("deviation from {reference} (%)")).including(&[0.0]),
+            x: Axis::linear(format!("difference from {reference} (%)")).including(&[0.0]),
             rows,
         }
         .svg()
@@ -131,17 +131,19 @@ fn bar(
 fn caption(to_truth: bool, moved: bool, left_out: &[&str]) -> String {
     let mut caption = String::from("Dots are the estimates, lines their 95 % intervals. ");
     caption.push_str(if to_truth {
-        "One line in twenty may miss zero, where the true value is."
+        "One line in twenty may miss zero, which is the true value."
     } else {
         "Lines of one parameter that do not overlap contradict each other."
     });
     if moved {
-        caption.push_str(" A cross is what the r_σ rule makes of the parameter: off its line, the data speak against it.");
+        caption.push_str(
+            " A cross is the estimate of the r_σ rule; outside the line, the data contradict it.",
+        );
     }
     if !left_out.is_empty() {
         let _ = write!(
             caption,
-            " Not drawn, because they are zero or their intervals are longer than their values: {}.",
+            " Not drawn, since they are zero or their intervals are wider than their values: {}.",
             left_out.join(", ")
         );
     }

@@ -49,7 +49,7 @@ pub(super) fn table(contents: &Contents<'_>) -> String {
         row
     });
     let table = Table {
-        caption: String::from("Parameters by the r_σ rule beside published ones"),
+        caption: String::from("Parameters by the r_σ rule compared with published ones"),
         header: vec![groups, columns],
         rows: rows.collect(),
     };
@@ -80,7 +80,7 @@ fn explanation(published: &Published) -> String {
     let note = published.note.as_deref();
     let note = note.map_or_else(String::new, |note| format!(" {note}"));
     format!(
-        "Published: {}. The deviations of both are those of eq. (47), which takes residuals as white: they compare with each other, and are too small to be trusted; the intervals above are not.{note}",
+        "Published: {}. Both standard deviations follow eq. (47), which assumes white residuals. They are comparable but too small; the intervals above allow for correlation.{note}",
         published.source.trim_end_matches('.')
     )
 }

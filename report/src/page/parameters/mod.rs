@@ -52,21 +52,21 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 const fn introduction(stage: Stage, is_held_out: bool) -> &'static str {
     match stage {
         Stage::Recommended if is_held_out => {
-            "The recommended parameters are the fewest that these data do not refute: all the others could be zero together, and runs that were held out are predicted no worse without them."
+            "The recommended parameters are the fewest that these data do not refute: all others could be zero together, and the prediction of validation data is no worse without them."
         }
         Stage::Recommended => {
-            "The recommended parameters are the fewest that these data do not refute: all the others could be zero together."
+            "The recommended parameters are the fewest that these data do not refute: all others could be zero together."
         }
         Stage::Base => {
-            "All base parameters: those that a motion of the robot can tell apart. None was cancelled."
+            "All base parameters: the smallest set of combinations that determines the torques. None was cancelled."
         }
-        Stage::Essential => "The parameters that the rule of r_σ leaves.",
-        Stage::Consistent => "Standard parameters that a robot can have.",
+        Stage::Essential => "The parameters that the r_σ rule keeps.",
+        Stage::Consistent => "Physically consistent standard parameters.",
     }
 }
 
 /// Explanation of the intervals.
-const INTERVALS: &str = "The interval holds the true value in 95 of 100 experiments like this one. It is that of the model with all base parameters at every stage: a smaller model would have shorter ones only if what it cancels were exactly zero, which nobody knows. Residuals that are correlated over time are allowed for.";
+const INTERVALS: &str = "The interval contains the true value in 95 of 100 experiments like this one. At every stage it is that of the model with all base parameters: the shorter intervals of a smaller model hold only if the cancelled parameters are exactly zero. The intervals allow for autocorrelated residuals.";
 
 /// Names of the parameters in any of the estimates, in the order of the base parameters.
 fn names<'a>(identification: &Identification, estimates: &[&'a Estimate]) -> Vec<&'a str> {
@@ -112,7 +112,7 @@ fn table(identification: &Identification, estimates: &[&Estimate]) -> String {
     }
     .html();
     if parameters().any(is_outside) {
-        html.push_str(&note("* outside of its own interval: cancelling other parameters has moved this estimate to where the data speak against it."));
+        html.push_str(&note("* outside its own interval: cancelling other parameters moved this estimate to a value that the data contradict."));
     }
     if parameters().any(misses_truth) {
         html.push_str(&note(
@@ -194,13 +194,13 @@ fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
             let answer = answers.iter().find(|answer| answer.model == one.model);
             let beside = answer.map_or_else(String::new, |answer| {
                 format!(
-                    " (the {} recommended ones leave {} %)",
+                    " (the {} recommended ones: {} %)",
                     answer.parameters.len(),
                     significant(answer.relative_error_percent, 3)
                 )
             });
             format!(
-                "{}: {} parameters leave {} % of the measured torques unexplained{beside}.",
+                "{}: {} parameters, relative residual {} %{beside}.",
                 case_heading(one.model),
                 one.parameters.len(),
                 significant(one.relative_error_percent, 3),
@@ -208,7 +208,7 @@ fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
         })
         .collect();
     let text = format!(
-        "The essential parameters of Briot, Krut and Gautier (2015): the parameter of the largest relative standard deviation is cancelled, again and again, until the largest deviation is less than r_σ = {} times the smallest. The rule asks how well a parameter is known, not whether the data need it: it also cancels parameters that the data determine, and the others move to make up for them. {}",
+        "The essential parameters of Briot, Krut and Gautier (2015): the parameter of the largest relative standard deviation is cancelled, again and again, until the largest deviation is less than r_σ = {} times the smallest. The rule tests how precisely a parameter is known, not whether the data need it. It also cancels parameters that the data determine, which biases the others. {}",
         significant(identification.settings.r_sigma, 4),
         counts.join(" ")
     );

@@ -28,28 +28,28 @@ pub(super) fn regroupings(identification: &Identification) -> String {
         ]
     });
     let table = Table {
-        caption: String::from("What each base parameter is the sum of"),
+        caption: String::from("Regrouping of each base parameter"),
         header: vec![vec![
             Cell::text("base parameter"),
             Cell::text("unit"),
-            Cell::text("is the sum"),
+            Cell::text("sum"),
         ]],
         rows: rows.collect(),
     };
     let mut body = paragraph(
-        "The torques depend on these sums only, so no experiment tells their terms apart. A name that ends with R is such a sum.",
+        "The torques depend on these sums only, so no experiment can separate their terms. A name that ends with R is such a sum.",
     );
     body.push_str(&table.html());
     if !alone.is_empty() {
         let names: Vec<&str> = alone.iter().map(|base| base.name.as_str()).collect();
         body.push_str(&paragraph(&format!(
-            "Standard parameters by themselves: {}.",
+            "Individual standard parameters: {}.",
             names.join(", ")
         )));
     }
     details(
         &format!(
-            "What the {} base parameters are",
+            "Regrouping of the {} base parameters",
             identification.base_parameters.len()
         ),
         &body,

@@ -135,10 +135,10 @@ fn no_name_reaches_the_terminal_but_as_text() {
     assert!(!told.contains(hidden), "{told:?}");
     for words in [
         "case 1 (torques projected on the platform): USE IT FOR WHAT IS LISTED",
-        "  To be used, if the fault is the one that is named: m_platformR.\n",
+        "  Usable if the named fault is the cause: m_platformR.\n",
         "DO NOT USE IT",
         "leg1: clipped",
-        "The evidence behind each line, with plots: report.html",
+        "Evidence and plots: report.html",
     ] {
         assert!(told.contains(words), "{words} in {told}");
     }
@@ -194,7 +194,7 @@ fn a_short_summary_has_fifty_lines_and_what_may_be_used() {
     );
     assert!(!short.contains("\np_1 "), "{short}");
     assert!(
-        short.contains(" more; the best of them is known to "),
+        short.contains(" more; the most precise one is known to "),
         "{short}"
     );
     assert!(short.contains("and 65 more."), "{short}");
@@ -218,7 +218,7 @@ fn what_there_is_not_is_not_spoken_of() {
     identification.runs[0].standstill_equations = vec![17];
     let html = of(&identification, &Units::default());
     assert!(html.contains("runs that were held out are predicted no worse"));
-    assert!(html.contains("Equations left out at standstill"));
+    assert!(html.contains("Equations skipped at standstill"));
     assert!(html.contains("17, below 0.0625 rad/s or m/s"));
     assert!(!html.contains("turn the platform"), "there is none");
     identification.cross_validation.clear();
@@ -245,9 +245,9 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
     let verdict = text(element(&document, "verdict"));
     for words in [
         "Case 1, recommended parameters: use it for what is listed. Case 2, recommended parameters: do not use it.",
-        "To be used, if the fault is the one that is named: m_platformR.",
-        "One parameter is biased. Shown here.",
-        "leg1: clipped. Shown here.",
+        "Usable if the named fault is the cause: m_platformR.",
+        "One parameter is biased. Details.",
+        "leg1: clipped. Details.",
         "All base parameters: use it.",
         "The gains are right",
     ] {
@@ -277,12 +277,12 @@ fn every_check_stands_with_what_shows_it() {
         begins(0, "Clipped torque: case 2"),
         "most serious first: {headings:?}"
     );
-    assert!(begins(1, "Noise of the positions in the model: case 1"));
+    assert!(begins(1, "Position noise in the regressor: case 1"));
     let biased = text(element(&document, "check-2"));
     for words in [
         "Measured: 0.001 probability. Limit: 0.01 probability.",
         "1\u{a0}% of all reports",
-        "Not to be used: a<b>",
+        "Do not use: a<b>",
     ] {
         assert!(biased.contains(words), "{words} in {biased}");
     }
