@@ -82,7 +82,7 @@ fn the_nine_parameters_of_table_2_are_left_whatever_the_rotation() {
             assert!(left < 9);
             let stop = case_2.stop.as_deref().expect("a stop");
             assert!(
-                stop.contains(&format!("alone would have ended at {left} parameters")),
+                stop.contains(&format!("alone would have kept {left} parameters")),
                 "{stop}"
             );
         }

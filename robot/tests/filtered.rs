@@ -86,7 +86,7 @@ fn what_a_harmful_fault_leaves_far_beyond_the_noise_is_not_trusted_in_part() {
         lag(torques, n, 1.0 - (-0.1_f64).exp());
     });
     let words = found(&result, CheckKind::RelativeError).join("; ");
-    assert!(words.contains("what was found explains"), "{words}");
+    assert!(words.contains("the faults found explain"), "{words}");
     assert_eq!(result.grade(), Grade::DoNotUse);
 }
 

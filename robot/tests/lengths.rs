@@ -24,7 +24,7 @@ fn a_wrong_length_of_a_serial_robot_is_named_with_its_size() {
     let of_lengths = |one: &&Check| one.kind == CheckKind::Length;
     let check = result.checks.iter().find(of_lengths).expect("a check");
     assert!(
-        !check.passed && check.words.contains("`d_2_arm` that is described 0.0"),
+        !check.passed && check.words.contains("`d_2_arm` is described 0.0"),
         "{}",
         check.words
     );

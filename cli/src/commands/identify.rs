@@ -219,10 +219,10 @@ fn from_factors(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 fn no_parameters() -> Failure {
     let problem = Problem::new(
         Code::NOT_CONSISTENT,
-        "there are no physically consistent parameters: the search for them did not end",
+        "no physically consistent parameters: the search did not converge",
     );
     problem
-        .help("narrower bounds in the table `prior`, or none, may help")
+        .help("narrow or remove the bounds in the table `prior`")
         .into()
 }
 

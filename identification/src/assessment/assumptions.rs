@@ -34,37 +34,35 @@ pub(crate) fn assumptions(
     before: Found,
 ) -> Vec<String> {
     let gains = if before.gains {
-        "the parameters that are stated as known are exact: gains and all other parameters are in proportion to them"
+        "known parameters are exact: gains and all other parameters scale with them"
     } else {
-        "the gains of the drives are right as a whole: if all torques are wrong by one factor, so are all parameters, and nothing in the data tells"
+        "the common scale of all torques is right: if all torques are wrong by one factor, so are all parameters"
     };
     let mut all = vec![
         String::from(gains),
         String::from(
-            "the clock is right: if all times are wrong by one factor, masses and inertias are wrong by its square and viscous friction by the factor, and only gravity tells",
+            "the clock is right: if all times are wrong by one factor, masses and inertias are wrong by its square and viscous friction by the factor; only gravity reveals it",
         ),
         String::from(
-            "time is in seconds, positions are in rad and m after `position_scale`, torques in N m and N after `torque_gain`: a unit that is wrong by a factor of thirty or more is found where physical scales contradict it, a smaller factor is not",
+            "time is in seconds, positions are in rad and m after `position_scale`, torques in N m and N after `torque_gain`: physical scales reveal a unit that is wrong by a factor of thirty or more, but no smaller factor",
         ),
+        String::from("the common scale of all lengths is right: angles do not determine it"),
         String::from(
-            "the lengths of the description are right as a whole: angles alone fix no scale",
-        ),
-        String::from(
-            "the torques of the logs are the whole torques of the drives: nothing was subtracted, as a friction or gravity compensation, no filter of the drive smoothed them, and none holds a part of another's",
+            "the logged torques are the complete torques of the drives: no friction or gravity compensation was subtracted, no filter of the drive smoothed them, and there is no crosstalk",
         ),
         String::from("parameters that the description leaves out are zero"),
         String::from(
-            "the robot is rigid and stays as it was: temperature, wear and what was mounted are those of the runs",
+            "the robot is rigid and does not change: temperature, wear and load are those of the runs",
         ),
     ];
     if lengths_are_untold(model) {
         all.push(String::from(
-            "each length of the loops is right: with as many drives as degrees of freedom no closure tells of them, and they are not looked for",
+            "each length of the loops is right: with as many drives as degrees of freedom the closures do not test them",
         ));
     }
     if !before.gravity {
         all.push(String::from(
-            "gravity points as described: how the base stands is not looked for",
+            "gravity points as described: the orientation of the base is not tested",
         ));
     }
     let mut friction = columns.as_slice().iter();
@@ -75,7 +73,7 @@ pub(crate) fn assumptions(
     }
     if models.contains(&ModelKind::Platform) && model.info().sizes.actuators > 1 {
         all.push(String::from(
-            "torques that work against each other without moving the platform (a preload) are no part of the model",
+            "internal torques, which act against each other without moving the platform (preload), are not part of the model",
         ));
     }
     all
@@ -90,16 +88,12 @@ fn lengths_are_untold(model: &dyn Model) -> bool {
 /// The assumptions that are violated most often, as a sentence for the verdict.
 pub(crate) fn rests_on(model: &dyn Model, before: Found) -> Option<String> {
     let what = match (lengths_are_untold(model), before.gains) {
-        (true, false) => {
-            "the lengths and the unit and constants of the torques are right as stated: nothing in data of this robot tells"
-        }
-        (false, false) => {
-            "the unit and constants of the torques are right as stated: nothing in the data tells"
-        }
-        (true, true) => "the lengths are right as stated: nothing in data of this robot tells",
+        (true, false) => "lengths, units and torque constants",
+        (false, false) => "units and torque constants",
+        (true, true) => "lengths",
         (false, true) => return None,
     };
-    Some(format!("This takes for granted that {what}."))
+    Some(format!("Assumption that these data cannot test: {what}."))
 }
 
 /// A kind of fault whose detection limit is reported.
@@ -131,7 +125,7 @@ const KINDS: [Kind; 8] = [
     kind(
         CheckKind::Reversals,
         false,
-        "smoothing of all signals alike",
+        "equal smoothing of all signals",
     ),
     kind(CheckKind::Clock, true, "sampling frequency"),
 ];
@@ -180,7 +174,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             unit => format!("{} {unit}", significant(worst.size, 2)),
         };
         Some(format!(
-            "{}: {size}{of} would move `{}` by {:.0} deviations",
+            "{}: {size}{of} would shift `{}` by {:.0} σ",
             kind.name, worst.parameter, moves
         ))
     });
@@ -197,13 +191,7 @@ fn never(checks: &[Check], kind: &Kind) -> Option<String> {
         .flat_map(|one| &one.detectable)
         .filter(|one| one.size >= WHOLE && one.moves > HARMFUL);
     let names: Vec<String> = hidden.map(|one| format!("`{}`", one.name)).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{}: nothing in these data tells that of {}",
-            kind.name,
-            names.join(", ")
-        )
-    })
+    (!names.is_empty()).then(|| format!("{}: not detectable for {}", kind.name, names.join(", ")))
 }
 
 #[cfg(test)]
@@ -239,12 +227,12 @@ mod tests {
             ),
         ]);
         let expected = [
-            "zero of an encoder: 0.0091 rad of `left` would move `zz_1` by 13 deviations",
-            "scale of an encoder: 0.1 % of all drives would move `zz_1` by 16 deviations",
-            "gain of one drive: 10 % of `right` would move `zz_1` by 86 deviations",
-            "delay of the torques: 0.28 ms would move `zz_1` by 5 deviations",
-            "smoothing of the torques: a mean over 12 ms would move `zz_1` by 8 deviations",
-            "sampling frequency: 100 % would move `zz_1` by 200 deviations",
+            "zero of an encoder: 0.0091 rad of `left` would shift `zz_1` by 13 σ",
+            "scale of an encoder: 0.1 % of all drives would shift `zz_1` by 16 σ",
+            "gain of one drive: 10 % of `right` would shift `zz_1` by 86 σ",
+            "delay of the torques: 0.28 ms would shift `zz_1` by 5 σ",
+            "smoothing of the torques: a mean over 12 ms would shift `zz_1` by 8 σ",
+            "sampling frequency: 100 % would shift `zz_1` by 200 σ",
         ];
         assert_eq!(told, expected);
     }
@@ -255,7 +243,7 @@ mod tests {
         gains.detectable.push(Detectable::never("right"));
         assert_eq!(
             unseen(&[gains]),
-            ["gain of one drive: nothing in these data tells that of `right`"]
+            ["gain of one drive: not detectable for `right`"]
         );
     }
 

@@ -126,7 +126,7 @@ impl Fault {
                 CheckKind::Degrees,
                 None,
                 String::from(
-                    "the positions look like degrees, or like angles of motors before their gears: give `position_scale = \"1 deg\"` in the table [data], or the inverse of each gear ratio, or `coordinates = \"motors\"` where the description has motors with their ratios",
+                    "the positions look like degrees, or like motor angles: give `position_scale = \"1 deg\"` in the table [data], or the inverse of each gear ratio, or `coordinates = \"motors\"` if the description has motors with ratios",
                 ),
             ),
             Self::Swapped(i, j) => (
@@ -142,7 +142,7 @@ impl Fault {
                 CheckKind::WrongSign,
                 Some(name(i)),
                 format!(
-                    "the position of `{}` looks reversed: check its sign (a negative `position_scale` in the table [data] turns it round)",
+                    "the position of `{}` looks reversed: check its sign (a negative `position_scale` in the table [data] reverses it)",
                     name(i)
                 ),
             ),
@@ -191,7 +191,7 @@ pub(crate) fn explanation(
     });
     Ok(best.map(|(fault, left)| {
         let before = miss.map_or_else(
-            || String::from("where no pose is found now"),
+            || String::from("where no pose is found without the change"),
             |miss| format!("instead of missing by {miss:.3} m or rad"),
         );
         let so = format!("then the loops close to {left:.1e} m or rad {before}");

@@ -167,7 +167,7 @@ impl Objections<'_> {
     pub fn rest(&self) -> Option<String> {
         (!self.beside.is_empty()).then(|| {
             format!(
-                "what else was found may well follow from that: {}",
+                "failed checks that this may explain: {}",
                 self.beside.join(", ")
             )
         })

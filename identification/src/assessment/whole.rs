@@ -97,13 +97,13 @@ impl Whole {
             Self::Weightless => told(
                 CheckKind::WrongSign,
                 String::from(
-                    "the torques look as if gravity did not act: log them with what the drive adds as a compensation of gravity, or describe `gravity` as it is, zero for a robot that moves in a horizontal plane",
+                    "the torques look as if gravity did not act: log them including the gravity compensation of the drive, or correct `gravity` in the description (zero for motion in a horizontal plane)",
                 ),
             ),
             Self::Gravity => told(
                 CheckKind::WrongSign,
                 String::from(
-                    "gravity looks as if it pointed the other way: check the sign of `gravity` in the description, and how the base stands",
+                    "gravity looks reversed: check the sign of `gravity` in the description and the mounting of the base",
                 ),
             ),
         }

@@ -82,12 +82,9 @@ pub fn calibrate(
         samples: &samples,
     };
     let unreached = |error: overact::Error| -> Error {
-        Problem::new(
-            Code::CALIBRATION,
-            format!("the calibration finds no robot: {error}"),
-        )
-        .help("check the described lengths and the units of the positions")
-        .into()
+        Problem::new(Code::CALIBRATION, format!("the calibration fails: {error}"))
+            .help("check the described lengths and the units of the positions")
+            .into()
     };
     let mut start = problem.start().map_err(unreached)?;
     let described = problem.eliminated(&mut start).map_err(unreached)?;

@@ -70,8 +70,9 @@ pub(super) fn without_redundancy(
     scope: CalibrationScope,
 ) -> Calibration {
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let reason =
-        String::from("every reading has its pose: there are no more sensors than coordinates");
+    let reason = String::from(
+        "there are no more sensors than coordinates, so every reading is consistent with a pose",
+    );
     let held = named(info, geometry).into_iter().map(|one| HeldParameter {
         name: one.name,
         unit: one.unit,
@@ -93,7 +94,7 @@ pub(super) fn without_redundancy(
         converged: true,
         warnings: Vec::new(),
         remarks: vec![format!(
-            "nothing can be determined: with {n} sensors for as many coordinates every reading agrees with a pose, whatever offsets and lengths are; calibration takes more sensors than coordinates"
+            "nothing can be calibrated: with {n} sensors for as many coordinates every reading is consistent with a pose for any offsets and lengths; calibration requires more sensors than coordinates"
         )],
     }
 }
@@ -211,7 +212,7 @@ impl Report<'_> {
             });
             large.map(|(own, _)| all[*own].name.as_str()).collect()
         });
-        format!("its effect is that of changes of {}", of.join(", "))
+        format!("its effect equals that of changes of {}", of.join(", "))
     }
 
     fn warnings(&self, all: &[Named]) -> Vec<String> {
@@ -224,7 +225,7 @@ impl Report<'_> {
         let after = self.misfit(&self.fit.normal, self.fit.selected.len());
         if after > UNEXPLAINED {
             warnings.push(format!(
-                "calibration: what is left is {after:.1} times the noise of the sensors: something else than these offsets and lengths is wrong (directions of axes, play, flexible parts, filtered positions), and the deviations do not cover it"
+                "calibration: the closure residual is {after:.1} times the noise of the sensors: other errors remain (directions of axes, play, flexible parts, filtered positions), which the standard deviations do not cover"
             ));
         }
         if self.scope == CalibrationScope::Smallest {
@@ -235,7 +236,7 @@ impl Report<'_> {
                 }
                 let others: Vec<&str> = others.iter().map(|&one| all[one].name.as_str()).collect();
                 warnings.push(format!(
-                    "calibration: a change of `{}` is estimated, but the data would as well be explained by one of {} in its place; measure which one is wrong",
+                    "calibration: a change of `{}` is estimated, but one of {} instead explains the data equally well; measure which one is wrong",
                     all[place].name,
                     others.join(", ")
                 ));
@@ -260,7 +261,7 @@ impl Report<'_> {
         let held: Vec<&str> = held.map(|(_, one)| one.name.as_str()).take(3).collect();
         unseen.then(|| {
             format!(
-                "angles fix no scale: all lengths are relative to those that are held as described ({}, …)",
+                "angles do not determine the scale: all lengths are relative to those that are fixed as described ({}, …)",
                 held.join(", ")
             )
         })

@@ -157,7 +157,7 @@ impl<'a> Way<'a> {
                 "sample {number} (t = {time:.4} s) is outside the workspace: {error}"
             ))
             .file(self.log.name())
-            .help("a calibration starts from positions and a geometry that are right to some degrees and some percent: check units, signs and the order of the columns")
+            .help("calibration requires positions and geometry that are correct to some degrees and some percent: check units, signs and the order of the columns")
         })?;
         Ok(taken.then_some(self.pose.as_slice()))
     }

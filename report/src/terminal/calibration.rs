@@ -155,7 +155,7 @@ mod tests {
                 held("base_z_leg2", None, reason),
             ],
             converged: true,
-            remarks: vec!["angles fix no scale".to_owned()],
+            remarks: vec!["angles do not determine the scale".to_owned()],
             warnings: Vec::new(),
         });
         for line in [
@@ -163,7 +163,7 @@ mod tests {
             "  base_x_leg1 (2.3e-7 m)",
             "not determined, since it has no effect on the sensors:",
             "  base_z_leg1, base_z_leg2",
-            "- angles fix no scale",
+            "- angles do not determine the scale",
         ] {
             assert!(text.lines().any(|own| own == line), "{line}\nin\n{text}");
         }

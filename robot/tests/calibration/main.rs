@@ -84,7 +84,7 @@ fn without_redundancy_nothing_is_determined() {
     assert!(found.estimated.is_empty() && !found.is_change());
     assert!(found.held.iter().all(|one| one.reason.is_some()));
     assert!(
-        found.remarks[0].starts_with("nothing can be determined"),
+        found.remarks[0].starts_with("nothing can be calibrated"),
         "{found:?}"
     );
 }

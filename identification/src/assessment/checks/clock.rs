@@ -38,7 +38,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             ));
         if accused.probability >= level {
             let words = format!(
-                "the sampling frequency agrees with the model; an error of {} % would have been seen",
+                "the sampling frequency agrees with the model; the detection limit is {} %",
                 percent(accused.visible(level))
             );
             return Check { words, ..check };
@@ -47,7 +47,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let sense = if accused.size() > 0.0 { "high" } else { "low" };
         let deviation = percent(accused.deviation);
         let words = if accused.size().abs() > LARGEST { format!(
-                "gravity and motion do not go together in the torques, as if the sampling frequency were far too {sense}; {}. Check the time column and its unit, `gravity` of the description, and whether the log has the whole torques: with a compensation of gravity that the drive adds",
+                "gravity and motion are inconsistent in the torques, as if the sampling frequency were far too {sense}; {}. Check the time column and its unit, `gravity` of the description, and whether the log contains the complete torques, including any gravity compensation by the drive",
                 harm.words()
             ) } else { format!(
                 "the sampling frequency looks {} % too {sense} (standard deviation {deviation} %); {}. Check the time column and its unit",

@@ -61,7 +61,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .against(
                 limit,
                 format!(
-                    "half of the encoders' resolution, and noise of {} m or rad at a false alarm in {} % of reports",
+                    "half of the encoders' resolution plus noise of {} m or rad, at a false alarm in {} % of reports",
                     significant(noise, 2),
                     100.0 * FALSE_ALARMS
                 ),
@@ -112,11 +112,11 @@ impl Closing {
         let number = |value: f64| significant(value, 2);
         match self.as_logged {
             _ if self.filtered <= self.limit => format!(
-                "the positions close the loops to {} m or rad, as encoders of this resolution and noise do",
+                "the positions close the loops to {} m or rad, consistent with the encoders' resolution and noise",
                 number(self.filtered)
             ),
             Some(miss) if !self.misses() => format!(
-                "the positions close the loops to {} m or rad, as encoders of this resolution and noise do; once they are filtered they miss by up to {}, since they shake near the cutoff",
+                "the positions close the loops to {} m or rad, consistent with the encoders' resolution and noise; filtered positions miss by up to {}, since they vibrate near the cutoff",
                 number(miss),
                 number(self.filtered)
             ),

@@ -47,17 +47,15 @@ fn words(context: &Context<'_>, estimate: &Estimate) -> String {
         .collect();
     let fails = if values.is_empty() {
         String::from(
-            "no single mass or moment of inertia is negative, but together they belong to no bodies",
+            "no single mass or moment of inertia is negative, but no bodies have these combinations",
         )
     } else {
         format!("below zero: {}", values.join(", "))
     };
     let advice = if context.settings.prior.bounds.is_empty() {
-        "check signs and units of the log and whether the runs excite these parameters; values of the bodies in the table `prior` help the search"
+        "check signs and units of the log and whether the runs excite these parameters; values of bodies in the table `prior` help the search"
     } else {
         "check the bounds in the table `prior`, then signs and units of the log"
     };
-    format!(
-        "there are no physically consistent parameters, the search for them did not end; {fails}; {advice}"
-    )
+    format!("no physically consistent parameters: the search did not converge; {fails}; {advice}")
 }

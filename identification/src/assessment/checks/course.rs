@@ -46,17 +46,17 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                     .measured(100.0 * peak.part, "%")
                     .against(
                         100.0 * LARGEST_PART,
-                        "white noise leaves 8 % of its square in a hundredth of the instants",
+                        "a hundredth of the instants have 8 % of the square of white noise",
                     )
             };
             if peak.part <= LARGEST_PART || times_the_noise(context) <= BEYOND_NOISE {
                 return check(format!(
-                    "no few instants decide: one in a hundred leaves {percent} % of the residual's square"
+                    "no few instants dominate: one in a hundred has {percent} % of the squared residual"
                 ));
             }
             let run = context.dataset.runs.get(peak.run);
             check(format!(
-                "one instant in a hundred leaves {percent} % of the residual's square, most of all at {} s: look there for a collision, spikes, a signal that stood still or was lost, or steps of a coarse encoder, and leave that time out",
+                "one instant in a hundred has {percent} % of the squared residual, most of it at {} s: look there for a collision, spikes, a frozen or lost signal, or steps of a coarse encoder, and remove that time",
                 significant(peak.time, 4)
             ))
             .in_run(run.map_or("", |log| log.name()))
@@ -81,16 +81,19 @@ fn length(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     let check = |words: String| {
         Check::new(CheckKind::ShortMotion, About::Data, words)
             .measured(pace.periods, "periods")
-            .against(FEWEST_PERIODS, "errors are told from what does not return")
+            .against(
+                FEWEST_PERIODS,
+                "noise is estimated from what does not repeat",
+            )
     };
     if pace.periods >= FEWEST_PERIODS {
         return Some(check(format!(
-            "the motion is long enough: each actuator goes forth and back at least {periods} times"
+            "the motion is long enough: each actuator moves back and forth at least {periods} times"
         )));
     }
     Some(
         check(format!(
-            "the runs are short: `{name}` moves at about {frequency} Hz and goes through {periods} of its periods only. Noise can't be told from motion there, so neither the estimates nor their intervals are sure; record at least {FEWEST_PERIODS:.0} periods, better ten"
+            "the runs are short: `{name}` moves at about {frequency} Hz and completes only {periods} periods. Noise cannot be separated from motion, so neither the estimates nor their intervals are reliable; record at least {FEWEST_PERIODS:.0} periods, better ten"
         ))
         .of_actuator(name)
         .allowing(Grade::DoNotUse),
@@ -114,7 +117,7 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
             .measured(ratio, "")
             .against(
                 LEAST_CUTOFF,
-                "the rule of Gautier, ten times the dynamics of the motion, and a little more for reversals",
+                "Gautier's rule, ten times the bandwidth of the motion, with a margin for reversals",
             )
     };
     if !ratio.is_finite() || ratio >= LEAST_CUTOFF {

@@ -64,7 +64,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let number = |value: f64| significant(value, 3);
     if guilty.is_none() {
         let words = format!(
-            "torques and motion are of the same time: {} ± {} ms; a delay of {} ms would have been seen",
+            "torques and motion are synchronous: delay {} ± {} ms; the detection limit is {} ms",
             number(size),
             number(deviation),
             number(1e3 * (harmless + accused.visible(level)))
@@ -76,8 +76,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let name = actuator.and_then(|actuator| context.model.info().actuators.get(actuator));
     let harm = worst_harm(context, scores, (&found, shown), level);
     let whose = name.map_or_else(
-        || String::from("the torques come"),
-        |name| format!("the torque of `{name}` alone comes"),
+        || String::from("the torques are"),
+        |name| format!("only the torque of `{name}` is"),
     );
     let paces = scores.paces();
     let fastest = paces.iter().flatten().map(|pace| pace.frequency);
@@ -88,7 +88,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         format!("{} ms", number(size.abs()))
     };
     let words = format!(
-        "{whose} {by} {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no key shifts them: {}or give the two their own times in two files",
+        "{whose} {by} {} the motion (standard deviation {} ms); {}. Look for a filter or a bus cycle between drive and encoder; no TOML key shifts them: {}or log the two with their own times in two files",
         if size > 0.0 { "behind" } else { "before" },
         number(deviation),
         harm.words(),

@@ -53,7 +53,7 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
         .and_then(Option::as_ref)
         .and_then(|noise| noise.directions(system, &estimate.weights, &columns, &values));
     let Some(directions) = directions else {
-        let words = "whether the runs move every coordinate is not tested: the columns of the model have no value with noise in the positions";
+        let words = "whether the runs move every coordinate is not tested: the regressor cannot be evaluated with noise in the positions";
         return new(String::from(words)).found();
     };
     let largest = directions.noise.iter().copied().fold(0.0, f64::max);
@@ -66,12 +66,12 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
     let check = |words: String| {
         new(words).measured(100.0 * largest, "% noise").against(
             100.0 * LARGEST_NOISE,
-            "a tenth of what the torques say of a direction would be lost",
+            "a tenth of the information on a direction would be lost",
         )
     };
     if spoiled.is_empty() {
         return check(format!(
-            "the runs tell all columns apart: noise of the positions is at most {} % of what separates them",
+            "the runs separate all columns: position noise is at most {} % of their smallest difference",
             significant(100.0 * largest, 2)
         ));
     }
@@ -134,7 +134,7 @@ fn told(context: &Context<'_>, spoiled: &[String]) -> String {
         .collect();
     let moves = match &still[..] {
         [] => String::from(
-            "record runs that move all coordinates independently, with larger velocities and accelerations: `overact excite` finds some",
+            "record runs that move all coordinates independently, with larger velocities and accelerations: `overact excite` computes some",
         ),
         [one] => format!("{one} hardly moves: record runs in which it does"),
         _ => format!(
@@ -143,7 +143,7 @@ fn told(context: &Context<'_>, spoiled: &[String]) -> String {
         ),
     };
     format!(
-        "the runs do not determine {names}, whose columns differ by little more than noise of the positions; {moves}"
+        "the runs do not determine {names}, whose columns differ by little more than position noise; {moves}"
     )
 }
 

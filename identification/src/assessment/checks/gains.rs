@@ -88,10 +88,10 @@ fn innocent(found: &[Tested], detectable: &[Detectable]) -> Check {
     let which = if detectable.iter().all(|one| one.size.is_finite()) {
         "no drive"
     } else {
-        "no drive of which these data tell"
+        "no testable drive"
     };
     let words = format!(
-        "{which} has a gain unlike the others'; an error of one drive would have been seen from so much on: {}",
+        "{which} has a gain that differs from the others'; detection limits of an error of one drive: {}",
         visible.join(", ")
     );
     let largest = found
@@ -112,12 +112,12 @@ fn unlike(
     let size = worst.accused.size();
     let by = match size {
         // The first-order test has no valid size for large errors.
-        size if size.abs() > LARGEST => String::from("unlike"),
-        size if size < 0.0 => format!("{} % too small beside", percent(-size)),
-        size => format!("{} % too large beside", percent(size)),
+        size if size.abs() > LARGEST => String::from("differently from"),
+        size if size < 0.0 => format!("{} % too small compared with", percent(-size)),
+        size => format!("{} % too large compared with", percent(size)),
     };
     let words = format!(
-        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant, its gear ratio and whether it is filtered unlike the others",
+        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant, its gear ratio and whether it is filtered differently from the others",
         percent(worst.accused.deviation),
         harm.words()
     );
@@ -136,7 +136,7 @@ fn unlike(
 ///
 /// A single drive has only a common gain, so there is no check.
 fn none_told(names: &[&str]) -> Option<Check> {
-    let words = "nothing in these data tells whether the gain of one drive is unlike the others'";
+    let words = "these data cannot test whether the gain of one drive differs from the others'";
     let check = || Check::new(CheckKind::WrongGain, About::Model, words);
     let never = names.iter().map(|name| Detectable::never(name)).collect();
     (names.len() > 1).then(|| check().detecting(never))

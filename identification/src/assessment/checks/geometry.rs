@@ -81,10 +81,15 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 "small"
             };
             let words = format!(
-                "the torques speak of a length `{name}` that is described {size} {unit} too {sense} {spread}. Measure it, or check the zeros of the encoders"
+                "the torques indicate that the length `{name}` is described {size} {unit} too {sense} {spread}. Measure it, or check the zeros of the encoders"
             );
             let title = format!("Residual for other lengths {name}");
-            (CheckKind::Length, words, title, "described too large by")
+            (
+                CheckKind::Length,
+                words,
+                title,
+                "excess of the described value",
+            )
         }
         Suspect::Scale(_) | Suspect::Scales => {
             let whose = match suspect {
@@ -99,7 +104,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 "small"
             };
             let words = format!(
-                "the torques speak of positions of {whose} that are {size} % too {sense} (standard deviation {deviation} %); {}. {zero}",
+                "the torques indicate that positions of {whose} are {size} % too {sense} (standard deviation {deviation} %); {}. {zero}",
                 harm.words()
             );
             let title = format!("Residual for other scales of the positions of {whose}");
@@ -107,7 +112,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 CheckKind::EncoderOffset,
                 words,
                 title,
-                "positions too large by the part",
+                "relative excess of the positions",
             )
         }
         _ => {
@@ -120,7 +125,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 _ => "an offset of",
             };
             let words = format!(
-                "the torques speak of {what} {size} {unit} at the encoder of `{name}` {spread}. {zero}"
+                "the torques indicate {what} {size} {unit} at the encoder of `{name}` {spread}. {zero}"
             );
             let title = format!("Residual for other offsets of {name}");
             let axis = "offset or half of the play";
@@ -160,12 +165,12 @@ fn nothing(
     let mut words = Vec::new();
     if !offsets.is_empty() {
         words.push(format!(
-            "the torques speak of no offset and no play of an encoder; an offset would have been seen from so much on: {offsets}"
+            "the torques indicate no offset and no play of an encoder; detection limits of an offset: {offsets}"
         ));
     }
     if !lengths.is_empty() {
         words.push(format!(
-            "the torques speak of no wrong length; it would have been seen from so much on: {lengths}"
+            "the torques indicate no wrong length; detection limits: {lengths}"
         ));
     }
     let largest = found.iter().map(ratio).fold(0.0, f64::max);

@@ -61,12 +61,12 @@ fn of_estimate(
     let grows = held > largest && beyond > limit;
     let ratio = (held / mean.exp()).sqrt();
     let words = format!(
-        "{} % of the inputs of this run, which was held out, are left unexplained by the {} parameters, {} times as much as in the runs identified from{}",
+        "relative residual of this validation run: {} % with the {} parameters, {} times that of the training runs{}",
         significant(error, 3),
         one.stage.name(),
         significant(ratio, 2),
         if grows {
-            ": they do not generalise. Look for what differs in this run, identify from more runs or from motions like this one"
+            ": the model does not generalise. Look for differences of this run, or train on more runs or on similar motions"
         } else {
             ""
         }
@@ -85,16 +85,16 @@ fn of_estimate(
             .against(
                 (largest / mean.exp()).sqrt(),
                 format!(
-                    "Student's test against {count} parts of the runs identified from, and a growth of {limit} % of the inputs"
+                    "Student's test against {count} parts of the training runs, and a growth of {limit} % of the inputs"
                 ),
             )
             .shown_by(Evidence {
-                title: String::from("The held-out run beside those identified from"),
+                title: String::from("Validation run compared with training runs"),
                 x: Axis::new("number of the part", ""),
-                y: Axis::new("residual by the usual one", ""),
+                y: Axis::new("residual / usual residual", ""),
                 points: vec![
-                    curve("identified from", &own, 1.0),
-                    curve("held out", &[held], count + 1.0),
+                    curve("training", &own, 1.0),
+                    curve("validation", &[held], count + 1.0),
                 ],
                 limits: vec![(largest / mean.exp()).sqrt()],
                 ..Evidence::default()

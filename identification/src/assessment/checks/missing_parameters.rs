@@ -36,7 +36,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(worst) = worst else {
         let largest = found.iter().map(ratio).fold(0.0, f64::max);
         let words = format!(
-            "what is left unexplained depends on no velocity, acceleration, position or time that the model lacks ({tests} columns tried)"
+            "the residual depends on no further function of velocity, acceleration, position or time ({tests} columns tested)"
         );
         return Ok(vec![
             Check { words, ..check }
@@ -157,7 +157,7 @@ fn too(others: &[(String, Harm)]) -> String {
     if names.is_empty() {
         String::new()
     } else {
-        format!("; the same test finds {}, too", names.join(", "))
+        format!("; the same test also fails for {}", names.join(", "))
     }
 }
 
@@ -183,7 +183,7 @@ impl Told {
             _ => size.trim_end(),
         };
         format!(
-            "the {} depends on {} beyond the model{by} ({:.1} standard deviations), {}. Add what is missing to the description, or look for what else differs from it",
+            "the {} depends on {} beyond the model{by} ({:.1} standard deviations), {}. Add the missing term to the description, or look for other differences from it",
             self.what,
             shape.words(),
             self.strength,
@@ -206,7 +206,7 @@ impl Told {
         let limits = &context.settings.standstill_velocity;
         let left_out = match limits.get(actuator) {
             Some(limit) if *limit > 0.0 => format!(
-                " Equations below `standstill_velocity`, {} {rate}, are left out, so that nothing nearer to standstill is seen.",
+                " Equations below `standstill_velocity`, {} {rate}, are skipped, so lower velocities are not tested.",
                 significant(*limit, 2)
             ),
             _ => String::new(),
@@ -214,12 +214,12 @@ impl Told {
         let (does, advice) = if self.size > 0.0 {
             (
                 "rises",
-                "Give the joint `stribeck`, the velocity over which its friction rises, or look for what else differs near standstill",
+                "Set `stribeck` of the joint, the velocity over which its friction rises, or look for other causes near standstill",
             )
         } else {
             (
                 "falls",
-                "That is not Stribeck's friction, which rises there: look at how low velocities are measured and filtered, at a dry friction that is reached gradually, or leave out more equations by `standstill_velocity`",
+                "That is not Stribeck's friction, which rises there: check how low velocities are measured and filtered, consider presliding friction, or skip more equations with `standstill_velocity`",
             )
         };
         format!(
@@ -251,7 +251,7 @@ fn evidence(suspects: &[(Suspect, Shape)], found: &[Tested], limit: f64) -> Evid
             .push(one.accused.strength() * one.accused.largest().signum());
     }
     Evidence {
-        title: String::from("What the model may lack"),
+        title: String::from("Possible missing terms of the model"),
         x: Axis::new("number of the actuator or coordinate", ""),
         y: Axis::new("size by standard deviation", ""),
         points: points.into_iter().map(|(_, curve)| curve).collect(),

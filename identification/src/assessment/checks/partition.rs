@@ -52,7 +52,7 @@ fn spoiled(
 ) -> String {
     let mut text = if partition.crossings > 0 {
         format!(
-            "the trajectory crosses a singularity of the kept actuators {kept}, {} ({}, t = {:.3} s among them), which the robot itself does not have",
+            "the trajectory crosses a singularity of the kept actuators {kept}, {} ({}, t = {:.3} s among them), which is not a singularity of the robot",
             match partition.crossings {
                 1 => String::from("once"),
                 2 => String::from("twice"),
@@ -72,7 +72,7 @@ fn spoiled(
     if let Some((case_1, case_2)) = lower_error(context) {
         let _ = write!(
             text,
-            "; that its relative error of {} % is lower than the {} % of case 1 does not speak for it: near the singularity a few samples outweigh all others, and they are fitted first",
+            "; its relative error of {} % is lower than the {} % of case 1 only because a few samples near the singularity outweigh all others",
             significant(case_2, 3),
             significant(case_1, 3)
         );

@@ -65,7 +65,7 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
         .find(|one| one.interval_95[1] < 0.0);
     if let Some(mass) = negative {
         let words = format!(
-            "the payload's mass comes out negative (`{}` = {} {}), as if the runs with the payload were those without it and the other way round: check the labels",
+            "the payload's mass is negative (`{}` = {} {}), as if the labels of runs with and without payload were exchanged: check them",
             mass.name,
             significant(mass.value, 3),
             mass.unit
@@ -82,7 +82,7 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
         format!("`{}` = {value} ± {half} {}", one.name, one.unit)
     });
     let words = format!(
-        "what is estimated of the payload may as well be zero ({}): check that it was mounted in the runs that are labelled so",
+        "no parameter of the payload differs from zero ({}): check that it was mounted in the runs with this label",
         told.collect::<Vec<_>>().join(", ")
     );
     Some(Check::new(CheckKind::PayloadLabel, About::Model, words).found())
@@ -102,7 +102,7 @@ fn of_run(
         .against(level, origin(runs));
     let label = if log.payload() { "with" } else { "without" };
     if accused.probability >= level {
-        let words = format!("the run is one {label} the payload, as its label says");
+        let words = format!("the run is one {label} the payload, as labelled");
         return Check { words, ..check };
     }
     let harm = harm(context, scores, one);

@@ -45,7 +45,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         checks.push(Check::new(
             CheckKind::DroppedSamples,
             About::Data,
-            "no torque is clipped, no encoder is stuck, no sample is lost",
+            "no torque is clipped, no encoder is stuck, and no sample is lost",
         ));
     }
     Ok(checks)

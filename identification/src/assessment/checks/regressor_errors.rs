@@ -63,7 +63,7 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
 
 /// Why there is no test, in words.
 fn untested(told: &ErrorsInRegressor) -> String {
-    let start = "whether errors of the positions bias the estimates is not tested: ";
+    let start = "not tested whether position errors bias the estimates: ";
     let why = match (&told.missing, told.instruments) {
         (Some(why), _) => why.clone(),
         (None, Instruments::None) => String::from("`instruments` is \"none\""),
@@ -125,12 +125,12 @@ fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
         .collect();
     if spoiled.is_empty() {
         return format!(
-            "errors of the positions bias no parameter by more than its standard deviation, though least squares and instruments ({}) differ by more than chance ({test})",
+            "position errors bias no parameter by more than its standard deviation, although least squares and instruments ({}) differ significantly ({test})",
             source(told)
         );
     }
     format!(
-        "errors of the positions bias least squares, as instruments ({}) tell ({test}): {}; take the estimate by instruments for these",
+        "position errors bias least squares, according to instruments ({}; {test}): {}; use the estimate by instruments for these",
         source(told),
         spoiled.join(", ")
     )
@@ -145,7 +145,7 @@ fn returning(runs: &[RepeatedRun]) -> String {
         .max_by(|a, b| a.1.total_cmp(&b.1));
     worst.map_or_else(String::new, |(run, correlation)| {
         format!(
-            "; in {} the errors of the positions return with the motion (correlation {} between periods), as an encoder's steps do: other periods have them, too, so this part of them is neither found nor cured; vary the motion from period to period, or describe the controller for simulated instruments",
+            "; in {} position errors repeat with the motion (correlation {} between periods), like the steps of an encoder. Instruments from other periods contain the same errors and cannot remove them; vary the motion from period to period, or describe the controller for simulated instruments",
             run.run,
             significant(correlation, 2)
         )

@@ -51,14 +51,14 @@ pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
         return None;
     }
     let why = match part {
-        0.0 => String::from("and nothing that was looked for explains it"),
+        0.0 => String::from("and no tested fault explains it"),
         _ => format!(
-            "and what was found explains {} % of its square",
+            "and the faults found explain {} % of its square",
             significant(100.0 * part, 2)
         ),
     };
     let words = format!(
-        "what is left unexplained, {} % of the inputs, is {} times the noise of the torques, {why}. Intervals tell chance alone, and what the parameters have taken up of the error is not in them. Look for filters that torques and positions have passed, for play, flexible parts and friction of another kind, or for encoders that are coarse for the motion",
+        "the relative residual, {} %, is {} times the noise of the torques, {why}. Intervals cover noise only, not the bias by such an error. Look for filters of torques or positions, for play, flexible parts and other friction, or for encoders that are coarse for the motion",
         significant(error, 3),
         significant(ratio, 2)
     );
@@ -67,7 +67,7 @@ pub(super) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
         .measured(ratio, "times the noise")
         .against(
             SILENT,
-            "faultless virtual robots leave 1 to 1.3 times the noise",
+            "simulated robots without faults have 1 to 1.3 times the noise",
         );
     (ratio.is_finite() && ratio > SILENT).then(|| check.allowing(Grade::DoNotUse))
 }
@@ -99,7 +99,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let beyond = beyond(error, noise);
         let good = beyond <= LARGEST_PERCENT;
         let words = format!(
-            "{} {} parameters leave {} % of the inputs unexplained; noise of the torques, told from neighbouring samples, is {} %{}",
+            "{} {} parameters: relative residual {} %; noise of the torques, estimated from neighbouring samples, {} %{}",
             estimate.parameters.len(),
             estimate.stage.name(),
             significant(error, 3),
@@ -116,7 +116,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .measured(beyond, "%")
             .against(
                 LARGEST_PERCENT,
-                "published identifications leave 2 to 12 %, noise among it",
+                "published identifications have 2 to 12 %, including noise",
             )
             .allowing(if good { Grade::Use } else { Grade::DoNotUse })
     };

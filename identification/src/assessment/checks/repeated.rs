@@ -35,14 +35,14 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 (
                     About::Data,
                     format!(
-                        "{of}: they count twice, and all intervals are too narrow. Give each sample once: cut the runs where they do not overlap"
+                        "{of}: they count twice, and all intervals are too narrow. Give each sample once: remove the overlap from one of the runs"
                     ),
                 )
             } else {
                 (
                     About::Extrapolation,
                     format!(
-                        "{of}, though the run is held out: it says nothing of motions that were not identified from. Hold out another run"
+                        "{of}, so this validation run does not test new motions. Choose another validation run"
                     ),
                 )
             };
@@ -54,10 +54,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             let check = Check::new(CheckKind::RepeatedSamples, about, words)
                 .in_run(log.name())
                 .measured(100.0 * shared.part, "% of the shorter run")
-                .against(
-                    100.0 * HARMLESS,
-                    "intervals that are too narrow by a fortieth",
-                );
+                .against(100.0 * HARMLESS, "intervals too narrow by a fortieth");
             found.push(check.found().allowing(grade));
         }
     }

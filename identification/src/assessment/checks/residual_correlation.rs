@@ -43,15 +43,15 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let shown = guilty.unwrap_or(most);
     let (first, second) = (name(shown.actuators.0), name(shown.actuators.1));
     let found = format!(
-        "what is left unexplained of `{first}` and of `{second}` hangs together: correlation {} ({:.1} standard deviations)",
+        "the residuals of `{first}` and `{second}` are correlated: correlation {} ({:.1} standard deviations)",
         significant(shown.value, 2),
         shown.strength
     );
     let words = match guilty {
         Some(_) => format!(
-            "{found}. Something acts on both that the model lacks: a force on the platform, a cable, one drive's current in the other's measurement, or errors of the geometry"
+            "{found}. The model lacks an effect on both: a force on the platform, a cable, crosstalk between current measurements, or an error of the geometry"
         ),
-        None => String::from("what is left unexplained of each actuator is its own"),
+        None => String::from("the residuals of the actuators are uncorrelated"),
     };
     let check = Check::new(CheckKind::ResidualCorrelation, About::Fit, words)
         .measured(shown.strength, "standard deviations")
@@ -81,7 +81,7 @@ fn evidence<'a>(pairs: &[Correlation], name: &dyn Fn(usize) -> &'a str) -> Evide
         }
     }
     Evidence {
-        title: String::from("Correlation of what is left unexplained"),
+        title: String::from("Correlation of the residuals"),
         x: Axis::new("number of the actuator", ""),
         y: Axis::new("correlation", ""),
         points: curves.into_iter().map(|(_, curve)| curve).collect(),

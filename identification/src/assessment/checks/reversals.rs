@@ -59,7 +59,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let innocent = shown.map(|one| {
         let visible = one.accused.visible(told.level);
         told.check((context, scores), &one, format!(
-            "dry friction changes where velocities change their signs; a mean of all signals over {} ms would have been seen",
+            "dry friction changes where velocities change sign; the detection limit is a mean of all signals over {} ms",
             time(visible)
         ))
     });
@@ -109,8 +109,8 @@ impl Told {
             )])
             .shown_by(parabola(
                 accused,
-                "Residual for dry friction that is smoothed",
-                ("half of the mean square of the filter's time", "ms²", 1e6),
+                "Residual for smoothed dry friction",
+                ("half of the filter's mean square delay", "ms²", 1e6),
             ))
     }
 
@@ -120,7 +120,7 @@ impl Told {
         // The filter also rounds reversals.
         harm.spoil(dry_friction(of.0));
         let words = format!(
-            "positions and torques look filtered alike, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without, or with a cutoff far above the motion",
+            "positions and torques look equally filtered, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without it, or with a cutoff far above the motion",
             time(one.accused.size()),
             harm.words()
         );
@@ -132,13 +132,13 @@ impl Told {
         let harm = harm(of.0, of.1, one);
         let words = if one.accused.size() > 0.0 {
             format!(
-                "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. So it is where positions and torques have passed the same filter before they were logged, or where friction bends before it slides: log without filters, or leave out equations near standstill (`standstill_velocity`)",
+                "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. Possible causes are one filter for positions and torques before logging, or presliding friction: log without filters, or skip equations near standstill (`standstill_velocity`)",
                 time(one.accused.size()),
                 harm.words()
             )
         } else {
             format!(
-                "dry friction is larger around reversals than the signs of the velocities make it; {}. Look at how velocities are filtered (`velocity_dead_band`, the cutoff), or leave out equations near standstill (`standstill_velocity`)",
+                "dry friction around reversals is larger than the signs of the velocities predict; {}. Check how velocities are filtered (`velocity_dead_band`, the cutoff), or skip equations near standstill (`standstill_velocity`)",
                 harm.words()
             )
         };

@@ -73,7 +73,7 @@ pub(super) fn degrees(model: &dyn Model, run: &str, monitor: &Monitor) -> Option
             .measured(largest, "rad")
             .against(
                 LARGEST_ANGLE,
-                "joints that turn farther rotate continuously",
+                "joints that turn further rotate continuously",
             )
     };
     (largest > LARGEST_ANGLE).then(check)

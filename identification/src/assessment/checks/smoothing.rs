@@ -78,19 +78,19 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             )])
             .shown_by(parabola(
                 accused,
-                "Residual for torques that are smoothed",
-                ("half of the mean square of the filter's time", "ms²", 1e6),
+                "Residual for smoothed torques",
+                ("half of the filter's mean square delay", "ms²", 1e6),
             ))
     };
     if accused.probability_beyond(harmless) >= level {
         return Ok(vec![check(format!(
-            "torques and motion are smoothed alike; a mean of the torques over {} ms would have been seen",
+            "torques and motion are equally smooth; the detection limit is a mean of the torques over {} ms",
             time(visible)
         ))]);
     }
     if !confirms(context, Suspect::Smoothing, accused.size())? {
         return Ok(vec![check(format!(
-            "torques and motion are smoothed alike: what looks like a mean over {} ms is not there in half of the band, as where errors of the encoders make it",
+            "torques and motion are equally smooth: an apparent mean over {} ms is absent in half of the band, which indicates encoder errors",
             time(accused.size())
         ))]);
     }
@@ -104,7 +104,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         ("the motion is", "the torques")
     };
     let words = format!(
-        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log that one of the two has passed, or for samples that were interpolated: log both without",
+        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log on one of the two, or for interpolated samples: log both without them",
         time(accused.size()),
         harm.words()
     );

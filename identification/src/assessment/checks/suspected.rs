@@ -267,15 +267,9 @@ impl Harm {
     /// The effect as the end of a sentence.
     pub(super) fn words(&self) -> String {
         if self.grade == Grade::Use {
-            return format!(
-                "it moves no parameter by more than {:.1} of its standard deviations",
-                self.worst
-            );
+            return format!("it shifts no parameter by more than {:.1} σ", self.worst);
         }
-        format!(
-            "it moves `{}` by {:.0} of its standard deviations",
-            self.parameter, self.worst
-        )
+        format!("it shifts `{}` by {:.0} σ", self.parameter, self.worst)
     }
 }
 
@@ -322,7 +316,7 @@ pub(super) fn parabola(accused: &Accused, title: &str, axis: (&str, &str, f64)) 
     Evidence {
         title: title.to_owned(),
         x: Axis::new(label, unit),
-        y: Axis::new("residual that is left", "%"),
+        y: Axis::new("remaining residual", "%"),
         lines: vec![Curve::new("", &x, &y)],
         ..Evidence::default()
     }

@@ -74,7 +74,7 @@ pub(super) fn errors_with(
 /// States the evidence for a fault.
 fn so(before: f64, after: f64) -> String {
     format!(
-        "then {:.1} % of the inputs are left unexplained, instead of {:.1} %",
+        "with the correction the relative residual is {:.1} % instead of {:.1} %",
         100.0 * after,
         100.0 * before
     )
@@ -153,10 +153,7 @@ fn of_all(
 
 /// A check with the residual after the correction, and the fraction allowed as threshold.
 fn measured(check: Check, (before, after): (f64, f64), part: f64) -> Check {
-    let origin = format!(
-        "{:.0} % of what is left unexplained with the fault",
-        100.0 * part
-    );
+    let origin = format!("{:.0} % of the residual with the fault", 100.0 * part);
     check
         .measured(100.0 * after, "%")
         .against(100.0 * part * before, origin)
@@ -172,7 +169,7 @@ fn told(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
             None,
             Some(i),
             format!(
-                "the torque of `{}` looks reversed: check the sign of its drive (a negative `torque_gain` in the table [data] turns it round)",
+                "the torque of `{}` looks reversed: check the sign of its drive (a negative `torque_gain` in the table [data] reverses it)",
                 name(i)
             ),
         ),

@@ -132,7 +132,7 @@ pub fn essential(
         let mut removal = walk.removal(&here, worst, &next);
         if end.is_some() {
             removal.accepted = false;
-            removal.reason = String::from("only r_σ alone would have come here");
+            removal.reason = String::from("only r_σ alone reaches this");
         } else if !removal.accepted {
             end = Some(here);
         }
@@ -161,7 +161,7 @@ fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
     let refused = removals.iter().find(|removal| !removal.accepted);
     match refused {
         Some(refused) => format!(
-            "the second opinion keeps `{}`: {}; r_σ = {} alone would have ended at {} parameter{}",
+            "the additional criterion keeps `{}`: {}; r_σ = {} alone would have kept {} parameter{}",
             refused.name,
             refused.reason,
             settings.r_sigma,
@@ -171,9 +171,9 @@ fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
         None if last.estimation.relative_error_percent <= EXACT_PERCENT => {
             String::from("the model fits exactly")
         }
-        None if last.selected.len() == 1 => String::from("a single parameter is left"),
+        None if last.selected.len() == 1 => String::from("one parameter is left"),
         None => format!(
-            "the largest relative deviation is {:.3} times the smallest one, less than r_σ = {}",
+            "the largest relative standard deviation is {:.3} times the smallest, less than r_σ = {}",
             last.estimation.deviation_ratio(),
             settings.r_sigma
         ),
@@ -292,19 +292,19 @@ impl<'a> Walk<'a> {
         let moved = drift.as_ref().filter(|drift| self.measure(drift) > 1.0);
         let matters = grows || moved.is_some() || self.settings.keep_significant;
         let reason = if !significant {
-            format!("the data do not speak for it: |χ|/σ = {ratio:.1}")
+            format!("the data do not require it: |χ|/σ = {ratio:.1}")
         } else if let (false, Some(drift)) = (grows, moved) {
             format!(
-                "the data speak for it, |χ|/σ = {ratio:.0}, and without it `{}` would move by {:.0} %",
+                "the data require it, |χ|/σ = {ratio:.0}, and without it `{}` would shift by {:.0} %",
                 drift.parameter, drift.percent
             )
         } else if matters {
             format!(
-                "the data speak for it, |χ|/σ = {ratio:.0}, and without it another {growth:.2} % of the held-out inputs would go unexplained"
+                "the data require it, |χ|/σ = {ratio:.0}, and without it the validation residual would grow by {growth:.2} %"
             )
         } else {
             format!(
-                "the data speak for it, |χ|/σ = {ratio:.0}, but without it only another {growth:.2} % of the held-out inputs go unexplained"
+                "the data require it, |χ|/σ = {ratio:.0}, but without it the validation residual grows by only {growth:.2} %"
             )
         };
         Removal {

@@ -66,10 +66,10 @@ pub(crate) fn recommended(
         selected: selected.to_vec(),
         names: names.to_vec(),
         estimation: start.clone(),
-        stop: String::from("a single parameter is left"),
+        stop: String::from("one parameter is left"),
     };
     if settings.r_sigma.is_infinite() {
-        here.stop = String::from("nothing is to be cancelled");
+        here.stop = String::from("the settings cancel nothing");
         return Ok(here);
     }
     while here.selected.len() > 1 {
@@ -87,7 +87,7 @@ pub(crate) fn recommended(
         if let (Some(base), Some(after)) = (&base, &after)
             && grows(base, after)
         {
-            here.stop = format!("without `{name}`, data that were held out are predicted worse");
+            here.stop = format!("without `{name}`, validation data are predicted worse");
             break;
         }
         here.estimation = fit(system, &left, settings)?;
@@ -109,19 +109,21 @@ fn largest_deviation(estimation: &Estimation) -> usize {
 fn refuted(intervals: &Intervals, cancelled: &[usize]) -> Option<String> {
     let count = cancelled.len() as f64;
     let Some((square, freedom)) = intervals.distance(cancelled) else {
-        return Some(String::from("the data could not tell what is cancelled"));
+        return Some(String::from(
+            "the data do not determine the cancelled parameters",
+        ));
     };
     let rest = freedom - count + 1.0;
     if count > 0.5 * freedom {
         return Some(format!(
-            "{count} cancelled parameters would be more than these data can test together"
+            "these data cannot test {count} cancelled parameters together"
         ));
     }
     let f = rest / (freedom * count) * square;
     let probability = fisher_tail(f, count, rest);
     (probability < LEVEL).then(|| {
         format!(
-            "what is cancelled could not all be zero: F = {f:.2} on {count} and {rest:.0} degrees of freedom, which chance exceeds with a probability of {probability:.1e}, below {LEVEL}"
+            "the cancelled parameters are not all zero: F = {f:.2} with {count} and {rest:.0} degrees of freedom, probability {probability:.1e}, below {LEVEL}"
         )
     })
 }

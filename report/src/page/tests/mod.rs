@@ -217,16 +217,16 @@ fn what_there_is_not_is_not_spoken_of() {
     identification.settings.standstill_velocity = vec![0.0625];
     identification.runs[0].standstill_equations = vec![17];
     let html = of(&identification, &Units::default());
-    assert!(html.contains("runs that were held out are predicted no worse"));
+    assert!(html.contains("the prediction of validation data is no worse"));
     assert!(html.contains("Equations skipped at standstill"));
     assert!(html.contains("17, below 0.0625 rad/s or m/s"));
-    assert!(!html.contains("turn the platform"), "there is none");
+    assert!(!html.contains("translate the platform"), "there is none");
     identification.cross_validation.clear();
     let html = of(&identification, &Units::default());
-    assert!(!html.contains("runs that were held out are predicted no worse"));
+    assert!(!html.contains("the prediction of validation data is no worse"));
     let told = summary(&identification, None, Extent::Whole);
     assert!(
-        told.contains("base parameters leave ") && told.contains("by the r_sigma rule leave "),
+        told.contains("base parameters: ") && told.contains("by the r_sigma rule: "),
         "{told}"
     );
 }
@@ -314,7 +314,7 @@ fn tables_hold_the_numbers() {
     for number in [
         "0.04450.0427 … 0.0463−1.00 %",
         "−2.200*",
-        "outside of its own interval",
+        "outside its own interval",
         "−1.92",
         "1.931.08",
         "zz_1 + 0.0784",
@@ -372,7 +372,7 @@ fn what_was_calibrated_is_told_with_its_intervals() {
                 held("base_z_leg2", Some("it has no effect")),
             ],
             converged: true,
-            remarks: vec![String::from("angles fix no scale")],
+            remarks: vec![String::from("angles do not determine the scale")],
             warnings: Vec::new(),
         }),
         ..identification()
@@ -388,8 +388,8 @@ fn what_was_calibrated_is_told_with_its_intervals() {
         "0.2",
         "base_x_leg1 (2.3e−7 m)",
         "since it has no effect: base_z_leg1, base_z_leg2.",
-        "explains the data as well",
-        "Angles fix no scale.",
+        "explains the data equally well",
+        "Angles do not determine the scale.",
     ] {
         assert!(calibration.contains(words), "{words} in {calibration}");
     }

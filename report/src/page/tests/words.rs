@@ -7,7 +7,7 @@ fn what_would_go_unseen_stands_before_what_no_data_can_show() {
     let mut own = identification();
     let without = full(&own);
     own.unseen = vec![String::from(
-        "delay of the torques: 1 ms would move `a<b>` by 5 deviations",
+        "delay of the torques: 1 ms would shift `a<b>` by 5 σ",
     )];
     own.assumptions = vec![String::from("the clock is right")];
     let html = full(&own);
@@ -17,7 +17,7 @@ fn what_would_go_unseen_stands_before_what_no_data_can_show() {
         let list = list.and_then(|words| words.next_sibling_element());
         text(list.expect("a list behind the heading and its words"))
     };
-    assert!(after("unseen").contains("Delay of the torques: 1 ms would move a<b> by 5 deviations"));
+    assert!(after("unseen").contains("Delay of the torques: 1 ms would shift a<b> by 5 σ"));
     assert!(after("assumptions").contains("The clock is right"));
     assert!(html.find("id=\"unseen\"") < html.find("id=\"assumptions\""));
     assert!(!without.contains("id=\"unseen\""));

@@ -126,7 +126,7 @@ fn densities(
     let quantity = |name: &str, value: f64, length: f64, possible: Range, usual: Range, moved| {
         let length = crate::significant(length, 3);
         Quantity {
-            name: format!("the density that `{name}` means for a robot of {length} m"),
+            name: format!("the density implied by `{name}` for a robot of {length} m"),
             value,
             unit: "kg/m³",
             possible,

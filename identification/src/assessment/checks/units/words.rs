@@ -48,11 +48,7 @@ fn sentence(found: &Finding) -> String {
         .map(quantity)
         .collect();
     let advice = found.slip.map_or_else(
-        || {
-            String::from(
-                "check the units of time, positions and torques: they have to be those of SI",
-            )
-        },
+        || String::from("check the units of time, positions and torques: they must be SI units"),
         Slip::advice,
     );
     format!("implausible: {}; {advice}", told.join(", "))
