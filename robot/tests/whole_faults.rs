@@ -98,7 +98,10 @@ fn what_all_drives_have_in_common_is_told_of_each() {
         }
     });
     let check = found(&result, CheckKind::MissingParameter);
-    assert!(check.words.contains("the same test also fails for"), "{check:?}");
+    assert!(
+        check.words.contains("the same test also fails for"),
+        "{check:?}"
+    );
     for drive in ["1", "2"] {
         let own = |name: &String| name.ends_with(drive) || name.ends_with(&format!("{drive}R"));
         assert!(check.spoiled.iter().any(own), "{check:?}");

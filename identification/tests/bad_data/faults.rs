@@ -236,10 +236,9 @@ fn labels_that_are_exchanged_are_told_by_a_mass_below_zero() {
     let result = identified(&runs).expect("an identification");
     assert_eq!(result.grade(), Grade::DoNotUse);
     assert!(
-        failed(&result)
-            .iter()
-            .any(|one| one.kind == CheckKind::PayloadLabel
-                && one.words.contains("mass is negative"))
+        failed(&result).iter().any(
+            |one| one.kind == CheckKind::PayloadLabel && one.words.contains("mass is negative")
+        )
     );
 }
 
@@ -250,7 +249,10 @@ fn a_payload_that_was_not_mounted_is_told() {
         log(RECORDS[number].clone(), |_, _| {}).with_payload(loaded)
     });
     let result = identified(&runs).expect("an identification");
-    assert!(failed(&result).iter().any(
-        |one| one.kind == CheckKind::PayloadLabel && one.words.contains("differs from zero")
-    ));
+    assert!(
+        failed(&result)
+            .iter()
+            .any(|one| one.kind == CheckKind::PayloadLabel
+                && one.words.contains("differs from zero"))
+    );
 }
