@@ -3,11 +3,11 @@
 use clap::builder::PossibleValuesParser;
 use overact_codegen::{Effort, Request};
 
-/// How hard fewer operations are searched.
+/// Effort of the search for fewer operations.
 #[derive(Debug, clap::Args)]
 #[group(skip)]
 pub(crate) struct Arguments {
-    /// How hard fewer operations are searched [default: that of the description, else thorough]
+    /// Effort of the search for fewer operations [default: that of the description, else thorough]
     #[arg(long, value_parser = PossibleValuesParser::new(Effort::ALL.map(Effort::name)))]
     effort: Option<String>,
 }

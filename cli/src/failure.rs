@@ -72,7 +72,7 @@ impl Failure {
         codes.sort_unstable();
         codes.dedup();
         let names: Vec<String> = codes.iter().take(EXPLAINED).map(Code::to_string).collect();
-        format!("cause and cure: overact explain {}", names.join(" "))
+        format!("cause and remedy: overact explain {}", names.join(" "))
     }
 
     /// Writes all problems to stderr: coloured on a terminal, plain in a pipe, or as JSON.

@@ -140,7 +140,7 @@ fn format(path: &Path) -> Result<Format, Failure> {
         Some("json") => Ok(Format::Json),
         Some("csv") => Ok(Format::Csv),
         _ => Err(Failure::Usage(format!(
-            "a report is a file that ends with .html, .json or .csv, unlike `{}`",
+            "the name of a report must end with .html, .json or .csv, unlike `{}`",
             path.display()
         ))),
     }

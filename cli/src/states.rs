@@ -76,7 +76,7 @@ impl States {
         match states {
             Ok(states) if states.is_empty() => {
                 let help = "give a JSON array of objects keyed by input name, or CSV with a header such as `pose[0],pose[1]`";
-                Err(Problem::new(Code::STATES, "the file holds no state")
+                Err(Problem::new(Code::STATES, "the file contains no state")
                     .file(file)
                     .help(help)
                     .into())
@@ -145,7 +145,7 @@ impl States {
         };
         let file = &self.file;
         Some(format!(
-            "{file}: no function takes `{first}`{others} of the states{near}"
+            "{file}: no function has the input `{first}`{others} of the states{near}"
         ))
     }
 
@@ -203,7 +203,7 @@ fn from_json(text: &str) -> Result<Vec<State>, Problem> {
     states.map_err(|error| {
         let line = Some(error.line()).filter(|line| *line > 0);
         let what = match error.classify() {
-            Category::Data => "the states can't be taken",
+            Category::Data => "the states can't be used",
             _ => "the states are not JSON",
         };
         Problem::new(Code::STATES, format!("{what}: {error}"))
@@ -233,7 +233,7 @@ impl<'de> Visitor<'de> for Quantities {
         while let Some(name) = object.next_key::<String>()? {
             if state.quantities.contains_key(&name) {
                 return Err(A::Error::custom(format!(
-                    "`{name}` stands twice in a state"
+                    "`{name}` occurs twice in a state"
                 )));
             }
             let value: Value = object.next_value()?;
@@ -248,7 +248,7 @@ fn numbers(value: &Value) -> Quantity {
     let one = |value: &Value| {
         value
             .as_f64()
-            .ok_or_else(|| format!("holds {value}, which is no number"))
+            .ok_or_else(|| format!("has {value}, which is not a number"))
     };
     match value {
         Value::Array(all) => all.iter().map(one).collect(),
@@ -283,7 +283,7 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
             .any(|cell| !cell.is_empty())
         {
             let (found, named) = (record.len(), header.len());
-            let message = format!("{found} cells in a line, and {named} names in the header");
+            let message = format!("{found} cells in a line, but {named} names in the header");
             let help =
                 "name every column, or leave out what has no name; numbers take a decimal point";
             return Err(Problem::new(Code::STATES, message).line(line).help(help));
@@ -342,7 +342,7 @@ fn from_cells(mut cells: Vec<(usize, &str)>) -> Quantity {
             return Err(format!("has two columns [{index}]"));
         }
         cell.parse::<f64>()
-            .map_err(|_| format!("holds \"{cell}\", which is no number"))
+            .map_err(|_| format!("has \"{cell}\", which is not a number"))
     };
     cells.into_iter().enumerate().map(one).collect()
 }
@@ -367,7 +367,7 @@ mod tests {
         }
         assert!(
             States::parse("a.json".into(), json).is_err(),
-            "1e999 is no number"
+            "1e999 is not a number"
         );
         let json = States::parse("a.json".into(), &json.replace("1e999", "7")).unwrap();
         assert_eq!(
@@ -383,7 +383,7 @@ mod tests {
         let problems = States::parse("s.json".into(), text).unwrap_err().problems();
         assert_eq!((problems.len(), problems[0].line), (1, Some(4)));
         let said = &problems[0].message;
-        assert!(said.contains("`pose` stands twice in a state"), "{said}");
+        assert!(said.contains("`pose` occurs twice in a state"), "{said}");
         let mended = text.replace(",\n\"pose\"", ",\n\"twist\"");
         assert_eq!(States::parse("s.json".into(), &mended).unwrap().len(), 2);
     }
@@ -396,7 +396,8 @@ mod tests {
         };
         assert_eq!(told("[{\"pose\": [1], \"twist\": [2]}]"), None);
         assert_eq!(told("pose[0],note\n1,2\n"), None);
-        let expected = "s.json: no function takes `twits` of the states: did you mean `twist`?";
+        let expected =
+            "s.json: no function has the input `twits` of the states: did you mean `twist`?";
         assert_eq!(
             told("[{\"pose\": [1], \"twits\": [2]}]").as_deref(),
             Some(expected)
@@ -404,7 +405,7 @@ mod tests {
         let two = told("[{\"a1\": 1}, {\"b\": 1}]");
         assert_eq!(
             two.as_deref(),
-            Some("s.json: no function takes `a1` and 1 more of the states")
+            Some("s.json: no function has the input `a1` and 1 more of the states")
         );
     }
 

@@ -232,7 +232,7 @@ fn a_seed_is_for_virtual_runs() {
     assert!(
         outcome
             .err
-            .contains("`--seed` is for the noise of the virtual experiment"),
+            .contains("`--seed` sets the noise of the virtual experiment"),
         "{}",
         outcome.err
     );

@@ -159,7 +159,7 @@ fn bad_states_are_told_of() {
     assert!(bad("joints", "none.json").contains("none.json"));
     let text = bad("inverse_dynamics", "states.json");
     assert!(
-        text.contains("state 1 of 2: missing `parameters`; the state holds ")
+        text.contains("state 1 of 2: missing `parameters`; the state has ")
             && text.contains("`parameters` (")
             && text.contains("`--parameters FILE`"),
         "{text}"
@@ -167,7 +167,7 @@ fn bad_states_are_told_of() {
     bench.write("named.csv", "x,y,phi\n0,0,0\n");
     let text = bad("joints", "named.csv");
     assert!(
-        text.contains("missing `pose`; the state holds `phi`, `x`, `y`")
+        text.contains("missing `pose`; the state has `phi`, `x`, `y`")
             && text.contains("the function takes `pose[0]` to `pose[2]`"),
         "{text}"
     );
@@ -275,7 +275,7 @@ fn what_would_be_no_number_is_refused() {
     bench.write("more.csv", "pose[0],pose[1],pose[2]\n0,0,0\n0,0,0,1\n");
     let said = bench.bad(&["evaluate", &dualv, "joints", "--states", "more.csv"]);
     assert!(
-        said.contains("more.csv:3") && said.contains("4 cells in a line, and 3 names"),
+        said.contains("more.csv:3") && said.contains("4 cells in a line, but 3 names"),
         "{said}"
     );
 }

@@ -268,7 +268,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     for (options, words) in [
         (
             &["--lang", "c", "--crate", "my::facade", "-o", "c"][..],
-            "C calls no crate",
+            "C uses no crate",
         ),
         (&["--crate", "my facade"], "no path of the crate"),
     ] {

@@ -101,11 +101,11 @@ fn every_error_has_a_code_that_is_explained() {
         "{err}"
     );
     assert!(
-        err.contains("cause and cure: overact explain OA102"),
+        err.contains("cause and remedy: overact explain OA102"),
         "{err}"
     );
     let told = bench.good(&["explain", "oa102", "101"]);
-    for part in ["OA102: an unknown key", "OA101: ", "Cause\n", "Cure\n"] {
+    for part in ["OA102: an unknown key", "OA101: ", "Cause\n", "Remedy\n"] {
         assert!(told.contains(part), "{part} in {told}");
     }
     assert!(told.lines().all(|line| line.chars().count() <= 100));
@@ -117,7 +117,7 @@ fn every_error_has_a_code_that_is_explained() {
     let unknown = bench.run(&["explain", "OA999", "102"]);
     assert_eq!(unknown.code, Some(2));
     assert!(
-        unknown.err.contains("`OA999` is no code"),
+        unknown.err.contains("`OA999` is not an error code"),
         "{}",
         unknown.err
     );

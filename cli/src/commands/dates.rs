@@ -27,7 +27,7 @@ fn days(year: i64, month: i64, day: i64) -> Option<i64> {
 pub(super) fn instant(text: &str) -> Result<i64, Failure> {
     let none = || {
         let help = "write `2026-03-02` or `2026-03-02T14:05:00`, UTC";
-        Failure::from(Problem::new(Code::USAGE, format!("`{text}` is no time")).help(help))
+        Failure::from(Problem::new(Code::USAGE, format!("`{text}` is not a time")).help(help))
     };
     let plain = text.strip_suffix('Z').unwrap_or(text);
     let (day, time) = plain.split_once('T').unwrap_or((plain, "00:00:00"));

@@ -21,17 +21,17 @@ pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
     pub(super) file: PathBuf,
-    /// Write the description with the runs that were found in the place of those to identify from, `-` to stdout; without it
-    /// the runs go to stdout
+    /// Write the description with the computed runs as training runs, `-` to stdout; without it
+    /// only the runs go to stdout
     #[arg(short, long, value_name = "TOML")]
     output: Option<PathBuf>,
     /// Number of runs [default: the description's]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=20))]
     runs: Option<u8>,
-    /// Seed of the search: the same one finds the same runs
+    /// Seed of the search: equal seeds give equal runs
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Stop searching after this time, s; the runs depend on the machine then
+    /// Stop the search after this time, s; the runs then depend on the machine
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
     time: Option<u32>,
 }

@@ -11,7 +11,7 @@ use serde_json::{Value, json as document};
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
-    /// Codes as errors show them, such as OA102; without any, all codes are listed
+    /// Error codes, such as OA102; without any, all codes are listed
     #[arg(value_name = "CODE")]
     codes: Vec<String>,
 }
@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let explanation = |text: &String| match Code::named(text) {
         Some(code) => Ok(code.explanation()),
-        None => Err(format!("`{text}` is no code of an error")),
+        None => Err(format!("`{text}` is not an error code")),
     };
     let mut wanted = Vec::new();
     let mut unknown = Vec::new();
@@ -58,7 +58,7 @@ fn as_document(one: &Explanation) -> Value {
         "code": one.code.to_string(),
         "title": one.title,
         "cause": one.cause,
-        "cure": one.cure,
+        "remedy": one.cure,
     })
 }
 
@@ -72,7 +72,7 @@ fn as_text(one: &Explanation) -> String {
         one.code,
         one.title,
         paragraph("Cause", one.cause),
-        paragraph("Cure", one.cure)
+        paragraph("Remedy", one.cure)
     )
 }
 

@@ -19,19 +19,19 @@ use std::{
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("original").required(true).args(["mjcf", "urdf"])))]
 pub(crate) struct Arguments {
-    /// The MJCF that the description was made of
+    /// The MJCF from which the description was imported
     #[arg(long, value_name = "FILE")]
     mjcf: Option<PathBuf>,
-    /// The URDF that the description was made of
+    /// The URDF from which the description was imported
     #[arg(long, value_name = "FILE")]
     urdf: Option<PathBuf>,
-    /// Standard parameters, as `overact identify --parameters` writes them
+    /// Standard parameters, written by `overact identify --parameters`
     #[arg(long, value_name = "TOML")]
     parameters: PathBuf,
-    /// The file to write instead of stdout; included files in which something changes are written beside it
+    /// The file to write instead of stdout; changed included files are written next to it
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// As the description was imported
+    /// Options with which the description was imported
     #[command(flatten)]
     choices: Choices,
 }
@@ -102,9 +102,8 @@ fn beside(
                 Ok((to, text.clone().into_bytes()))
             }
             _ => {
-                let message = "parameters stand in this included file, which changes, too";
-                let help = "write to a file in another folder, `-o NEW/robot.xml`; files that are included from outside of \
-                            the robot's own folder have to be moved into it before";
+                let message = "this included file contains parameters and changes, too";
+                let help = "write to a file in another folder, `-o NEW/robot.xml`; first move files that are included from outside the robot's folder into it";
                 let problem = Problem::new(Code::OUTPUT, message).file(path.display().to_string());
                 Err(problem.help(help).into())
             }
@@ -119,7 +118,7 @@ fn tell(exported: &Exported) {
         return;
     }
     let mut lines = vec![if exported.changed.is_empty() {
-        "nothing differs from the file".to_owned()
+        "the file is unchanged".to_owned()
     } else {
         format!("changed: {}", exported.changed.join(", "))
     }];

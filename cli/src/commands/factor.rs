@@ -15,20 +15,21 @@ pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
     pub(super) file: PathBuf,
-    /// Logs, as `overact identify --data` takes them
+    /// Logs, as for `overact identify --data`
     #[arg(value_name = "LOG", required_unless_present = "payload_data")]
     data: Vec<PathBuf>,
-    /// Logs of runs with the payload on the platform; `NAME=LOG` where the description names several payloads
+    /// Logs of runs with the payload on the platform; `NAME=LOG` if the description names several
+    /// payloads
     #[arg(long, value_name = "LOG", num_args = 1..)]
     payload_data: Vec<PathBuf>,
     /// Serial number of the robot
     #[arg(long, default_value = "")]
     serial: String,
-    /// When each run began, in the order of the logs, those with payload last: `2026-03-02` or
+    /// Start of each run, in the order of the logs, those with payload last: `2026-03-02` or
     /// `2026-03-02T14:05:00`, UTC
     #[arg(long, value_name = "TIME", num_args = 1..)]
     time: Vec<String>,
-    /// Keep successive equations beside the factors, for deviations as from the logs: larger files
+    /// Also store successive equations, for the standard deviations of the logs: larger files
     #[arg(long)]
     equations: bool,
     /// The factor file

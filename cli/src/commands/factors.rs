@@ -69,7 +69,7 @@ fn text(found: &FromFactors) -> String {
         text.push('\n');
     }
     text.push_str(match found.deviations {
-        Deviations::Equations => "Intervals are those of the logs: the files hold the equations.\n",
+        Deviations::Equations => "Intervals are those of the logs: the files contain the equations.\n",
         Deviations::Parts => {
             "Intervals are from the sums of parts of the runs, not from single equations: wider or narrower than\n\
              those of the logs, and the recommended parameters, which they choose, may be others;\n\
@@ -77,9 +77,7 @@ fn text(found: &FromFactors) -> String {
              --equations for those of one pass.\n"
         }
     });
-    text.push_str(
-        "Raw numbers and the fit were not checked as they are where logs are identified.\n",
-    );
+    text.push_str("The checks of raw data and residuals need logs and were not made.\n");
     for warning in &found.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }

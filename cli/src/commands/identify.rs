@@ -19,7 +19,7 @@ use overact_robot::{Identifier, tracking};
 use std::path::PathBuf;
 
 /// Message if `--tracking` has no runs to follow.
-const NOTHING_TO_FOLLOW: &str = "--tracking follows nothing: it takes the runs that are held out from the virtual robot's in [experiment], also beside logs, and the description has none (`validation = true` of a run)";
+const NOTHING_TO_FOLLOW: &str = "--tracking has no run: it uses the validation runs of [experiment], also with logs, and the description has none (`validation = true` of a run)";
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -29,23 +29,23 @@ pub(crate) struct Arguments {
     pub(super) file: PathBuf,
     #[command(flatten)]
     runs: runs::Arguments,
-    /// Factor files (`overact factor`) in the place of logs
+    /// Factor files (`overact factor`) instead of logs
     #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "parameters", "strict", "all", "tables", "reports", "published"])]
     factors: Vec<PathBuf>,
-    /// Leave out what can't be used of factor files, and say so
+    /// Skip unusable parts of factor files, and report them
     #[arg(long, requires = "factors")]
     skip_bad: bool,
     /// Kept actuators of case 2 [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
-    /// Let the virtual robot follow the held-out runs with a PD controller alone and with computed
-    /// torques [default: where the runs are virtual and published results lie beside the description]
+    /// Simulate tracking of the validation runs with a PD controller and with computed torques
+    /// [default: if the runs are virtual and published results are in the folder of the description]
     #[arg(long)]
     tracking: bool,
-    /// End with exit code 3 where the verdict is not to use the result
+    /// Exit with code 3 if the verdict is "do not use it"
     #[arg(long)]
     strict: bool,
-    /// List all parameters, however many: without it the summary has about 50 lines
+    /// List all parameters; without it the summary has about 50 lines
     #[arg(long)]
     all: bool,
     /// Print all tables below the whole summary
@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     /// Write the text (with --json the document) to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Estimate encoder offsets and lengths from the closure of redundant loops first, and go on with them:
+    /// First estimate encoder offsets and lengths from the closure of redundant loops, and use them:
     /// the fewest that explain the data, all offsets, or all offsets and lengths that the data determine
     #[arg(
         long,
@@ -65,18 +65,18 @@ pub(crate) struct Arguments {
         default_missing_value = "smallest"
     )]
     calibrate: Option<Scope>,
-    /// Identify the gains of the drives first, relative to what [identification.known] gives, and go on with
-    /// torques multiplied by them [default: what the description says]
+    /// First identify the gains of the drives, relative to [identification.known], and multiply the
+    /// torques by them [default: that of the description]
     #[arg(long)]
     gains: bool,
-    /// Identify the direction of gravity together with the parameters, for a base that stands off the vertical
-    /// [default: what the description says]
+    /// Identify the direction of gravity together with the parameters, for a tilted base
+    /// [default: that of the description]
     #[arg(long, conflicts_with = "gains")]
     gravity_direction: bool,
     /// Write the description with the calibrated offsets and lengths
     #[arg(long, value_name = "TOML", requires = "calibrate")]
     calibrated_robot: Option<PathBuf>,
-    /// Write the physically consistent standard parameters, which `simulate` and `evaluate` read
+    /// Write the physically consistent standard parameters, for `simulate` and `evaluate`
     #[arg(long, value_name = "TOML")]
     parameters: Option<PathBuf>,
     #[command(flatten)]
@@ -203,7 +203,7 @@ fn warnings(result: &Identification) -> Vec<String> {
 /// Identifies parameters from factor files.
 fn from_factors(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.runs.names_logs() {
-        let message = "`--factors` takes the place of logs: leave out one of both";
+        let message = "`--factors` replaces logs: leave out one of the two";
         return Err(Failure::Usage(message.to_owned()));
     }
     factors::run(&factors::Request {

@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// Name of the robot [default: that of the file]
     #[arg(long)]
     name: Option<String>,
-    /// What the file leaves open
+    /// Choices that the file does not determine
     #[command(flatten)]
     choices: Choices,
 }
@@ -34,22 +34,22 @@ pub(crate) struct Arguments {
 /// Choices on which the joints of the description depend, and with them the names of its parameters.
 #[derive(Debug, clap::Args)]
 pub(super) struct Choices {
-    /// Fix a base that floats where it stands
+    /// Fix a floating base at its position
     #[arg(long)]
     fix_base: bool,
-    /// The model that is meant, of an SDFormat world with several
+    /// The model to import from an SDFormat world with several
     #[arg(long, value_name = "NAME")]
     model: Option<String>,
     /// The driven joints [default: those that the file names]
     #[arg(long, value_delimiter = ',', value_name = "JOINTS")]
     actuated: Option<Vec<String>>,
-    /// Joints that shall be the independent coordinates [default: those whose chains are cheapest]
+    /// Joints to use as independent coordinates [default: those with the cheapest chains]
     #[arg(long, value_delimiter = ',', value_name = "JOINTS")]
     coordinates: Option<Vec<String>>,
     /// Values of symbols of a .par file, lengths in m and angles in rad
     #[arg(long = "value", value_delimiter = ',', value_name = "SYMBOL=NUMBER", value_parser = position)]
     values: Vec<(String, f64)>,
-    /// Where joints stand when the search for a closed configuration starts, rad or m
+    /// Joint positions at the start of the search for a closed configuration, rad or m
     #[arg(long, value_delimiter = ',', value_name = "JOINT=POSITION", value_parser = position)]
     home: Vec<(String, f64)>,
 }
@@ -74,11 +74,11 @@ fn position(text: &str) -> Result<(String, f64), String> {
     let value: f64 = value
         .trim()
         .parse()
-        .map_err(|_| format!("`{value}` is no number"))?;
+        .map_err(|_| format!("`{value}` is not a number"))?;
     if value.is_finite() {
         Ok((name.trim().to_owned(), value))
     } else {
-        Err(format!("`{value}` is no finite number"))
+        Err(format!("`{value}` is not a finite number"))
     }
 }
 

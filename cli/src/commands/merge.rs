@@ -10,10 +10,10 @@ pub(crate) struct Arguments {
     /// Factor files
     #[arg(value_name = "PARQUET", required = true)]
     files: Vec<PathBuf>,
-    /// The file with all of them
+    /// The merged file
     #[arg(short, long, value_name = "PARQUET")]
     output: PathBuf,
-    /// Leave out what can't be used, and say so
+    /// Skip unusable parts, and report them
     #[arg(long)]
     skip_bad: bool,
 }

@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// Print one JSON document instead of tables; errors as JSON, too
     #[arg(long, global = true)]
     pub(crate) json: bool,
-    /// Tell nothing but errors on standard error: no progress, no notes, no warnings
+    /// Print only errors on standard error: no progress, notes or warnings
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
     #[command(subcommand)]
@@ -44,35 +44,35 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Start a description from a commented template
     New(new::Arguments),
-    /// Show every error of a description at once, each at its line
+    /// Print all errors of a description, each with its line
     Check(check::Arguments),
-    /// Show sizes, bodies, base parameters, operation counts and conditioning
+    /// Print sizes, bodies, base parameters, operation counts and conditioning
     Inspect(inspect::Arguments),
     /// Write a robot's functions as Rust source
     Generate(generate::Arguments),
     /// Evaluate a function on given states
     Evaluate(evaluate::Arguments),
-    /// Search runs that determine the parameters best inside limits
+    /// Compute runs that determine the parameters best within limits
     Excite(excite::Arguments),
-    /// Make the virtual experiment of a description
+    /// Simulate the virtual experiment of a description
     Simulate(simulate::Arguments),
     /// Estimate a robot's parameters from logs, or from its virtual experiment
     Identify(identify::Arguments),
-    /// Write the R factors of logs, kilobytes from which parameters are identified without them
+    /// Write the R factors of logs: small files from which parameters can be identified
     Factor(factor::Arguments),
-    /// Put factor files together, nothing twice
+    /// Merge factor files without duplicates
     Merge(merge::Arguments),
     /// Compare all choices of kept actuators of case 2
     Partitions(partitions::Arguments),
-    /// Tell the cause and the cure of an error by its code
+    /// Explain the cause and the remedy of an error code
     Explain(explain::Arguments),
-    /// Print what a shell needs to complete commands and options
+    /// Print shell completions
     Completions(shell::Completions),
     /// Print or write pages for `man`
     Manual(shell::Manual),
-    /// Make a description of a robot's MJCF, URDF, SDFormat or .par, with loops
+    /// Import a description from MJCF, URDF, SDFormat or .par, with loops
     Import(import::Arguments),
-    /// Put identified parameters back into the MJCF or URDF that a description was made of
+    /// Write identified parameters into the MJCF or URDF from which a description was imported
     Export(export::Arguments),
 }
 

@@ -46,7 +46,7 @@ const TEMPLATES: [(&str, &str); 15] = [
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
-    /// What kind of robot to start from; without it, all templates are listed
+    /// Template to start from; without it, all templates are listed
     #[arg(value_parser = PossibleValuesParser::new(TEMPLATES.map(|(name, _)| name)), requires = "file")]
     template: Option<String>,
     /// The description to write, which must not exist; `-` is standard output

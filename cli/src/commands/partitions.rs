@@ -36,7 +36,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let robot = input::robot(&arguments.file, as_json)?;
     let sizes = robot.model().info().sizes;
     if sizes.actuators == sizes.dof {
-        let message = "the robot has no more actuators than degrees of freedom, so there is nothing to choose";
+        let message =
+            "the robot has no more actuators than degrees of freedom, so there is no choice";
         return Err(Problem::new(Code::NO_REDUNDANCY, message)
             .file(robot.file())
             .into());
@@ -90,7 +91,7 @@ fn text(study: &Study) -> String {
         "sigma by case 1",
         "sum sigma %",
         "sum error %",
-        "held out %",
+        "validation %",
         "torques %",
         "error %",
         "cond W",
@@ -102,7 +103,7 @@ fn text(study: &Study) -> String {
     let partitions = study.partitions.iter();
     rows.extend(partitions.map(|row| cells(row, row.kept_actuators.join(", "))));
     let mut text = columns(&rows, &[true]);
-    text += "ranks: by conditioning, parameters, prediction; choices that can't be trusted stand last\n";
+    text += "ranks: by conditioning, parameters, prediction; unreliable choices are last\n";
     for warning in &study.warnings {
         paragraph(&mut text, "", &format!("warning: {warning}"));
     }

@@ -100,7 +100,7 @@ impl<'a> Payloads<'a> {
                 }
                 None if one.loaded && !self.names.is_empty() => {
                     let message =
-                        "the robot has several payloads: it is not said which one this run carries";
+                        "the robot has several payloads: this run does not name its payload";
                     let help = format!("write NAME=LOG, the name being one of {list}");
                     Some(
                         Problem::new(Code::LOG_PAYLOAD, message)

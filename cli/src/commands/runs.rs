@@ -22,14 +22,16 @@ use std::{
 #[group(id = "runs")]
 pub(super) struct Arguments {
     /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
-    /// `a.csv+b.csv` one run whose columns stand in two files, `-` standard input; without any, the virtual experiment is made
+    /// `a.csv+b.csv` for one run in two files, `-` for standard input; without any, the virtual
+    /// experiment is simulated
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,
-    /// Logs of runs with the payload on the platform; `NAME=LOG` where the description names several payloads
+    /// Logs of runs with the payload on the platform; `NAME=LOG` if the description names several
+    /// payloads
     #[arg(long, value_name = "LOG", num_args = 1..)]
     payload_data: Vec<PathBuf>,
-    /// Logs to compare predictions with; names of runs where the experiment is virtual [default: those
-    /// that the description holds out]
+    /// Logs of validation runs; names of runs if the experiment is virtual [default: the validation
+    /// runs of the description]
     #[arg(long, value_name = "LOG", num_args = 1..)]
     cross_validate: Vec<PathBuf>,
     /// The same, with the payload
@@ -51,7 +53,7 @@ pub(super) struct Arguments {
 enum Friction {
     /// The same coefficients in both directions, and an offset
     Symmetric,
-    /// Coefficients of their own for each direction
+    /// Separate coefficients for each direction
     Asymmetric,
 }
 
@@ -99,7 +101,7 @@ impl Arguments {
         if self.are_virtual() {
             self.made(robot, as_json)
         } else if self.seed.is_some() {
-            let message = "`--seed` is for the noise of the virtual experiment: leave it out beside `--data` and `--payload-data`";
+            let message = "`--seed` sets the noise of the virtual experiment: leave it out with `--data` and `--payload-data`";
             Err(Failure::Usage(message.to_owned()))
         } else {
             self.measured(robot, as_json)

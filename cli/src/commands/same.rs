@@ -44,7 +44,7 @@ fn problem(log: &Path, other: &Path, is_estimated: bool, is_other_estimated: boo
             format!(
                 "the log has the content of `{other}`, from which the parameters are estimated"
             ),
-            "cross-validate with a run that the estimation does not see",
+            "cross-validate with a run that is not training data",
         )
     } else {
         (

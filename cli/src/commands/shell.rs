@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `completions`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Completions {
-    /// The shell; its manual says where it looks for such a file
+    /// The shell; see its manual for the location of completion files
     #[arg(value_enum)]
     shell: Shell,
 }

@@ -42,7 +42,7 @@ pub(crate) fn check<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(),
 /// Incompatible arguments, or files that may not be written.
 pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(), Failure> {
     if outputs.iter().any(|output| is_stream(output)) {
-        let message = "`-` is standard output, which takes the result of `-o` alone: write `./-` for a file of that name";
+        let message = "`-` is standard output, which is for the result of `-o` only: write `./-` for a file of that name";
         return Err(Failure::Usage(message.to_owned()));
     }
     if inputs.iter().filter(|input| is_stream(input)).count() > 1 {
@@ -232,7 +232,9 @@ fn unwritable(path: &Path, error: &io::Error) -> Failure {
 /// Problem with a generic reason, because the error's text may name the temporary file.
 fn unwritable_problem(path: &Path, error: &io::Error) -> Problem {
     let reason = match error.kind() {
-        io::ErrorKind::NotFound if folder(path).is_dir() => "its folder takes no files".to_owned(),
+        io::ErrorKind::NotFound if folder(path).is_dir() => {
+            "its folder does not accept files".to_owned()
+        }
         io::ErrorKind::NotFound => "its folder does not exist".to_owned(),
         io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),

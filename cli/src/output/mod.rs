@@ -92,7 +92,10 @@ pub(crate) fn make_folders(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Problem> 
 
 fn made(folder: &Path) -> Result<(), Problem> {
     std::fs::create_dir_all(folder).map_err(|error| {
-        let problem = Problem::new(Code::OUTPUT, format!("the folder can't be made: {error}"));
+        let problem = Problem::new(
+            Code::OUTPUT,
+            format!("the folder can't be created: {error}"),
+        );
         problem.file(folder.display().to_string())
     })
 }

@@ -86,7 +86,7 @@ fn lacking(at: usize, missing: &[String], states: &States, takes: &[String]) -> 
         help += "; `--parameters FILE` gives those of all states";
     }
     let missing = quoted(&mut missing.iter().map(String::as_str));
-    let message = format!("missing {missing}; the state holds {held}");
+    let message = format!("missing {missing}; the state has {held}");
     states.problem(at, &message).help(help)
 }
 

@@ -38,10 +38,10 @@ pub(crate) struct Arguments {
     /// `pose[0],pose[1]`; `-` is stdin
     #[arg(long, value_name = "FILE")]
     states: PathBuf,
-    /// What to evaluate from [default: what the states hold]
+    /// Inputs to evaluate from [default: those of the states]
     #[arg(long, value_enum)]
     from: Option<Source>,
-    /// Which columns an identification model has, or which parameters dynamics take [default: standard]
+    /// Columns of an identification model, or parameters of dynamics [default: standard]
     #[arg(long, value_enum)]
     columns: Option<ColumnsOf>,
     /// Kept actuators of case 2 [default: those of the description]
@@ -237,10 +237,7 @@ fn evaluate(
         None => Ok(values),
         Some(at) => {
             let width = program.entries.len();
-            let message = format!(
-                "number {} of the result is too large for a number",
-                at % width
-            );
+            let message = format!("number {} of the result overflows", at % width);
             let help = "check the units: positions in m and rad, velocities in m/s and rad/s";
             Err(states.problem(at / width, &message).help(help).into())
         }

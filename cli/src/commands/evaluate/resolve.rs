@@ -41,7 +41,7 @@ pub(super) fn function<'m>(
     };
     let offered: Vec<&CompiledFunction> = named.into_iter().filter(is_meant).collect();
     if offered.is_empty() {
-        let message = format!("`{name}` is not offered with {} columns", columns.name());
+        let message = format!("`{name}` does not exist with {} columns", columns.name());
         return Err(Problem::new(Code::FUNCTION_VARIANT, message).into());
     }
     let from = |from: MotionInput| offered.iter().find(|f| f.from == from).copied();
@@ -53,9 +53,9 @@ pub(super) fn function<'m>(
     if let Some(source) = arguments.from {
         let offers: Vec<&str> = offered.iter().map(|f| f.from.name()).collect();
         let missing = || {
-            let message = format!("`{name}` is not offered from {}", source.from().name());
+            let message = format!("`{name}` does not exist from {}", source.from().name());
             Problem::new(Code::FUNCTION_VARIANT, message)
-                .help(format!("it is offered from {}", offers.join(", ")))
+                .help(format!("it exists from {}", offers.join(", ")))
                 .into()
         };
         return from(source.from()).ok_or_else(missing);

@@ -25,24 +25,24 @@ pub(crate) struct Arguments {
     /// Descriptions
     #[arg(required = true, value_name = "TOML")]
     pub(super) files: Vec<PathBuf>,
-    /// A file for one robot, or a folder for `<description>.rs` of each; of C a folder for `<robot>.h` and
-    /// `<robot>.c` of each; `-` is standard output
+    /// A file for one robot, or a folder for `<description>.rs` of each; for C a folder for
+    /// `<robot>.h` and `<robot>.c` of each; `-` is standard output
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
-    /// The language: Rust, or C99 that needs `math.h` alone
+    /// The language: Rust, or C99 that needs only `math.h`
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long, requires = "output")]
     check: bool,
-    /// Values of all standard parameters, as `identify --parameters` writes them: the dynamics of one
-    /// description with these as constants, without the identification models
+    /// Values of all standard parameters, written by `identify --parameters`: generates the dynamics
+    /// of one description with these constants, without identification models
     #[arg(long, value_name = "TOML")]
     parameters: Option<PathBuf>,
-    /// The numbers that the code computes with
+    /// Number type of the code
     #[arg(long, value_parser = PossibleValuesParser::new(Float::ALL.map(Float::name)), default_value = "f64")]
     float: String,
-    /// The path under which the Rust finds the crate `overact` [default: ::overact]
+    /// Path of the crate `overact` in the generated Rust [default: ::overact]
     #[arg(long = "crate", value_name = "PATH", value_parser = Runtime::new)]
     runtime: Option<Runtime>,
     #[command(flatten)]
@@ -101,11 +101,11 @@ impl Arguments {
     fn contradiction(&self, as_json: bool) -> Option<String> {
         let is_printed = self.output.is_none() && !as_json;
         if is_printed && self.lang == Language::C {
-            let message = "C is a header and a source file: add `-o FOLDER` to write them to";
+            let message = "C is a header and a source file: add `-o FOLDER`";
             return Some(message.to_owned());
         }
         if self.runtime.is_some() && self.lang == Language::C {
-            let message = "C calls no crate: leave out `--crate`, or write Rust";
+            let message = "C uses no crate: leave out `--crate`, or generate Rust";
             return Some(message.to_owned());
         }
         if is_printed && self.files.len() > 1 {
@@ -248,8 +248,7 @@ fn large(mechanism: &Mechanism) -> Option<String> {
     let joints = mechanism.joints().len();
     (joints > LARGE).then(|| {
         format!(
-            "with {joints} joints this takes minutes; `--effort none` is quickest, `--effort quick` \
-             finds most of what a thorough search does"
+            "with {joints} joints this takes minutes; `--effort none` is quickest, `--effort quick` saves most of what a thorough search does"
         )
     })
 }

@@ -194,7 +194,7 @@ pub(super) fn distinct(modules: &[Module]) -> Result<(), Failure> {
             );
             let help = match module.language {
                 Language::Rust => "give each description a file name of its own",
-                Language::C => "give each robot a `name` that differs in more than capitals",
+                Language::C => "give each robot a `name` that differs not only in capitals",
             };
             problems.push(problem(message).help(help));
         }

@@ -154,7 +154,7 @@ fn functions(document: &Inspection) -> String {
         rows.push(row);
     }
     columns(&rows, &[true])
-        + "op: + - * and /, products with a sign among them; what a function calls is counted in.\n"
+        + "op: + - * and /, products with a sign included; called functions are counted.\n"
         + &side_by_side(document)
 }
 

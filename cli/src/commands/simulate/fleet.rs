@@ -190,7 +190,7 @@ fn new_folder(folder: &Path) -> Result<(), Failure> {
         Failure::from(problem.help("give the name of a new folder"))
     };
     std::fs::create_dir_all(folder)
-        .map_err(|error| refuse(format!("the folder can't be made: {error}")))?;
+        .map_err(|error| refuse(format!("the folder can't be created: {error}")))?;
     let mut entries = std::fs::read_dir(folder)
         .map_err(|error| refuse(format!("the folder can't be read: {error}")))?;
     match entries.next() {

@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// run goes to stdout
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
-    /// Make only this run (again for others)
+    /// Simulate only this run (repeat for others)
     #[arg(long = "run", value_name = "RUN")]
     runs: Vec<String>,
     /// Standard parameters of the virtual robot [default: the description's]
@@ -139,7 +139,8 @@ fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<Pa
     let runs = &experiment.runs;
     let Some(output) = output else {
         if runs.len() > 1 {
-            let message = "several runs need files to be written to: add `-o log.csv`, or choose one with `--run`";
+            let message =
+                "several runs need output files: add `-o log.csv`, or choose one with `--run`";
             return Err(Failure::Usage(message.to_owned()));
         }
         return Ok(vec![None; runs.len()]);
