@@ -417,7 +417,7 @@ mod tests {
         };
         assert!(message("pose[0],pose[2]\n1,2\n", "pose").contains("no column [1]"));
         assert!(message("[{\"pose\":[1,2]}]", "pose").contains("has 2 numbers, expected 3"));
-        assert!(message("[{\"pose\":[1,\"a\",3]}]", "pose").contains("no number"));
+        assert!(message("[{\"pose\":[1,\"a\",3]}]", "pose").contains("not a number"));
         for text in [
             "",
             "[]",

@@ -108,7 +108,7 @@ fn what_can_not_be_is_refused_before_anything_is_written() {
     refused(
         &["--fleet", "2", "--begin", "yesterday", "-o", "new"],
         1,
-        "no time",
+        "not a time",
     );
     refused(&["--fleet", "2"], 2, "--output");
     refused(&["--days", "2"], 2, "--fleet");

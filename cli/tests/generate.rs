@@ -281,9 +281,9 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
         "null_space,jacobian,idm_red_payload",
     ]));
     for words in [
-        "has no function `null_space`: that is one of robots with more actuators",
-        "has no function `jacobian`: that is one of robots with a platform",
-        "has no function `idm_red_payload`: that is one of robots with a `[platform.payload]`",
+        "has no function `null_space`: only robots with more actuators",
+        "has no function `jacobian`: only robots with a platform have it",
+        "has no function `idm_red_payload`: only robots with a `[platform.payload]` have it",
     ] {
         assert!(said.contains(words), "no `{words}` in\n{said}");
     }
@@ -304,7 +304,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     ];
     let said = bench.bad(&quick(&told));
     assert!(
-        said.contains("has no function `idm_red_platform`: where the parameters are known"),
+        said.contains("has no function `idm_red_platform`: with known parameters"),
         "{said}"
     );
     let said = bench.bad(&quick(&[

@@ -59,6 +59,6 @@ fn of_other(item: &Item<'_, '_>, description: &Description) -> Option<Diagnostic
         name.value, own[0]
     );
     let error = Diagnostic::new(Code::PARAMETERS_FILE, message, name.span);
-    let help = "give the file of this robot; where another name is the same robot, leave the key `robot` out";
+    let help = "give the file of this robot; if another name means the same robot, leave the key `robot` out";
     Some(error.help(help))
 }

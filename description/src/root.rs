@@ -57,7 +57,7 @@ pub(crate) fn syntax(errors: &[toml::de::Error]) -> Diagnostics {
     let place = |error: &&toml::de::Error| error.span().map_or(usize::MAX, |span| span.start);
     let first = errors.iter().min_by_key(place);
     let diagnostic = |error: &toml::de::Error| {
-        let message = format!("this is no TOML: {}", error.message());
+        let message = format!("this is not valid TOML: {}", error.message());
         match error.span() {
             Some(span) => Diagnostic::new(Code::SYNTAX, message, span),
             None => Diagnostic::global(Code::SYNTAX, message),
@@ -213,8 +213,7 @@ fn placements<'c, 't>(table: &Table<'c, 't>) -> Vec<Table<'c, 't>> {
 }
 
 fn legs(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], scope: &Scope) -> Vec<Leg> {
-    let help =
-        "a table [[place]] with name = \"leg1\" and shape = \"NAME\" puts a leg in its place";
+    let help = "a table [[place]] with name = \"leg1\" and shape = \"NAME\" places a leg";
     let wanted = !shapes.is_empty();
     if wanted && table.require("place", help).is_none() {
         return Vec::new();

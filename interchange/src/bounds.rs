@@ -67,7 +67,7 @@ pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
         }
         if joint.follow.is_some_and(|follow| follow.factor == 0.0) {
             let message = format!(
-                "the joint `{}` follows another with the factor 0: it does not move",
+                "the joint `{}` is coupled to another with the factor 0: it does not move",
                 joint.name
             );
             let help = "write it as a fixed joint, or give another factor";

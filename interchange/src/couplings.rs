@@ -60,10 +60,7 @@ impl Couplings {
             let name = |joint: usize| &model.joints[joint].name;
             let mut ends = [coupling.follower, coupling.leader].into_iter();
             if let Some(ball) = ends.find(|&joint| model.joints[joint].kind == Kind::Ball) {
-                let message = format!(
-                    "`{}` is a ball and cannot follow or lead a joint",
-                    name(ball)
-                );
+                let message = format!("`{}` is a ball joint and cannot be coupled", name(ball));
                 let help = "couple revolute and prismatic joints";
                 files.report(&coupling.place, message, help);
                 continue;
@@ -71,12 +68,12 @@ impl Couplings {
             let slot = &mut relations[coupling.follower];
             if let Some(first) = slot {
                 let message = format!(
-                    "`{}` follows two joints, `{}` and `{}`",
+                    "`{}` is coupled to two joints, `{}` and `{}`",
                     name(coupling.follower),
                     name(first.leader),
                     name(coupling.leader)
                 );
-                let help = "let each joint follow one joint: exchange leader and follower in one of the relations";
+                let help = "couple each joint to one other joint: exchange the two joints in one of the relations";
                 files.report(&coupling.place, message, help);
                 continue;
             }
@@ -139,7 +136,7 @@ fn report_cycle(files: &Files, model: &Model, chain: &[&Coupling], entry: usize)
     let names: Vec<String> = names
         .map(|own| format!("`{}`", model.joints[own.follower].name))
         .collect();
-    let message = format!("joints follow each other in a cycle: {}", names.join(", "));
+    let message = format!("joints are coupled in a cycle: {}", names.join(", "));
     let help = "remove one of these relations, so that one of the joints is independent";
     files.report(&first.place, message, help);
 }

@@ -67,11 +67,7 @@ impl Files {
         let name = path.display().to_string();
         let message = error.map(|error| format!("`{name}` can't be read: {error}"));
         if let (Some(message), Some(place)) = (&message, named_at) {
-            self.report(
-                place,
-                message.clone(),
-                "give the file, or take its name out",
-            );
+            self.report(place, message.clone(), "give the file, or remove its name");
             return None;
         }
         let source = Source::new(name, text);
@@ -242,7 +238,7 @@ impl Files {
 /// An included file must be a regular file: a device may have no end, and a pipe may block.
 fn read(path: &Path, is_included: bool, most: u64) -> io::Result<String> {
     if is_included && !path.metadata()?.is_file() {
-        return Err(io::Error::other("it is no regular file"));
+        return Err(io::Error::other("it is not a regular file"));
     }
     let mut text = String::new();
     File::open(path)?.take(most + 1).read_to_string(&mut text)?;

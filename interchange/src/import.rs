@@ -174,7 +174,8 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)
         "robot" => urdf::read(files, file, options).map(|model| (model, Format::Urdf)),
         "sdf" | "gazebo" => sdf::read(files, file, options).map(|model| (model, Format::Sdf)),
         other => {
-            let message = format!("a file of <{other}> is neither MJCF nor URDF nor SDFormat");
+            let message =
+                format!("a file with the root <{other}> is neither MJCF nor URDF nor SDFormat");
             files.report(
                 &root.place,
                 message,
@@ -198,7 +199,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         if found.is_none() {
             let names = model.joints.iter().map(|joint| joint.name.as_str());
             let near = overact_description::diagnostic::did_you_mean(name, names);
-            let help = near.unwrap_or_else(|| "name joints of the file that move".to_owned());
+            let help = near.unwrap_or_else(|| "name moving joints of the file".to_owned());
             files.refuse(format!("there is no joint `{name}`"), help);
         }
         found
@@ -214,7 +215,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         }
     } else if !model.says_motors {
         if !model.closures.is_empty() {
-            let help = "say which: `--actuated JOINT,JOINT`";
+            let help = "name them: `--actuated JOINT,JOINT`";
             files.refuse(
                 "the file does not say which joints of its loops are driven",
                 help,
@@ -227,7 +228,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
             .for_each(|joint| joint.actuated = joint.follow.is_none());
         model
             .notes
-            .push("The file names no motors: every joint has one here.".to_owned());
+            .push("The file has no motors: every joint has one here.".to_owned());
     }
     if model.closures.is_empty() {
         let passive = |joint: &&mut crate::model::Joint| !joint.actuated && joint.follow.is_none();
@@ -238,7 +239,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         }
         if !names.is_empty() {
             model.notes.push(format!(
-                "No motor drives {}: without loops every joint has a torque here, and theirs is zero in a log.",
+                "No motor drives {}: without loops every joint needs a torque column; theirs is zero.",
                 names.join(", ")
             ));
         }
@@ -253,7 +254,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
     if model.joints.is_empty() {
         files.refuse(
             "the robot has no joint that moves",
-            "fixed joints alone make no robot",
+            "add a joint that moves",
         );
         return None;
     }
@@ -303,7 +304,8 @@ fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
         "the robot has {} degrees of freedom, and {motors} motors",
         network.mobility
     );
-    let help = "name all driven joints, `--actuated JOINT,JOINT`, or hold still in the file what does not move";
+    let help =
+        "name all driven joints, `--actuated JOINT,JOINT`, or fix in the file what does not move";
     files.refuse(message, help);
     None
 }
@@ -319,7 +321,7 @@ fn no_balls_in_trees(files: &Files, model: &Model) -> Option<()> {
         return Some(());
     };
     let message = format!(
-        "the ball `{}` has no motor, which can't be said without loops",
+        "the ball joint `{}` has no motor, which is not supported without loops",
         ball.name
     );
     let help = "write it as three revolute joints";

@@ -85,7 +85,7 @@ fn in_file(error: &Diagnostic, origin: Option<&Origin>) -> Diagnostic {
         Some(origin) => format!("joint `{}`: {}{label}", origin.joint, error.message),
         None => format!("{}{label}", error.message),
     };
-    let message = format!("this robot has no valid description: {reason}");
+    let message = format!("this robot can't be described: {reason}");
     let help = help(error);
     match origin {
         Some(origin) => Diagnostic::new(error.code, message, origin.place.span.clone()),
@@ -97,9 +97,7 @@ fn in_file(error: &Diagnostic, origin: Option<&Origin>) -> Diagnostic {
 /// Advice in terms of the source file or the import options.
 fn help(error: &Diagnostic) -> String {
     let own = match error.code {
-        Code::ACTUATED => {
-            "say which joints are driven, none of them one that follows: `--actuated JOINT,JOINT`"
-        }
+        Code::ACTUATED => "name the driven joints, none of them coupled: `--actuated JOINT,JOINT`",
         Code::MOVES_FREELY | Code::NOT_HELD | Code::SINGULAR_HOME | Code::ALWAYS_SINGULAR => {
             "choose another configuration, `--home JOINT=POSITION`, or other driven joints, `--actuated JOINT,JOINT`"
         }

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// Reason for names that are not in the table.
-const UNKNOWN: &str = "not in the specification that import knows; not used";
+const UNKNOWN: &str = "not in the specification; not used";
 
 /// Reason for values without effect, which are not reported.
 const NEUTRAL: &str = "this value has no effect";

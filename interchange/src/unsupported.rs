@@ -20,14 +20,14 @@ pub(crate) fn leave_out(files: &Files, format: Format, model: &mut Model) {
     let has_loops = !model.closures.is_empty();
     for joint in &mut model.joints {
         if joint.kind == Kind::Ball {
-            let reason = "LEFT OUT: balls have no torques of their own in a description";
+            let reason = "LEFT OUT: torques of ball joints are not supported";
             for torque in given(joint) {
                 report(files, format, joint, torque, reason);
             }
             (joint.damping, joint.friction, joint.armature) = (0.0, 0.0, 0.0);
             joint.spring = None;
         } else if has_loops && joint.spring.is_some() {
-            let reason = "LEFT OUT: springs of joints are not supported in robots with loops";
+            let reason = "LEFT OUT: springs are not supported in robots with loops";
             report(files, format, joint, Torque::Spring, reason);
             joint.spring = None;
         }

@@ -45,16 +45,12 @@ pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
             let place = place_of(&text, file, error.pos());
             let help = match error {
                 roxmltree::Error::DtdDetected => {
-                    "take the document type and its entities out: write what they stand for"
+                    "remove the document type and its entities: write out their contents"
                 }
                 roxmltree::Error::NodesLimitReached => "describe the robot in fewer elements",
                 _ => "the file has to be well-formed XML",
             };
-            files.report(
-                &place,
-                format!("this is no XML that can be read: {error}"),
-                help,
-            );
+            files.report(&place, format!("this is not valid XML: {error}"), help);
             return None;
         }
     };
@@ -88,7 +84,7 @@ pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
 
 /// Reports elements nested deeper than [`DEPTH`].
 pub(crate) fn too_deep(files: &Files, place: &Place) {
-    let message = format!("elements are within each other more than {DEPTH} deep");
+    let message = format!("elements are nested more than {DEPTH} deep");
     files.report(place, message, "describe the robot in parts");
 }
 
@@ -108,7 +104,7 @@ fn check_tags(files: &Files, file: usize, text: &str) -> Option<()> {
     if text.matches("xmlns").count() > MOST_NAMESPACES {
         let message = format!("the file declares more than {MOST_NAMESPACES} namespaces");
         let place = Place { file, span: 0..1 };
-        files.report(&place, message, "take the declarations out");
+        files.report(&place, message, "remove the declarations");
         return None;
     }
     Some(())
@@ -229,7 +225,7 @@ impl Element {
         match numbers(text).map(<[f64; N]>::try_from) {
             Some(Ok(values)) => Some(values),
             _ => {
-                let message = format!("`{name}` of `{}` has to be {N} finite numbers", self.name);
+                let message = format!("`{name}` of `{}` must be {N} finite numbers", self.name);
                 files.report(place, message, "write numbers with blanks between them");
                 None
             }
@@ -241,7 +237,7 @@ impl Element {
         let (text, place) = self.attribute(name)?;
         let found = numbers(text);
         if found.is_none() {
-            let message = format!("`{name}` of `{}` has to be finite numbers", self.name);
+            let message = format!("`{name}` of `{}` must be finite numbers", self.name);
             files.report(place, message, "write numbers with blanks between them");
         }
         found

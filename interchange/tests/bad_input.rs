@@ -52,7 +52,7 @@ fn xml_is_read_without_entities_and_without_a_network() {
     let said = refused("robot.urdf", text);
     assert!(said.contains("document type and its entities"), "{said}");
     let said = refused("robot.urdf", "<robot name='r'>\n<link name='a'>\n</robot>");
-    assert!(said.starts_with("3: this is no XML"), "{said}");
+    assert!(said.starts_with("3: this is not valid XML"), "{said}");
     assert!(refused("robot.urdf", "<collada/>").contains("neither MJCF nor URDF"));
     let deep =
         "<mujoco>".to_owned() + &"<body>".repeat(5000) + &"</body>".repeat(5000) + "</mujoco>";
@@ -173,22 +173,26 @@ fn tables_that_say_no_robot_are_told_at_their_line() {
         "{said}"
     );
     for (line, by, expected) in [
-        ("{0,D2}", "{0,0", "8: a list has no end"),
-        ("'two' *)", "'two'", "1: a comment has no end"),
-        ("NF = 2", "NL = 2", "4: `NL` stands here twice"),
+        ("{0,D2}", "{0,0", "8: a list is not closed"),
+        ("'two' *)", "'two'", "1: a comment is not closed"),
+        ("NF = 2", "NL = 2", "4: `NL` occurs twice"),
         (
             "NF = 2",
             "NF = 3",
-            "2: 2 links, 2 joints and 3 frames make no robot",
+            "2: 2 links, 2 joints and 3 frames do not match",
         ),
-        ("NL = 2", "NL = 2.5", "2: `NL` is no whole number"),
-        ("{0,1}", "{0,2}", "5: frame 2 stands on 2 with sigma 0"),
+        ("NL = 2", "NL = 2.5", "2: `NL` is not an integer"),
+        (
+            "{0,1}",
+            "{0,2}",
+            "5: frame 2 has the antecedent 2 and sigma 0",
+        ),
         ("{0,1}", "{0}", "5: `ANT` has no value for frame 2"),
-        ("{0,pi/2}", "{0,pi//2}", "11: `pi//2` is no expression"),
+        ("{0,pi/2}", "{0,pi//2}", "11: `pi//2` is not an expression"),
         (
             "{t1,t2}",
             "{t1,2*t2}",
-            "13: the position of joint 2 is `2*t2`, no variable and a constant",
+            "13: the position of joint 2 is `2*t2`, not a variable plus a constant",
         ),
         (
             "{t1,t2}",
@@ -198,10 +202,10 @@ fn tables_that_say_no_robot_are_told_at_their_line() {
         (
             "NF = 2",
             "is_floating = 1",
-            "4: a base that moves can't be said",
+            "4: a moving base is not supported",
         ),
-        ("M = {1,M2}", "what", "14: this belongs to no key"),
-        ("M = {1,M2}", "a b = 1", "14: this is no key"),
+        ("M = {1,M2}", "what", "14: this line belongs to no key"),
+        ("M = {1,M2}", "a b = 1", "14: this is not a key"),
     ] {
         let said = refused("two.par", &table(line, by).replace("D2", "0"));
         assert!(said.starts_with(expected), "{by}: {said}");
@@ -263,7 +267,7 @@ fn a_joint_that_follows_with_the_factor_zero_is_refused() {
     let more = "<link name='c'/><joint name='k' type='revolute'><parent link='b'/><child link='c'/>\n<mimic joint='j' multiplier='0'/></joint>";
     let said = refused("robot.urdf", &two_links("revolute", more));
     assert!(
-        said.starts_with("6: the joint `k` follows another with the factor 0"),
+        said.starts_with("6: the joint `k` is coupled to another with the factor 0"),
         "{said}"
     );
 }
@@ -277,7 +281,7 @@ fn what_is_nested_without_end_is_refused() {
         "sin(".repeat(100_000),
     ] {
         let said = refused("robot.par", &format!("{table}alpha = {{{deep}1}}\n"));
-        assert!(said.contains("is no expression"), "{}", &said[..200]);
+        assert!(said.contains("is not an expression"), "{}", &said[..200]);
     }
     let folder = tempfile::tempdir().expect("a folder");
     let bodies = |inside: &str| {

@@ -168,7 +168,7 @@ fn cycles_are_rejected_at_their_first_relation() {
     ];
     let said = errors("row.urdf", &row(&[4, 2, 3, 1], cycle));
     assert!(
-        said.starts_with("3: joints follow each other in a cycle: `j2`, `j1`, `j3`, `j2`"),
+        said.starts_with("3: joints are coupled in a cycle: `j2`, `j1`, `j3`, `j2`"),
         "{said}"
     );
     assert_eq!(said.lines().count(), 1, "{said}");
@@ -177,7 +177,7 @@ fn cycles_are_rejected_at_their_first_relation() {
         &row(&[1, 2, 3, 4], ["<mimic joint='j1'/>", "", "", ""]),
     );
     assert!(
-        said.starts_with("2: joints follow each other in a cycle: `j1`, `j1`"),
+        said.starts_with("2: joints are coupled in a cycle: `j1`, `j1`"),
         "{said}"
     );
     let said = errors(
@@ -185,7 +185,7 @@ fn cycles_are_rejected_at_their_first_relation() {
         &hinges(&["joint1='j1' joint2='j2'", "joint1='j2' joint2='j1'"]),
     );
     assert!(
-        said.starts_with("3: joints follow each other in a cycle"),
+        said.starts_with("3: joints are coupled in a cycle"),
         "{said}"
     );
 }
@@ -197,7 +197,7 @@ fn a_joint_follows_one_other() {
         &hinges(&["joint1='j2' joint2='j1'", "joint1='j2' joint2='j3'"]),
     );
     assert!(
-        said.starts_with("4: `j2` follows two joints, `j1` and `j3`"),
+        said.starts_with("4: `j2` is coupled to two joints, `j1` and `j3`"),
         "{said}"
     );
 }

@@ -136,7 +136,7 @@ fn what_has_no_place_is_told() {
     assert!(
         made.notes
             .iter()
-            .any(|note| note.contains("is no body that can be")),
+            .any(|note| note.contains("is not physically consistent")),
         "{:?}",
         made.notes
     );

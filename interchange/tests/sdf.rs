@@ -73,7 +73,9 @@ fn the_arm_is_that_of_urdf() {
         "{sdf}"
     );
     assert!(
-        sdf.contains("plugin: `libdrives.so` is not read, nor which joints it drives"),
+        sdf.contains(
+            "plugin: `libdrives.so` is not read, so the joints that it drives are unknown"
+        ),
         "{sdf}"
     );
 }
@@ -302,7 +304,10 @@ fn ends_that_can_not_be_said_are_refused_at_their_line() {
             fixed(">a<", ">world<"),
             "6: the child of the joint `j` is the",
         ),
-        (fixed(">world<", ">a<"), "5: the joint `j` joins a body to"),
+        (
+            fixed(">world<", ">a<"),
+            "5: the joint `j` connects a body to",
+        ),
         (
             fixed(">world<", ">aa<"),
             "6: there is no link, joint, frame or model `aa` (did you mean `a`?)",
@@ -315,7 +320,10 @@ fn ends_that_can_not_be_said_are_refused_at_their_line() {
             more("<link name='b'/>"),
             "7: no joint leads from the world to `b`",
         ),
-        (more("<link name='a'/>"), "7: two things are called `a`"),
+        (
+            more("<link name='a'/>"),
+            "7: two elements have the name `a`",
+        ),
         (more("<link name='world'/>"), "7: `world` can't be the name"),
         (more("<static>true</static>"), "2: the model `m` is static"),
     ]);
@@ -327,7 +335,7 @@ fn frames_and_files_that_can_not_be_said_are_refused_at_their_line() {
     let uri = |uri: &str| more(&format!("<include>\n<uri>{uri}</uri></include>"));
     let pose = |pose: &str| more(&format!("<frame name='f'>\n<pose {pose}</pose></frame>"));
     let pair = "<frame name='f' attached_to='g'/>\n<frame name='g' attached_to='f'/>";
-    let circle = "7: the pose of `f` is told in frames that go in a circle";
+    let circle = "7: the pose of `f` refers to frames in a cycle";
     all_are_said(&[
         (uri("model://arm"), "8: `model://arm` is not read"),
         (uri("../arm.sdf"), "8: `../arm.sdf` is not read"),
@@ -365,17 +373,17 @@ fn documents_that_can_not_be_read_are_refused_at_their_line() {
         ),
         (
             robot.replace(" version='1.11'", ""),
-            "1: the file does not say its version",
+            "1: the file has no version",
         ),
         ("<sdf version='1.9'/>".to_owned(), "1: there is no <model>"),
         (
             "<sdf version='1.9'>\n<model>".to_owned(),
-            "1: this is no XML",
+            "1: this is not valid XML",
         ),
-        (entity.to_owned(), "1: this is no XML"),
+        (entity.to_owned(), "1: this is not valid XML"),
         (
             two.to_owned(),
-            "1: there are 2 models: `a`, `b` (say which is the robot: `--model a`)",
+            "1: there are 2 models: `a`, `b` (choose the robot: `--model a`)",
         ),
     ]);
 }
@@ -396,7 +404,7 @@ fn a_base_that_floats_is_fixed_on_demand() {
     let (made, checked) = written(&text, &options);
     assert_eq!(checked.mechanism.dof(), 1);
     assert!(
-        made.contains("No joint leads from the world to `b`; it is fixed here where it stands."),
+        made.contains("No joint leads from the world to `b`; it is fixed here at its position."),
         "{made}"
     );
 }

@@ -257,7 +257,7 @@ fn wrong_names_are_told_at_their_places() {
         &[("payload = \"light\"", "payload = true")],
         "payload = true",
     );
-    assert!(error.contains("has to say which"), "{error}");
+    assert!(error.contains("must name one"), "{error}");
     let error = told(&[("payload = \"light\"", "payload = 3")], "payload = 3");
     assert!(error.contains("true or false"), "{error}");
     let twice = [(

@@ -19,9 +19,7 @@ impl Missing {
     /// Columns were requested, but no function has any.
     pub(crate) fn of_known_parameters() -> Self {
         Self {
-            sentence: "has the numbers of its parameters in it, and no function with columns or \
-                       parameters of which `columns` could choose"
-                .to_owned(),
+            sentence: "has constant parameters, so `columns` has no function to select".to_owned(),
             help: "leave out `columns`, or the values of the parameters".to_owned(),
         }
     }

@@ -84,22 +84,24 @@ pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
         return "";
     };
     if tree && matches!(meant, Meant::Form(form) if form.from == MotionInput::Joints) {
-        return ": its joints are its pose, which the function without `_from_joints` takes";
+        return ": its joints are its pose, so use the function without `_from_joints`";
     }
     match function.condition() {
-        Condition::Platform if tree => ": that is one of robots with a platform",
+        Condition::Platform if tree => ": only robots with a platform have it",
         Condition::Redundancy => {
-            ": that is one of robots with more actuators than degrees of freedom"
+            ": only robots with more actuators than degrees of freedom have it"
         }
-        Condition::Payload => ": that is one of robots with a `[platform.payload]`",
-        Condition::ClosedForm => ": no rule gives its pose from the actuators",
+        Condition::Payload => ": only robots with a `[platform.payload]` have it",
+        Condition::ClosedForm => ": its pose has no closed form in the actuators",
         Condition::NumericJoints => ": its joints are found without closure errors",
         Condition::Parasitic => {
-            ": that is one of robots whose platform has `independent` coordinates"
+            ": only robots whose platform has `independent` coordinates have it"
         }
-        Condition::JointsByRule => ": that is one of robots with loops whose joints follow by rule",
+        Condition::JointsByRule => {
+            ": only robots with loops and closed-form joint positions have it"
+        }
         _ if function.columns().is_some() => {
-            ": where the parameters are known there are no identification models"
+            ": with known parameters there are no identification models"
         }
         _ => "",
     }

@@ -118,8 +118,7 @@ pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
 /// The time column, or the frequency of logs without one.
 fn clock(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Clock> {
     let Some(sampling) = table.get("sampling") else {
-        let help =
-            "time = \"t\", the column of the time, or sampling = \"1 kHz\" where there is none";
+        let help = "time = \"t\", the column of the time, or sampling = \"1 kHz\" if there is none";
         let column = table.require("time", help)?.string()?;
         return Some(Clock::Column(column.value));
     };

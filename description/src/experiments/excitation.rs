@@ -67,7 +67,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Excitat
         if value < 1.0 {
             let error = item.error(
                 Code::OUT_OF_RANGE,
-                format!("a condition number of {value} can't be"),
+                format!("a condition number can't be {value}"),
             );
             item.context
                 .report(error.help("it is at least 1; 10 is far from singular"));
@@ -98,7 +98,7 @@ fn moves(item: &Item<'_, '_>, moves: bool) -> bool {
             Code::OUT_OF_RANGE,
             format!("`{}`: a limit of 0 leaves no motion", item.key.value),
         );
-        let help = "leave the key out where there is no limit";
+        let help = "leave the key out if there is no limit";
         item.context.report(error.help(help));
     }
     moves

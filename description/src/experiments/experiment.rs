@@ -230,7 +230,7 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
             if length > NAME {
                 let message =
                     format!("the name of the run has {length} characters, more than {NAME}");
-                let help = "its logs are named after it: take a short one";
+                let help = "its logs are named after it: choose a short one";
                 table
                     .context
                     .report(i.error(Code::BAD_NAME, message).help(help));

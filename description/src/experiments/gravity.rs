@@ -5,7 +5,7 @@ use crate::toml_text::reader::Item;
 use overact_exact::Number;
 
 /// Why gains and the direction of gravity are not identified together.
-pub const GAINS_AND_GRAVITY: &str = "gains of drives and the direction of gravity are not identified together: what a tilt does to a torque, a gain does, too";
+pub const GAINS_AND_GRAVITY: &str = "gains of drives and the direction of gravity are not identified together: tilt and gain have the same effect on a torque";
 
 /// Reads `gravity_direction`, which requires nonzero gravity.
 pub(crate) fn direction(item: &Item<'_, '_>, gains: bool, gravity: &[Number; 3]) -> bool {
@@ -22,9 +22,9 @@ pub(crate) fn direction(item: &Item<'_, '_>, gains: bool, gravity: &[Number; 3])
     if gravity.iter().all(|one| one.is_zero()) {
         let error = item.error(
             Code::CONTRADICTION,
-            "gravity is zero in this description, so that it has no direction",
+            "gravity is zero in this description, so it has no direction",
         );
-        let help = "say with `gravity` how large it is and about where it points, or leave out `gravity_direction`";
+        let help = "set `gravity` to its magnitude and approximate direction, or leave out `gravity_direction`";
         item.context.report(error.help(help));
     }
     true

@@ -9,10 +9,10 @@ use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;
 
 /// Why joints have no gains if motors drive several joints.
-pub const COUPLED_MOTORS: &str = "gains are those of drives that turn one joint each, but motors of this robot turn several: a joint's torque has no gain of its own";
+pub const COUPLED_MOTORS: &str = "gains require drives that turn one joint each, but motors of this robot turn several: the torque of a joint has no single gain";
 
 /// Why gains are not identified with known joint torques.
-pub const KNOWN_TORQUES: &str = "gains are not identified where torques of joints are known: a gain scales what is measured, not what is known";
+pub const KNOWN_TORQUES: &str = "gains are not identified if torques of joints are known: a gain scales measured torques, not known ones";
 
 impl Leg {
     /// Whether a torque of a joint is known.
@@ -52,7 +52,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f
         match one.symbol {
             friction if friction.follows_rate() || friction == P::Off => report(
                 format!(
-                    "friction and offsets are not known exactly, `{}` is one",
+                    "`{}` is friction or an offset, which are never known exactly",
                     one.name.value
                 ),
                 "give masses, first moments, inertias or springs; friction is identified",
@@ -62,7 +62,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f
                     "masses and moments of inertia are positive, but `{}` is not",
                     one.name.value
                 ),
-                "leave out what is not known",
+                "leave out unknown values",
             ),
             _ => known.push((one.name.value.clone(), one.value)),
         }
@@ -90,7 +90,7 @@ pub(crate) fn gains(item: &Item<'_, '_>, known: &[(String, f64)], robot: &Invent
     if known.is_empty() {
         let error = item.error(
             Code::KNOWN,
-            "gains are identified relative to what is known, and nothing is",
+            "gains are identified relative to known values, and there are none",
         );
         let help = "give the mass of a payload that was weighed: [identification.known] m_payload = \"5 kg\"";
         item.context.report(error.help(help));

@@ -29,8 +29,7 @@ pub(crate) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<
             Code::PAYLOAD,
             format!("`payloads` has {} names", given.len()),
         );
-        let help =
-            format!("give 1 to {MOST} names, or leave the key out where there is one payload");
+        let help = format!("give 1 to {MOST} names, or leave the key out if there is one payload");
         item.context.report(error.help(help));
     }
     let mut names: Vec<Spanned<String>> = Vec::new();
@@ -71,7 +70,7 @@ pub(crate) fn help(robot: &Inventory<'_>) -> &'static str {
     match robot.platform {
         Some(_) => "describe it in a table [platform.payload]",
         None if robot.legs.len() > 1 => {
-            "payloads are described of robots with a platform, or without loops: describe what a skeleton, a chain or a branch carries as a body of its own, and loaded runs in a description of the loaded robot"
+            "payloads are supported on robots with a platform, or without loops: describe a load of a skeleton, chain or branch as a separate body, and loaded runs in a description of the loaded robot"
         }
         None => "describe it as a joint of type \"fixed\" with the name `payload` on the last body",
     }
@@ -103,7 +102,7 @@ pub(crate) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Optio
     } else if loaded && known().next().is_some() {
         let error = item.error(
             Code::PAYLOAD,
-            "the robot has several payloads: the run has to say which",
+            "the robot has several payloads: the run must name one",
         );
         item.context
             .report(error.help(format!("give its name, one of {}", list())));

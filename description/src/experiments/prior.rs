@@ -41,10 +41,9 @@ fn values(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
             _ => continue,
         };
         if one.value <= 0.0 {
-            let message = format!("{words} is positive, but `{}` is not", one.name.value);
+            let message = format!("{words} must be positive, but `{}` is not", one.name.value);
             let error = Diagnostic::new(Code::KNOWN, message, one.name.span.clone());
-            let help =
-                "leave out what is not known: the nearest value that the data allow is taken";
+            let help = "leave out unknown values: the closest value that the data allow is used";
             item.context.report(error.help(help));
         }
     }
@@ -83,20 +82,20 @@ fn bounds(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, [f64; 2])>
             [Some(_), Some(high)] if *high <= 0.0 && symbol.is_nonnegative() => {
                 let error = item.error(
                     Code::KNOWN,
-                    format!("these bounds leave no positive value of `{}`", name.value),
+                    format!("these bounds exclude positive values of `{}`", name.value),
                 );
                 item.context.report(error.help("it can't be negative"));
             }
             [Some(low), Some(high)] if low < high => all.push((name.value.clone(), [*low, *high])),
             [Some(_), Some(_)] => {
                 let error = item
-                    .error(Code::KNOWN, "the smaller bound comes first")
+                    .error(Code::KNOWN, "the smaller bound must be first")
                     .help("write [smallest, largest]");
                 item.context.report(error);
             }
             [_, _] => {}
             _ => {
-                let message = format!("{} numbers are no bounds", numbers.len());
+                let message = format!("{} numbers are not bounds", numbers.len());
                 item.context.report(
                     item.error(Code::KNOWN, message)
                         .help("write [smallest, largest]"),

@@ -169,7 +169,7 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         {
             let error = item
                 .error(Code::OUT_OF_RANGE, "`difference_order` must be 2 or 4")
-                .help("4 has the smaller error; 2 is what published work takes");
+                .help("4 has the smaller error; published work uses 2");
             table.context.report(error);
         }
     }
@@ -190,7 +190,7 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         settings.filter_equations = item.boolean().unwrap_or(settings.filter_equations);
         if settings.filter_equations && settings.filter_torques {
             let error = item
-                .error(Code::CONTRADICTION, "with `filter_torques` the torques would pass the low-pass twice")
+                .error(Code::CONTRADICTION, "with `filter_torques` the torques would be filtered twice")
                 .help("`filter_equations` filters torques and columns alike; leave out `filter_torques`");
             table.context.report(error);
         }

@@ -37,7 +37,7 @@ pub(crate) fn matrix(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<V
             return None;
         }
         let message = format!(
-            "a log of motors needs as many motors as actuated joints, {}, but {} are described",
+            "a log of motors needs as many motors as actuated joints, {}, but the description has {}",
             actuated.len(),
             rows.len()
         );

@@ -312,7 +312,7 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         let start = token.span.start;
         let number = number(token.text);
         let number =
-            number.ok_or_else(|| fault_at("this is no number in range", token.span.clone()))?;
+            number.ok_or_else(|| fault_at("this is not a number in range", token.span.clone()))?;
         let mut value = Q::from_value(Value::plain(number));
         let mut first = true;
         while let Some(factor) = self.unit_factor(first)? {

@@ -62,7 +62,7 @@ fn arc_tangent(y: &Value, x: &Value) -> Result<Value, Fault> {
     if !x.dimension.fits(y.dimension) && !y.dimension.fits(x.dimension) {
         let (y, x) = (y.dimension.name(), x.dimension.name());
         return Err(Fault::new(format!(
-            "`atan2` takes two alike quantities, found {y} and {x}"
+            "`atan2` takes two quantities of the same unit, found {y} and {x}"
         )));
     }
     let (y, x) = (y.scalar.to_number(), x.scalar.to_number());

@@ -63,7 +63,7 @@ fn substitute(c: char) -> &'static str {
         'µ' | 'μ' => "write micrometres as `um`",
         '²' | '³' => "write powers with `^`, for instance `m/s^2`",
         '−' | '–' => "write the minus sign as `-`",
-        _ => "an expression is made of numbers with units, names, + - * / ^ and parentheses",
+        _ => "an expression consists of numbers with units, names, + - * / ^ and parentheses",
     }
 }
 

@@ -38,8 +38,7 @@ pub(crate) fn attach(
     let Some(at) = legs.iter().position(is_skeleton) else {
         let branch = &legs[first].name;
         let message = format!("no leg is the skeleton: `{}` is a branch", branch.value);
-        let help = "chains and branches hang on a skeleton: place a leg first that has neither an `end` nor a `base.body`; \
-                    its joints are the robot's coordinates";
+        let help = "chains and branches need a skeleton: first place a leg that has neither an `end` nor a `base.body`; its joints are the robot's coordinates";
         context.report(Diagnostic::new(Code::STRUCTURE, message, branch.span.clone()).help(help));
         return;
     };
@@ -93,13 +92,13 @@ pub(crate) fn attach(
                 Ok(Some(_)) => {
                     let message =
                         format!("the chain `{name}` starts from and ends on the same body");
-                    let help = "name another body in `base.body` or `end.body`: a chain joins two";
+                    let help =
+                        "name another body in `base.body` or `end.body`: a chain connects two";
                     report(Diagnostic::new(Code::STRUCTURE, message, body.span.clone()).help(help));
                 }
                 Ok(None) => {
                     let message = format!("the chain `{name}` ends on the ground");
-                    let help =
-                        "write it from the other side: its base on the ground, its end on the body";
+                    let help = "reverse it: its base on the ground, its end on the body";
                     report(Diagnostic::new(Code::STRUCTURE, message, body.span.clone()).help(help));
                 }
                 Err(error) => report(error),
@@ -157,12 +156,11 @@ impl Bodies<'_> {
                 kind(after)
             ),
             None if own == chain => {
-                format!("the {kind_of} `{own}` can't stand or end on a body of its own")
+                format!("the {kind_of} `{own}` can't start or end on its own body")
             }
             None => format!("no chain or branch `{chain}` is placed before the {kind_of} `{own}`"),
         };
-        let help = "legs are solved in the order of their places, so a body that carries a chain or a branch \
-                    stands in the skeleton, or in a chain or branch that is placed before";
+        let help = "legs are solved in the order of their places, so a body that carries a chain or a branch must be in the skeleton, or in a chain or branch that is placed before";
         let others = self.before.iter().map(|leg| leg.name.value.as_str());
         let help = did_you_mean(chain, others).unwrap_or_else(|| help.to_owned());
         Err(Diagnostic::new(Code::UNKNOWN_NAME, message, name.span.clone()).help(help))
@@ -201,7 +199,7 @@ fn no_body(name: &str, skeleton: &Leg, span: Span) -> Diagnostic {
         .iter()
         .map(|joint| joint.name.value.as_str())
         .collect();
-    let message = format!("the chain `{name}` does not say on which body it ends");
+    let message = format!("the chain `{name}` has no body to end on");
     let help = format!(
         "body = \"NAME\" of a joint of the skeleton `{}`: {}",
         skeleton.name.value,

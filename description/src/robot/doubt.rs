@@ -43,7 +43,7 @@ pub(crate) fn payload(context: &Context<'_>, name: &Spanned<String>) {
     let Spanned { value: name, span } = name;
     if name != "payload" && name.eq_ignore_ascii_case("payload") {
         let what = format!(
-            "the fixed joint `{name}` is a body like others: did you mean `payload`, which some runs carry and others do not?"
+            "the fixed joint `{name}` is a permanent body: did you mean `payload`, which only some runs carry?"
         );
         context.doubt(what, span);
     }
@@ -59,7 +59,7 @@ const FOREIGN: [&str; 14] = [
 pub(crate) fn column(item: &Item<'_, '_>, text: &str) {
     if let Some(why) = broken(text) {
         let what = format!(
-            "`{}`: \"{text}\" is no expression of columns, {why}; it is taken for the name of a column",
+            "`{}`: \"{text}\" is not an expression of columns, {why}; it is used as the name of a column",
             item.key.value
         );
         item.context.doubt(what, &item.span);
@@ -74,7 +74,7 @@ fn broken(text: &str) -> Option<String> {
     }
     let count = |sign: char| text.matches(sign).count();
     if count('(') != count(')') {
-        return Some(String::from("its parentheses do not fit"));
+        return Some(String::from("its parentheses do not match"));
     }
     if count('\'') % 2 == 1 {
         return Some(String::from("a quotation mark is missing"));
@@ -96,11 +96,11 @@ fn broken(text: &str) -> Option<String> {
         unit.filter(|unit| is_of_file && crate::expressions::dimension::UNITS.contains(unit));
     unit.map(|unit| match unit {
         "deg" => String::from(
-            "a unit stands behind the column: write `* pi/180`, or `position_scale = \"1 deg\"`",
+            "a unit follows the column: write `* pi/180`, or `position_scale = \"1 deg\"`",
         ),
-        _ => format!(
-            "the unit `{unit}` stands behind the column: give `position_scale` or `torque_gain`"
-        ),
+        _ => {
+            format!("the unit `{unit}` follows the column: give `position_scale` or `torque_gain`")
+        }
     })
 }
 

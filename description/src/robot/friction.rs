@@ -27,7 +27,7 @@ pub(crate) fn stribeck(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> O
     }
     let error = item.error(Code::SPRING, "a Stribeck velocity is positive");
     let help = format!(
-        "give the velocity at which half of the friction that standstill has more is left, for instance \"{example}\""
+        "give the velocity at which the excess of friction at standstill has fallen to one half, for instance \"{example}\""
     );
     item.context.report_once(error.help(help));
     None
@@ -48,9 +48,9 @@ pub(crate) fn check(item: &Item<'_, '_>, parameters: &[StandardParameter]) {
     };
     let [whole, positive, negative] = names;
     let message = format!(
-        "`{whole}` of this list is contained in `{positive}` and `{negative}`: {what} stands there twice"
+        "`{whole}` of this list is contained in `{positive}` and `{negative}`: {what} occurs twice"
     );
-    let help = "leave `fv`, `fs` and `off` out where friction differs by direction, for instance \
+    let help = "leave `fv`, `fs` and `off` out if friction differs by direction, for instance \
                 parameters = [\"inertia\", \"ia\", \"friction by direction\"]";
     item.context
         .report(item.error(Code::SPRING, message).help(help));

@@ -244,16 +244,12 @@ impl Reader<'_, '_, '_> {
                 Code::JOINT_POSITION,
                 "the position of a joint with its own variable is `q` plus a constant",
             );
-            let help = "turn the axis to change the sign; use the variables of others only for \
-                        a joint that has none of its own";
+            let help = "reverse the axis to change the sign; only a coupled joint uses the variables of others";
             return Some(error.help(help));
         }
         if !has_own && self.joint.actuated {
-            let error = item.error(
-                Code::ACTUATED,
-                "a joint that follows other joints cannot be actuated",
-            );
-            return Some(error.help("actuate the joint that it follows"));
+            let error = item.error(Code::ACTUATED, "a coupled joint cannot be actuated");
+            return Some(error.help("actuate the joint to which it is coupled"));
         }
         None
     }
@@ -265,7 +261,7 @@ impl Reader<'_, '_, '_> {
 fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
     let item = item?;
     let value = item.evaluate(scope)?;
-    let help = "give what the joint goes along for a turn, for instance \"5 mm\"; negative of a left-hand thread";
+    let help = "give the travel for a turn, for instance \"5 mm\"; negative for a left-hand thread";
     if !value.terms.is_empty() {
         let message = "a pitch is constant and cannot hold a joint variable";
         let error = item.error(Code::JOINT_POSITION, message).help(help);
@@ -284,7 +280,7 @@ fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
         }
     };
     if lead.is_none_or(Ratio::is_zero) {
-        let message = "a pitch has to move something, by less than 1e6 m";
+        let message = "a pitch must not be zero, and be less than 1e6 m";
         item.context
             .report_once(item.error(Code::OUT_OF_RANGE, message).help(help));
         return None;
@@ -308,7 +304,7 @@ fn resolve(joints: &mut [Joint], shape: &Shape<'_, '_>) {
                     .get(index)
                     .and_then(|j| j.steps.iter().flatten().next())
                 {
-                    let help = "a joint of its own has `q` in place of the others' variables";
+                    let help = "an independent joint has `q` instead of the others' variables";
                     item.context.report_once(
                         Diagnostic::new(Code::JOINT_POSITION, message, span).help(help),
                     );
@@ -336,7 +332,7 @@ fn independent(given: &[Combination], index: usize) -> Result<Combination, &'sta
         }
         variable = substitute(given, &variable).ok_or("the factors of this joint are too large")?;
     }
-    Err("the joints follow each other in a cycle")
+    Err("the joints are coupled in a cycle")
 }
 
 /// Replaces every joint variable by its definition; `None` on overflow.

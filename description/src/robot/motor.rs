@@ -62,7 +62,8 @@ fn shape<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
         let help = "use letters, digits and underscores, but not \"base\"";
         table.context.report(diagnostic.help(help));
     }
-    let help = "what the motor turns behind its gear, for instance turns = \"q5 + q6\"";
+    let help =
+        "joint variables that the motor turns through its gear, for instance turns = \"q5 + q6\"";
     let turns = table.require("turns", help);
     let parameters = table.get("parameters");
     let motor = MotorShape {
@@ -144,7 +145,7 @@ fn gear_ratio(item: &Item<'_, '_>, scope: &Scope) -> Option<Number> {
     let ratio = item.number(Dimension::NONE, scope)?.value;
     if ratio.is_zero() {
         let error = item.error(Code::TRANSMISSION, "a gear of ratio 0 turns nothing");
-        let help = "give the turns of the motor for one of what it turns, for instance 100";
+        let help = "give the turns of the motor for one turn of its output, for instance 100";
         item.context.report(error.help(help));
         return None;
     }
@@ -154,10 +155,7 @@ fn gear_ratio(item: &Item<'_, '_>, scope: &Scope) -> Option<Number> {
 /// The error of a value that a motor cannot drive.
 fn problem(value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
     if value.terms.is_empty() {
-        let error = item.error(
-            Code::TRANSMISSION,
-            "a motor that turns no joint drives nothing",
-        );
+        let error = item.error(Code::TRANSMISSION, "a motor must turn a joint");
         return Some(error.help("name the joint variables, for instance \"q5 + q6\""));
     }
     if !value.scalar.is_zero() {
@@ -165,7 +163,7 @@ fn problem(value: &Value, item: &Item<'_, '_>) -> Option<Diagnostic> {
             Code::TRANSMISSION,
             "a motor turns joint variables without a constant",
         );
-        let help = "what its encoder shows too much stands in `position_offset` of [data]";
+        let help = "give the offset of its encoder as `position_offset` of [data]";
         return Some(error.help(help));
     }
     if !value.dimension.fits(Dimension::ANGLE) && !value.dimension.fits(Dimension::LENGTH) {

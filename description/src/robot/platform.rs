@@ -79,10 +79,10 @@ pub(crate) fn read(item: &Item<'_, '_>, scope: &Scope) -> Option<Platform> {
 fn parasitic(motion: Motion, item: &Item<'_, '_>) -> Option<Motion> {
     if motion != Motion::Spatial {
         let message = "`independent` has no meaning for this motion";
-        item.context.report(
-            item.error(Code::CONTRADICTION, message)
-                .help("leave it out, or write motion = \"spatial\" for a platform whose legs let it move aside"),
-        );
+        item.context
+            .report(item.error(Code::CONTRADICTION, message).help(
+                "leave it out, or write motion = \"spatial\" for a platform with parasitic motion",
+            ));
         return None;
     }
     let choices: [(&str, usize); 6] = std::array::from_fn(|at| (SIX[at], at));
@@ -91,7 +91,7 @@ fn parasitic(motion: Motion, item: &Item<'_, '_>) -> Option<Motion> {
     for name in item.list()? {
         match name.choice(&choices) {
             Some(at) if independent[at.value] => {
-                let message = format!("`{}` is there twice", SIX[at.value]);
+                let message = format!("`{}` occurs twice", SIX[at.value]);
                 name.context.report(
                     name.error(Code::CONTRADICTION, message)
                         .help("leave one out"),
@@ -105,10 +105,10 @@ fn parasitic(motion: Motion, item: &Item<'_, '_>) -> Option<Motion> {
     let count = independent.iter().filter(|own| **own).count();
     if is_right && !(1..6).contains(&count) {
         let message = format!("{count} of six coordinates are independent");
-        item.context.report(
-            item.error(Code::CONTRADICTION, message)
-                .help("name as many as the legs leave, one to five; leave the key out where they leave all six"),
-        );
+        item.context
+            .report(item.error(Code::CONTRADICTION, message).help(
+            "name as many as the legs allow, one to five; leave the key out if they allow all six",
+        ));
         return None;
     }
     is_right.then_some(Motion::Parasitic { independent })

@@ -88,7 +88,7 @@ fn valid_variables(
     for variable in variables {
         let name = &variable.value;
         let problem = if ["name", "shape", "home"].contains(&name.as_str()) {
-            Some("this is a key that every placement has")
+            Some("every placement already has this key")
         } else if constants.contains(name) {
             Some("there is a constant of this name")
         } else if valid.iter().any(|v| v.value == *name) {
@@ -325,7 +325,7 @@ fn pitch<'c, 't>(table: &Table<'c, 't>, word: Word) -> Option<Item<'c, 't>> {
         return table.require("pitch", PITCH);
     }
     let item = table.get("pitch")?;
-    let message = "`pitch` is said of a helical joint";
+    let message = "`pitch` is for helical joints only";
     let help = "use type = \"helical\", or leave it out";
     let error = item.error(Code::CONTRADICTION, message).help(help);
     table.context.report(error);

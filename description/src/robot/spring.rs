@@ -20,7 +20,7 @@ use overact_exact::{Number, Ratio};
 /// Reads the key `spring` of a joint; the scope contains `q` as the joint's variable.
 pub(crate) fn read(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Spring> {
     let effort = effort(item, kind, "a fixed joint has no spring")?;
-    let constant = "a torque that does not depend on the position is no spring";
+    let constant = "a torque that does not depend on the position is not a spring";
     let help = "write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant \
                 torque is the parameter `off`";
     with_coefficient(item, scope, effort, (constant, help))

@@ -106,8 +106,8 @@ impl Word {
             return;
         }
         for item in said {
-            let message = format!("`{}` is said of a joint of one axis", item.key.value);
-            let help = "write the axes of this joint as joints of their own, of type \"revolute\" and \"prismatic\"";
+            let message = format!("`{}` is for joints of one axis only", item.key.value);
+            let help = "write the axes of this joint as separate joints, of type \"revolute\" and \"prismatic\"";
             item.context
                 .report(item.error(Code::CONTRADICTION, message).help(help));
         }

@@ -87,9 +87,7 @@ fn chains_on_chains() {
         "no chain or branch `rode` is placed before the chain `second`; did you mean `rod`?";
     assert!(errors[0].ends_with(expected), "{errors:?}");
     let errors = listed(&two_rods("body = \"second.1\"", "body = \"fore\""));
-    let expected = "the chain `second` can't stand or end on a body of its own; legs are solved in the order of \
-                    their places, so a body that carries a chain or a branch stands in the skeleton, or in a \
-                    chain or branch that is placed before";
+    let expected = "the chain `second` can't start or end on its own body; legs are solved in the order of their places, so a body that carries a chain or a branch must be in the skeleton, or in a chain or branch that is placed before";
     assert!(errors[0].ends_with(expected), "{errors:?}");
     // Of two chains that refer to each other, one is not placed yet.
     let both = two_rods("body = \"rod.1\"", "body = \"fore\"");
@@ -151,7 +149,7 @@ fn branches_in_the_wrong_place() {
     );
     let errors = listed(&with_hand("body = \"hand.grip\""));
     assert!(
-        errors[0].contains("the branch `hand` can't stand or end on a body of its own"),
+        errors[0].contains("the branch `hand` can't start or end on its own body"),
         "{errors:?}"
     );
     // Without the arm the bodies of the others are missing.
@@ -185,15 +183,13 @@ fn a_skeleton_carries_no_payload() {
 #[test]
 fn chains_that_join_nothing() {
     let errors = listed(&robot("body = \"fore\"", "body = \"fore\""));
-    let expected = "20:8 the chain `rod` starts from and ends on the same body; name another body in \
-                    `base.body` or `end.body`: a chain joins two";
+    let expected = "20:8 the chain `rod` starts from and ends on the same body; name another body in `base.body` or `end.body`: a chain connects two";
     assert_eq!(errors, [expected]);
     let errors = listed(&robot("body = \"fore\"", "body = \"ground\""));
-    let expected = "20:8 the chain `rod` ends on the ground; write it from the other side: its base on the \
-                    ground, its end on the body";
+    let expected = "20:8 the chain `rod` ends on the ground; reverse it: its base on the ground, its end on the body";
     assert_eq!(errors, [expected]);
     let errors = listed(&robot("", ""));
-    let expected = "19:1 the chain `rod` does not say on which body it ends; body = \"NAME\" of a joint of \
+    let expected = "19:1 the chain `rod` has no body to end on; body = \"NAME\" of a joint of \
                     the skeleton `arm`: upper, fore";
     assert_eq!(errors, [expected]);
 }

@@ -182,7 +182,7 @@ fn a_pitch_is_a_length_that_moves_something() {
         one("")
     );
     assert!(
-        one("pitch = 0").contains("8:9 a pitch has to move something"),
+        one("pitch = 0").contains("8:9 a pitch must not be zero"),
         "{}",
         one("pitch = 0")
     );
@@ -200,7 +200,7 @@ fn a_pitch_is_a_length_that_moves_something() {
     );
     let other = listed(&leg("universal", "pitch = \"5 mm\"")).join("\n");
     assert!(
-        other.contains("8:9 `pitch` is said of a helical joint"),
+        other.contains("8:9 `pitch` is for helical joints only"),
         "{other}"
     );
 }
@@ -228,10 +228,11 @@ fn a_variable_in_the_key_of_a_constant_is_told_with_the_axes() {
 #[test]
 fn what_joints_of_several_axes_cannot_have() {
     let errors = listed(&leg("universal", "actuated = true\nspring = \"q\""));
-    let help = "; write the axes of this joint as joints of their own, of type \"revolute\" and \"prismatic\"";
+    let help =
+        "; write the axes of this joint as separate joints, of type \"revolute\" and \"prismatic\"";
     let expected = [
-        format!("8:12 `actuated` is said of a joint of one axis{help}"),
-        format!("9:10 `spring` is said of a joint of one axis{help}"),
+        format!("8:12 `actuated` is for joints of one axis only{help}"),
+        format!("9:10 `spring` is for joints of one axis only{help}"),
     ];
     assert_eq!(errors, expected);
     let errors = listed(&leg("sperical", ""));

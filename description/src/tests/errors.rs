@@ -90,7 +90,7 @@ fn expressions() {
             "d = \"atan2(1)\"",
             "6:6 `atan2` takes 2 argument(s), found 1",
         ),
-        ("d = \"1e400 m\"", "6:6 this is no number in range"),
+        ("d = \"1e400 m\"", "6:6 this is not a number in range"),
         ("d = \"1e200 * 1e200\"", "6:6 the value is too large"),
         (
             "d = 1e31",
@@ -239,8 +239,7 @@ fn chains_of_joints() {
         ["7:14 the antecedent comes after the joint; write the joints from the base on"]
     );
     let follow = listed(&text("theta = \"q3\"", "theta = \"-q2\""));
-    let message = "the joints follow each other in a cycle; a joint of its own has `q` in place of the \
-                   others' variables";
+    let message = "the joints are coupled in a cycle; an independent joint has `q` instead of the others' variables";
     assert_eq!(
         follow,
         [format!("7:9 {message}"), format!("10:9 {message}")]
@@ -256,7 +255,7 @@ fn chains_of_joints() {
     assert!(
         driven
             .concat()
-            .starts_with("7:9 a joint that follows other joints cannot be actuated")
+            .starts_with("7:9 a coupled joint cannot be actuated")
     );
 }
 

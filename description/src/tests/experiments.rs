@@ -90,7 +90,7 @@ amplitude = 1
         "6:12 `position`: expected one value or 1, one for each coordinate, found 2",
         "7:10 `travel`: expected an angle (rad), found a length (1 m)",
         "8:12 `velocity`: expected an angular speed (rad/s), found a speed (3 m/s)",
-        "9:16 `acceleration`: a limit of 0 leaves no motion; leave the key out where there is no limit",
+        "9:16 `acceleration`: a limit of 0 leaves no motion; leave the key out if there is no limit",
         "10:13 a condition number of 0.5 can't be; it is at least 1; 10 is far from singular",
         "11:1 unknown key `amplitude`; known keys: position, condition, fundamental, harmonics, runs, travel, velocity, acceleration",
     ];
@@ -147,7 +147,7 @@ fn logs_have_a_column_of_the_time_or_a_frequency() {
     assert_eq!(
         errors(&format!("[data]\n{columns}")),
         [
-            "2:1 the table `[data]` has no `time`; time = \"t\", the column of the time, or sampling = \"1 kHz\" where there is none"
+            "2:1 the table `[data]` has no `time`; time = \"t\", the column of the time, or sampling = \"1 kHz\" if there is none"
         ]
     );
     assert_eq!(
@@ -223,7 +223,7 @@ fn torques_pass_the_low_pass_once() {
     assert_eq!(
         both,
         [
-            "3:20 with `filter_torques` the torques would pass the low-pass twice; `filter_equations` filters \
+            "3:20 with `filter_torques` the torques would be filtered twice; `filter_equations` filters \
              torques and columns alike; leave out `filter_torques`"
         ]
     );
@@ -309,11 +309,11 @@ ia_2 = [1, 2]
         "3:1 unknown key `value`; did you mean `values`?",
         "5:8 `zz_1`: expected a moment of inertia (kg m^2), found a mass (2 kg)",
         "6:1 the robot has no parameter `zz_3`; did you mean `zz_1`?",
-        "7:1 a coefficient of friction is positive, but `fv_1` is not; leave out what is not known: the nearest value that the data allow is taken",
+        "7:1 a coefficient of friction must be positive, but `fv_1` is not; leave out unknown values: the closest value that the data allow is used",
         "9:8 `zz_1` can't be bounded; masses, friction, rotor inertias and offsets can be",
-        "10:8 the smaller bound comes first; write [smallest, largest]",
-        "11:8 these bounds leave no positive value of `fs_1`; it can't be negative",
-        "12:8 3 numbers are no bounds; write [smallest, largest]",
+        "10:8 the smaller bound must be first; write [smallest, largest]",
+        "11:8 these bounds exclude positive values of `fs_1`; it can't be negative",
+        "12:8 3 numbers are not bounds; write [smallest, largest]",
         "13:1 the robot has no parameter `ia_2`; did you mean `ia_1`?",
     ];
     assert_eq!(errors(tables), expected);
@@ -330,10 +330,10 @@ ia_1 = 0
 zz_1 = "2 kg"
 "#;
     let expected = [
-        "3:9 gains are identified relative to what is known, and nothing is; give the mass of a payload that was weighed: [identification.known] m_payload = \"5 kg\"",
+        "3:9 gains are identified relative to known values, and there are none; give the mass of a payload that was weighed: [identification.known] m_payload = \"5 kg\"",
         "5:1 the robot has no parameter `zz_3`; did you mean `zz_1`?",
-        "6:1 friction and offsets are not known exactly, `fv_1` is one; give masses, first moments, inertias or springs; friction is identified",
-        "7:1 masses and moments of inertia are positive, but `ia_1` is not; leave out what is not known",
+        "6:1 `fv_1` is friction or an offset, which are never known exactly; give masses, first moments, inertias or springs; friction is identified",
+        "7:1 masses and moments of inertia are positive, but `ia_1` is not; leave out unknown values",
         "8:8 `zz_1`: expected a moment of inertia (kg m^2), found a mass (2 kg)",
     ];
     assert_eq!(errors(tables), expected);
@@ -358,7 +358,7 @@ fn parameters_of_a_file() {
             "[parameters]\nzz_9 = 0.5",
             "the robot has no parameter `zz_9`",
         ),
-        ("[parameters]\nzz_1 = 1\nzz_1 = 2", "this is no TOML"),
+        ("[parameters]\nzz_1 = 1\nzz_1 = 2", "this is not valid TOML"),
         ("parameters = 3", "parameters.toml:1:14"),
         (
             "robot = \"Other\"\n[parameters]\nzz_9 = 0.5",

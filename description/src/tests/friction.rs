@@ -43,19 +43,19 @@ fn errors() {
         assert_eq!(all.len(), 1, "{keys}: {all:#?}");
         all.concat()
     };
-    let instead = "leave `fv`, `fs` and `off` out where friction differs by direction, for instance \
+    let instead = "leave `fv`, `fs` and `off` out if friction differs by direction, for instance \
                    parameters = [\"inertia\", \"ia\", \"friction by direction\"]";
     let cases = [
         (
             "parameters = [\"all\", \"friction by direction\"]",
             format!(
-                "6:14 `fv` of this list is contained in `fv_pos` and `fv_neg`: viscous friction stands there twice; {instead}"
+                "6:14 `fv` of this list is contained in `fv_pos` and `fv_neg`: viscous friction occurs twice; {instead}"
             ),
         ),
         (
             "parameters = [\"off\", \"fs_pos\", \"fs_neg\"]",
             format!(
-                "6:14 `off` of this list is contained in `fs_pos` and `fs_neg`: an offset stands there twice; {instead}"
+                "6:14 `off` of this list is contained in `fs_pos` and `fs_neg`: an offset occurs twice; {instead}"
             ),
         ),
         (
@@ -68,11 +68,11 @@ fn errors() {
         ),
         (
             "stribeck = 0",
-            "6:12 a Stribeck velocity is positive; give the velocity at which half of the friction that standstill has more is left, for instance \"0.05 rad/s\"".to_owned(),
+            "6:12 a Stribeck velocity is positive; give the velocity at which the excess of friction at standstill has fallen to one half, for instance \"0.05 rad/s\"".to_owned(),
         ),
         (
             "stribeck = \"-1 rad/s\"",
-            "6:12 a Stribeck velocity is positive; give the velocity at which half of the friction that standstill has more is left, for instance \"0.05 rad/s\"".to_owned(),
+            "6:12 a Stribeck velocity is positive; give the velocity at which the excess of friction at standstill has fallen to one half, for instance \"0.05 rad/s\"".to_owned(),
         ),
         (
             "stribeck = true",
@@ -142,7 +142,6 @@ fn only_joints_that_move_have_friction_and_only_measured_ones_known_torques() {
 fn gains_are_not_identified_beside_known_torques() {
     let table = "[identification]\ngains = true\nknown = { zz_1 = \"1 kg m^2\" }";
     let text = format!("{}{table}\n", single("", "known = \"1 N m\""));
-    let expected = "12:9 gains are not identified where torques of joints are known: a gain scales what is \
-                    measured, not what is known; leave out `gains`, or the key `known` of the joints";
+    let expected = "12:9 gains are not identified if torques of joints are known: a gain scales measured torques, not known ones; leave out `gains`, or the key `known` of the joints";
     assert_eq!(listed(&text), [expected]);
 }

@@ -50,19 +50,19 @@ fn errors() {
     let cases = [
         (
             "[[leg.arm.motor]]",
-            "15:1 a motor has no `turns`; what the motor turns behind its gear, for instance turns = \"q5 + q6\"",
+            "15:1 a motor has no `turns`; joint variables that the motor turns through its gear, for instance turns = \"q5 + q6\"",
         ),
         (
             "[[leg.arm.motor]]\nturns = 0",
-            "16:9 a motor that turns no joint drives nothing; name the joint variables, for instance \"q5 + q6\"",
+            "16:9 a motor must turn a joint; name the joint variables, for instance \"q5 + q6\"",
         ),
         (
             "[[leg.arm.motor]]\nturns = \"q1 - q1\"",
-            "16:9 a motor that turns no joint drives nothing; name the joint variables, for instance \"q5 + q6\"",
+            "16:9 a motor must turn a joint; name the joint variables, for instance \"q5 + q6\"",
         ),
         (
             "[[leg.arm.motor]]\nturns = \"q2 + 5 deg\"",
-            "16:9 a motor turns joint variables without a constant; what its encoder shows too much stands in `position_offset` of [data]",
+            "16:9 a motor turns joint variables without a constant; give the offset of its encoder as `position_offset` of [data]",
         ),
         (
             "[[leg.arm.motor]]\nturns = \"q3\"",
@@ -70,7 +70,7 @@ fn errors() {
         ),
         (
             "[[leg.arm.motor]]\nturns = \"q2\"\nratio = 0",
-            "17:9 a gear of ratio 0 turns nothing; give the turns of the motor for one of what it turns, for instance 100",
+            "17:9 a gear of ratio 0 turns nothing; give the turns of the motor for one turn of its output, for instance 100",
         ),
         (
             "[[leg.arm.motor]]\nturns = \"q2\"\nratio = \"1e40\"",

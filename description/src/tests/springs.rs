@@ -49,7 +49,7 @@ fn errors() {
     let cases = [
         (
             "spring = 3",
-            "6:10 a torque that does not depend on the position is no spring; write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant torque is the parameter `off`",
+            "6:10 a torque that does not depend on the position is not a spring; write it with the joint variable, for instance spring = \"q - 20 deg\"; a constant torque is the parameter `off`",
         ),
         (
             "spring = true",

@@ -54,10 +54,10 @@ x = 1
         "3:19 a variable cannot be named `x`",
         "3:24 a variable cannot be named `name`",
         "5:8 `type`: expected one of \"revolute\", \"prismatic\", \"fixed\", \"cylindrical\", \"universal\", \"spherical\", \"planar\", \"helical\", found \"revolut\"; did you mean `revolute`?",
-        "6:6 the leg `b` is never placed; a table [[place]] with name = \"leg1\" and shape = \"NAME\" puts a leg in its place",
+        "6:6 the leg `b` is never placed; a table [[place]] with name = \"leg1\" and shape = \"NAME\" places a leg",
         "7:9 a leg needs at least one joint",
         "8:1 the leg `c` has no `joint`; write its joints as [[leg.NAME.joint]], from the base on",
-        "8:6 the leg `c` is never placed; a table [[place]] with name = \"leg1\" and shape = \"NAME\" puts a leg in its place",
+        "8:6 the leg `c` is never placed; a table [[place]] with name = \"leg1\" and shape = \"NAME\" places a leg",
         "10:8 `1leg` cannot be the name of a leg; use letters, digits and underscores, a letter first",
         "11:9 there is no table [leg.d]; known: a, b, c",
         "12:1 a placement has no `x`; the leg `a` leaves this value to its placements",
@@ -154,7 +154,7 @@ fn broken_toml() {
     // The unclosed table of the next line is not reported: it may be a consequence.
     assert_eq!(found.len(), 1, "{found:#?}");
     assert!(
-        found[0].starts_with("2:5 this is no TOML: extra `=`"),
+        found[0].starts_with("2:5 this is not valid TOML: extra `=`"),
         "{found:#?}"
     );
 }

@@ -17,7 +17,7 @@ const BODIES_OR_DEFAULT: &str = "worldbody body frame default";
 
 const POSE: (&str, Treatment) = ("pos quat axisangle xyaxes zaxis euler", Honoured);
 
-const WRITE_OUT: &str = "write the bodies out: save the model as MJCF from MuJoCo";
+const WRITE_OUT: &str = "expand the bodies: save the model as MJCF from MuJoCo";
 const ON_A_JOINT: &str = "let it act on a joint, or remove the actuator";
 const ENABLE: &str =
     "the flag of the simulation is not used: forces and constraints act in the model";
@@ -225,7 +225,7 @@ const RULES: &[Rule] = &[
                 "mocap",
                 unless(
                     "false",
-                    "the body stands still here where the file places it",
+                    "the body is fixed here at its position in the file",
                 ),
             ),
             ("fuse simple sleep user", SIMULATION),
@@ -255,7 +255,7 @@ const RULES: &[Rule] = &[
             ),
             (
                 "springyield",
-                unless("0", "the yield of the spring is missing from the model"),
+                unless("0", "the softness of the spring is missing from the model"),
             ),
             (
                 "actuatorgravcomp",
@@ -329,7 +329,7 @@ const RULES: &[Rule] = &[
     Rule {
         within: BODIES,
         elements: "flexcomp composite",
-        treatment: reported("the bodies that it stands for are missing from the model"),
+        treatment: reported("the bodies that it represents are missing from the model"),
         attributes: &[],
     },
     Rule {

@@ -3,7 +3,7 @@
 use super::table::{IDENTITY, Rule, Table, Treatment, unless};
 use Treatment::{Honoured, Irrelevant};
 
-const BASE: &str = "the base stands still where the model has it";
+const BASE: &str = "the base is fixed at its position in the model";
 
 pub(crate) const TABLE: Table = Table {
     rules: &[Rule {

@@ -91,7 +91,7 @@ const RULES: &[Rule] = &[
         "params",
         rejected(
             "an <include> that changes what it includes is not supported",
-            "write the model out: `gz sdf -p FILE` does",
+            "expand the model with `gz sdf -p FILE`",
         ),
     ),
     Rule {
@@ -136,7 +136,10 @@ const RULES: &[Rule] = &[
     whole(
         "link",
         "kinematic",
-        unless("false False 0", "the link moves by its joints in the model"),
+        unless(
+            "false False 0",
+            "the link moves with its joints in the model",
+        ),
     ),
     whole("link", "velocity_decay", Container),
     whole(

@@ -280,7 +280,7 @@ const RULES: &[Rule] = &[
         within: "ros2_control",
         elements: "joint",
         treatment: reported(
-            "not read: motors are those of <transmission>, of a YAML file beside the URDF, or of `--actuated`",
+            "not read: motors are those of <transmission>, of a YAML file next to the URDF, or of `--actuated`",
         ),
         attributes: &[],
     },

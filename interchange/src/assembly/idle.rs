@@ -39,8 +39,7 @@ pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
         let ends = network.edges[edge].groups;
         let other = ends[usize::from(ends[0] == group)];
         model.notes.push(format!(
-            "`{}` turns freely between two pins on one axis; by convention it does not turn against `{}`, and `{}` \
-             is no joint. Home: `{}` = {:?}",
+            "`{}` spins freely between two pins on one axis; by convention it is fixed to `{}`, and `{}` is not a joint. Home: `{}` = {:?}",
             network.group_name(group),
             network.group_name(other),
             model.joints[joint].name,

@@ -106,10 +106,10 @@ fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<
             None => {
                 let all = network.edges.iter().map(|edge| network.edge_name(edge));
                 let near = overact_description::diagnostic::did_you_mean(name, all);
-                let message = format!("there is no joint `{name}` to be a coordinate");
+                let message = format!("there is no joint `{name}` for a coordinate");
                 files.refuse(
                     message,
-                    near.unwrap_or_else(|| "name joints of the file that move".to_owned()),
+                    near.unwrap_or_else(|| "name moving joints of the file".to_owned()),
                 );
             }
         }
@@ -437,17 +437,17 @@ fn refuse(files: &Files, network: &Network<'_>, furthest: &[bool], tries: usize,
         "coordinates"
     };
     let message = format!(
-        "no skeleton of {} {coordinates} was found from which chains determine {}",
+        "no skeleton of {} {coordinates} found from which chains determine {}",
         network.mobility,
         open.join(", ")
     );
     let help = match (was_told, tries > TRIES) {
         (true, _) => {
-            "leave `--coordinates` out, or name as many joints as there are degrees of freedom, each on a way of such joints from the ground"
+            "leave `--coordinates` out, or name as many joints as there are degrees of freedom, each connected to the ground by such joints"
         }
         (false, true) => "name the coordinates: `--coordinates a,b,c`",
         (false, false) => {
-            "chains of at most six joints, or of three to a ball, have to lead to every body between others that are known; name other coordinates, `--coordinates a,b,c`, or hold a joint still in the file"
+            "chains of at most six joints, or of three to a ball, must connect every body to known bodies; name other coordinates, `--coordinates a,b,c`, or fix a joint in the file"
         }
     };
     let place = first.map(|edge| match edge.origin {

@@ -331,10 +331,10 @@ fn not_closed(files: &Files, model: &Model, gap: f64, row: usize) {
         };
         if rest < rows {
             let message = format!(
-                "the loop of `{}` can't close: {gap:.2e} m or rad are left",
+                "the loop of `{}` can't close: {gap:.2e} m or rad remain",
                 closure.name
             );
-            let help = "look at the frames that meet, or start nearer: `--home JOINT=POSITION`";
+            let help = "check the frames of the closure, or start closer: `--home JOINT=POSITION`";
             files.report(&closure.place, message, help);
             return;
         }

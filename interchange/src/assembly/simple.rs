@@ -19,7 +19,7 @@ pub(crate) fn join_balls(model: &mut Model) {
         let between = model.bodies[second].placement * model.bodies[third].placement;
         let name = common(&outer, &inner);
         model.notes.push(format!(
-            "`{outer}`, `{middle}` and `{inner}` meet in a point and are the ball `{name}` here."
+            "`{outer}`, `{middle}` and `{inner}` meet in a point: spherical joint `{name}` here."
         ));
         let place = model.joints[own].place.clone();
         model.joints[own] = Joint {
@@ -144,7 +144,7 @@ pub(crate) fn drop_closures_on_one_body(model: &mut Model) {
         let [a, b] = closure.bodies().map(fixed);
         if a == b {
             notes.push(format!(
-                "`{}` joins a body to itself and is left out.",
+                "`{}` connects a body to itself and is omitted.",
                 closure.name
             ));
         }

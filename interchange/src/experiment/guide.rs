@@ -199,7 +199,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             Vec::new()
         } else {
             vec![format!(
-                "Home stands on a limit of {}, which these runs pass: `overact import --home` starts elsewhere.",
+                "Home is at a limit of {}, which these runs exceed: change home with `overact import --home`.",
                 names.join(", ")
             )]
         }

@@ -101,7 +101,7 @@ pub(crate) fn design(
             }
             Ok(_) => {
                 sizes.iter_mut().for_each(|size| *size *= 0.8);
-                "its inertia grows fast".to_owned()
+                "its inertia varies strongly".to_owned()
             }
             Err(Trouble::Limit { joint, share }) => {
                 shorten(&mut sizes, &share);
@@ -116,7 +116,7 @@ pub(crate) fn design(
         courses.clear();
         tries += 1;
         if tries > TRIES || sizes.iter().all(|size| *size < SMALLEST) {
-            return Err(format!("there is no room around home: {reason}"));
+            return Err(format!("no motion around home is possible: {reason}"));
         }
     }
     let speeds = courses.iter().map(|course| course.fastest(&guide));

@@ -66,7 +66,7 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
         Format::Sdf => Some("SDFormat"),
     };
     if let Some(other) = other {
-        let help = "parameters have the names of the description: write them in the place of what the file says";
+        let help = "parameters have the names of the description: edit the file with them";
         files.refuse(format!("parameters are not put back into {other}"), help);
         return None;
     }
@@ -205,25 +205,24 @@ impl Export<'_, '_> {
         {
             after = whole;
             self.notes.push(format!(
-                "What the motion does not feel of `{name}` was chosen such that a body can have the rest."
+                "Parameters of `{name}` without effect on the motion were chosen to be physically consistent with the others."
             ));
         }
         let Some(whole) = share::inertia(after, &frame) else {
             self.notes.push(format!(
-                "`{name}` has moments without a mass, which the file can't say: it stays as it is."
+                "`{name}` has first moments without a mass, which the file does not support: it is unchanged."
             ));
             return;
         };
         if !share::is_body(&whole) {
             self.notes.push(format!(
-                "`{name}` is no body that can be: its mass or a principal moment is not positive, or one is larger than \
-                 the other two; the engine may refuse it."
+                "`{name}` is not physically consistent: its mass or a principal moment is not positive, or one is larger than the sum of the other two; the engine may reject it."
             ));
         }
         let (shares, is_gathered) = share::among(self.network, group, &whole);
         if is_gathered {
             self.notes.push(format!(
-                "All of `{name}` and what is fixed to it stands in one of them."
+                "The inertia of `{name}` and of bodies fixed to it is in one of them."
             ));
         }
         for share in shares {

@@ -31,7 +31,7 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
     else {
         // The table rejects other transmission targets.
         if files.is_clean() {
-            let message = format!("the actuator `{name}` acts on nothing");
+            let message = format!("the actuator `{name}` has no joint");
             files.report(&element.place, message, "write joint=\"…\"");
         }
         return;
@@ -45,9 +45,10 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
     };
     let own = &mut model.joints[at];
     if own.kind == Kind::Ball {
-        let message =
-            format!("the actuator `{name}` drives the ball `{joint}`, which can't be said");
-        files.report(place, message, "write the ball as three hinges");
+        let message = format!(
+            "the actuator `{name}` drives the ball joint `{joint}`, which is not supported"
+        );
+        files.report(place, message, "write the ball joint as three hinges");
         return;
     }
     own.actuated = true;

@@ -71,7 +71,7 @@ pub(super) fn inertias(files: &Files, root: &Element, compiler: &Compiler, model
             .all("compiler")
             .find(|own| own.get("settotalmass").is_some());
         if let Some(element) = element {
-            let reason = "masses of some bodies are unknown: those of the others are not scaled";
+            let reason = "masses of some bodies are unknown, so the others are not scaled";
             files.demote(&element.place, "compiler", Some("settotalmass"), reason);
         }
         return;

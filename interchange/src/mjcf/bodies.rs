@@ -79,7 +79,7 @@ fn body(
         .get("name")
         .map_or_else(|| format!("body{}", model.bodies.len()), str::to_owned);
     if model.body_named(&name).is_some() {
-        let message = format!("two bodies are called `{name}`");
+        let message = format!("two bodies have the name `{name}`");
         files.report(&element.place, message, "give each body a name of its own");
     }
     let mut joints = Vec::new();
@@ -175,11 +175,12 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
         Some("free") => {
             if reader.options.fix_base {
                 model.notes.push(format!(
-                    "`{name}` lets the base float; it is fixed here where it stands."
+                    "`{name}` lets the base float; it is fixed here at its position."
                 ));
             } else {
-                let message = format!("`{name}` is a free joint, which can't be said");
-                let help = "a base that floats has no motor to identify from: `--fix-base` fixes it where it stands";
+                let message = format!("`{name}` is a free joint, which is not supported");
+                let help =
+                    "a floating base has no motor to identify it with: `--fix-base` fixes it";
                 files.report(&element.place, message, help);
             }
             return None;
@@ -188,13 +189,17 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
         Some("slide") => Kind::Prismatic,
         Some("ball") => Kind::Ball,
         Some(other) => {
-            let message = format!("the joint `{name}` is `{other}`, which can't be said");
-            files.report(&element.place, message, "hinge, slide and ball joints can");
+            let message = format!("the joint `{name}` is `{other}`, which is not supported");
+            files.report(
+                &element.place,
+                message,
+                "supported are hinge, slide and ball joints",
+            );
             return None;
         }
     };
     if model.joint_named(&name).is_some() {
-        let message = format!("two joints are called `{name}`");
+        let message = format!("two joints have the name `{name}`");
         files.report(&element.place, message, "give each joint a name of its own");
     }
     let mut joint = Joint::new(&name, kind, element.place.clone());
@@ -245,7 +250,7 @@ fn spring_damper(
     }
     let kind = model.joints[joint].kind;
     if kind == Kind::Ball {
-        let reason = "LEFT OUT: balls have no torques of their own in a description";
+        let reason = "LEFT OUT: torques of ball joints are not supported";
         files.demote(&element.place, "joint", Some("springdamper"), reason);
         return None;
     }
@@ -291,7 +296,7 @@ pub(super) fn first(files: &Files, element: &Element, key: &str) -> f64 {
         .attribute(key)
         .filter(|_| all.iter().skip(1).any(|v| *v != 0.0))
     {
-        let message = format!("`{key}` is a polynomial, which can't be said");
+        let message = format!("`{key}` is a polynomial, which is not supported");
         files.report(place, message, "give one number");
     }
     all.first().copied().unwrap_or(0.0)

@@ -50,7 +50,7 @@ impl Defaults {
             let message = format!(
                 "more than {MOST_CLASSES} default classes, or {MOST_ATTRIBUTES} attributes in one"
             );
-            let help = "no model has so many: take some out";
+            let help = "no model has so many: remove some";
             files.report(&element.place, message, help);
             return;
         }

@@ -40,10 +40,12 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
                 }
                 "joint" => follow(reader, &whole, model, &mut couplings),
                 other => {
-                    let message = format!("the equality <{other}> can't be said");
-                    reader
-                        .files
-                        .report(&whole.place, message, "connect, weld and joint can");
+                    let message = format!("the equality <{other}> is not supported");
+                    reader.files.report(
+                        &whole.place,
+                        message,
+                        "supported are connect, weld and joint",
+                    );
                 }
             }
         }
@@ -162,20 +164,20 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut
     let coefficients = element.list(files, "polycoef").unwrap_or_default();
     let (Some(own), Some(leader)) = (joint("joint1"), joint("joint2")) else {
         if element.get("joint2").is_none() {
-            let help = "make the body fixed: take the joint out";
+            let help = "fix the body: remove the joint";
             files.report(
                 &element.place,
-                "an equality that holds a joint still can't be said",
+                "an equality that fixes a joint is not supported",
                 help,
             );
         }
         return;
     };
     if coefficients.iter().skip(2).any(|c| *c != 0.0) {
-        let help = "a joint may follow another by a straight line: polycoef=\"c0 c1 0 0 0\"";
+        let help = "a coupling must be linear: polycoef=\"c0 c1 0 0 0\"";
         files.report(
             &element.place,
-            "a joint that follows another by a curve can't be said",
+            "a nonlinear coupling of joints is not supported",
             help,
         );
         return;

@@ -51,8 +51,8 @@ fn expand(
             _ => *other == path,
         };
         if open.iter().any(same) || open.len() > DEPTH || files.count() > FILES {
-            let message = format!("`{name}` includes itself in the end");
-            files.report(place, message, "take one of the includes out");
+            let message = format!("`{name}` includes itself");
+            files.report(place, message, "remove one of the includes");
             return None;
         }
         let Some(file) = files.read(&path, Some(place)) else {

@@ -78,7 +78,8 @@ fn of_geoms(
                     Shape::Body(own) => (Some(own.seen(offset)), false),
                     Shape::Empty => (None, false),
                     Shape::Unknown => {
-                        let reason = "the inertia of this shape is not computed: the body's has no value here";
+                        let reason =
+                            "the inertia of this shape is not computed: the body's is unknown here";
                         let place = &child.place;
                         reader
                             .files

@@ -95,7 +95,7 @@ impl Compiler {
                 Some(("radian", _)) => own.is_degrees = false,
                 Some(("degree", _)) => own.is_degrees = true,
                 Some((other, place)) => {
-                    let message = format!("`{other}` is no unit of angles");
+                    let message = format!("`{other}` is not a unit of angles");
                     files.report(place, message, "write degree or radian");
                 }
                 None => {}
@@ -104,7 +104,7 @@ impl Compiler {
                 match sequence(text) {
                     Some(sequence) => own.sequence = sequence,
                     None => {
-                        let message = format!("`{text}` is no sequence of three axes");
+                        let message = format!("`{text}` is not a sequence of three axes");
                         files.report(
                             place,
                             message,
@@ -117,7 +117,7 @@ impl Compiler {
                 .attribute("coordinate")
                 .filter(|(v, _)| *v != "local")
             {
-                let message = format!("coordinates that are `{value}` can't be said");
+                let message = format!("coordinates of the kind `{value}` are not supported");
                 files.report(place, message, "save the model with local coordinates");
             }
             own.limits_ranges &= compiler.get("autolimits") != Some("false");

@@ -68,9 +68,8 @@ impl Reader<'_> {
         let frames = self.count("NF").unwrap_or(usual);
         if links == 0 || joints < links || joints > FRAMES || frames != usual {
             let message =
-                format!("{links} links, {joints} joints and {frames} frames make no robot");
-            let help =
-                "each joint more than links closes a loop and has two frames: NF = 2 NJ - NL";
+                format!("{links} links, {joints} joints and {frames} frames do not match");
+            let help = "each joint in excess of the links closes a loop and has two frames: NF = 2 NJ - NL";
             self.files.report(&self.place("NL"), message, help);
             return None;
         }
@@ -82,9 +81,10 @@ impl Reader<'_> {
             if let Some((_, place)) = floats
                 .filter(|(text, _)| !["0", "False"].contains(&text.as_str()) && !options.fix_base)
             {
-                let help = "a base that floats has no motor to identify from: `--fix-base` fixes it where it stands";
+                let help =
+                    "a floating base has no motor to identify it with: `--fix-base` fixes it";
                 self.files
-                    .report(place, "a base that moves can't be said", help);
+                    .report(place, "a moving base is not supported", help);
             }
         }
         self.gravity(model);
@@ -131,8 +131,11 @@ impl Reader<'_> {
             let sigma = self.whole("SIGMA", at)?;
             let place = self.entry("ANT", at)?.1.clone();
             if antecedent > at || sigma > 2 {
-                let message = format!("frame {} stands on {antecedent} with sigma {sigma}", at + 1);
-                let help = "ant names a frame before, or 0 for the base; sigma is 0, 1 or 2";
+                let message = format!(
+                    "frame {} has the antecedent {antecedent} and sigma {sigma}",
+                    at + 1
+                );
+                let help = "ant is an earlier frame, or 0 for the base; sigma is 0, 1 or 2";
                 self.files.report(&place, message, help);
                 return None;
             }
@@ -202,8 +205,7 @@ impl Reader<'_> {
                 at + 1,
                 free.len()
             );
-            let help = "a joint's position is its own variable, or a multiple of another joint's, and a constant: give \
-                        the values of other symbols, `--value NAME=NUMBER`";
+            let help = "a joint's position is its own variable, or a multiple of another joint's, plus a constant: give the values of other symbols, `--value NAME=NUMBER`";
             self.files.report(place, message, help);
             return None;
         };
@@ -224,7 +226,7 @@ impl Reader<'_> {
             }
             None => {
                 let message = format!(
-                    "the position of joint {} is `{text}`, no variable and a constant",
+                    "the position of joint {} is `{text}`, not a variable plus a constant",
                     at + 1
                 );
                 self.files.report(
@@ -356,7 +358,7 @@ impl Reader<'_> {
         if found.is_none() {
             self.files.report(
                 place,
-                format!("`{key}` is no whole number"),
+                format!("`{key}` is not an integer"),
                 "write for instance NL = 6",
             );
         }
@@ -369,7 +371,7 @@ impl Reader<'_> {
         if found.is_none() {
             self.files.report(
                 place,
-                format!("`{text}` is no whole number"),
+                format!("`{text}` is not an integer"),
                 "write 0, 1, 2, …",
             );
         }
@@ -388,8 +390,8 @@ impl Reader<'_> {
                 None
             }
             Err(Fault::Unreadable) => {
-                let message = format!("`{text}` is no expression");
-                let help = "numbers, symbols, pi, + - * / ** ^, parentheses, sqrt, sin, cos, tan, asin, acos, atan and atan2 can stand here";
+                let message = format!("`{text}` is not an expression");
+                let help = "numbers, symbols, pi, + - * / ** ^, parentheses, sqrt, sin, cos, tan, asin, acos, atan and atan2 are allowed";
                 self.files.report(place, message, help);
                 None
             }

@@ -30,7 +30,7 @@ pub(super) fn entries(files: &Files, file: usize, text: &str) -> Option<Entries>
                 Some(close) => (behind + 1..behind + 1 + close, behind + close + 2),
                 None => {
                     let help = "write `}` behind its last value";
-                    files.report(&place(behind, behind + 1), "a list has no end", help);
+                    files.report(&place(behind, behind + 1), "a list is not closed", help);
                     return None;
                 }
             },
@@ -42,7 +42,7 @@ pub(super) fn entries(files: &Files, file: usize, text: &str) -> Option<Entries>
         if !is_key {
             files.report(
                 &place(start, equals),
-                "this is no key",
+                "this is not a key",
                 "write KEY = value, or KEY = {value, value}",
             );
             return None;
@@ -55,8 +55,8 @@ pub(super) fn entries(files: &Files, file: usize, text: &str) -> Option<Entries>
         if entries.insert(key.to_ascii_uppercase(), entry).is_some() {
             files.report(
                 &place(start, equals),
-                format!("`{key}` stands here twice"),
-                "leave one of them",
+                format!("`{key}` occurs twice"),
+                "keep one of them",
             );
             return None;
         }
@@ -70,7 +70,7 @@ pub(super) fn entries(files: &Files, file: usize, text: &str) -> Option<Entries>
         };
         files.report(
             &place,
-            "this belongs to no key",
+            "this line belongs to no key",
             "write KEY = value, or KEY = {value, value}",
         );
         return None;
@@ -97,7 +97,7 @@ fn without_comments(files: &Files, file: usize, text: &str) -> Option<String> {
                 file,
                 span: from..from + 2,
             };
-            files.report(&place, "a comment has no end", "write `*)` behind it");
+            files.report(&place, "a comment is not closed", "write `*)` behind it");
             return None;
         };
         let comment = &rest[start..start + length + 2];

@@ -266,10 +266,10 @@ impl<'d, 'm> Draft<'d, 'm> {
             if leader.is_none() {
                 let other = &self.network.model.joints[follow.joint].name;
                 let message = format!(
-                    "`{}` follows `{other}`, which stands in another leg here",
+                    "`{}` is coupled to `{other}`, which is in another leg here",
                     own.name
                 );
-                let help = "a joint can follow one of its own leg only: take the coupling out of the file and drive the joint by a motor, or hold the joint still there";
+                let help = "a joint can only be coupled to one of its own leg: remove the coupling from the file and drive the joint by a motor, or fix the joint";
                 self.files.report(&own.place, message, help);
             }
             let leader = leader.map_or("", |at| self.names[at].as_str());
@@ -333,8 +333,7 @@ fn quarter(name: String, antecedent: Option<String>) -> Joint {
         alpha: std::f64::consts::FRAC_PI_2,
         ..Step::default()
     };
-    let comment =
-        "Two axes that are nearly parallel: a turn between them keeps the digits of the constants.";
+    let comment = "Two nearly parallel axes: a rotation between them preserves the precision of the constants.";
     fixed(name, antecedent, step, vec![comment.to_owned()])
 }
 
@@ -384,7 +383,7 @@ pub(super) fn chain_comment(network: &Network<'_>, ear: &Ear) -> Vec<String> {
         let name = network.edge_name(edge);
         lines.push(match edge.kind {
             Kind::Ball => format!("It ends in the ball `{name}`."),
-            _ => format!("It ends on the pin `{name}`, whose angle follows and is not told."),
+            _ => format!("It ends on the pin `{name}`, whose angle is dependent and not listed."),
         });
         lines.extend(at_home(network, edge));
     }

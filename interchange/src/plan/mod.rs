@@ -147,10 +147,10 @@ fn independent(network: &Network<'_>, layout: &Layout) -> String {
         ""
     };
     if network.mobility == 1 {
-        return "The skeleton: its joint is the independent coordinate, from which the chains follow.".to_owned();
+        return "The skeleton: its joint is the independent coordinate, which determines the chains.".to_owned();
     }
     format!(
-        "The skeleton: its joints{branches} are the {} independent coordinates, from which the chains follow.",
+        "The skeleton: its joints{branches} are the {} independent coordinates, which determine the chains.",
         network.mobility
     )
 }
@@ -195,7 +195,7 @@ fn branch(
     let joints = draft.joints(&framed, true);
     let axes = draft.nodes.iter().map(|node| node.direction).collect();
     let comment = format!(
-        "A branch on `{}`, a body of a chain: its joints are independent coordinates too.",
+        "A branch on `{}`, a body of a chain: its joints are also independent coordinates.",
         network.group_name(carrier)
     );
     let leg = Leg {
@@ -287,14 +287,14 @@ fn notes(network: &Network<'_>, layout: &Layout) -> Vec<String> {
             let own = network.group_name(at);
             let list = others.join(", ");
             notes.push(format!(
-                "Fixed together, and one body here: `{own}` and {list}."
+                "One body here, fixed together: `{own}` and {list}."
             ));
         }
     }
     for &edge in &layout.redundant {
         let name = network.edge_name(&network.edges[edge]);
         notes.push(format!(
-            "`{name}` closes nothing that the others leave open, and is left out."
+            "`{name}` is redundant with the other closures and omitted."
         ));
     }
     notes

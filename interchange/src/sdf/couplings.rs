@@ -61,7 +61,7 @@ fn mimic(
     let follower = axes.get(&(item, tag)).copied()?;
     let kind = leader.map(|leader| model.joints[leader].kind);
     let (Some(leader), Some(Kind::Revolute | Kind::Prismatic)) = (leader, kind) else {
-        let message = format!("there is no axis `{leading}` of a joint `{name}` to follow");
+        let message = format!("there is no axis `{leading}` of a joint `{name}` to couple to");
         files.report(&mimic.place, message, "name another joint that moves");
         return None;
     };
@@ -97,7 +97,7 @@ fn gearbox(
                 "the gearbox `{}` needs a revolute joint between `{}` and `{}` along its <{tag}>",
                 item.name, reference.text, name.text
             );
-            let help = "write both joints that the gears turn, each as a joint of its own";
+            let help = "write both joints of the gears as separate joints";
             files.report(&item.element.place, message, help);
         }
         found

@@ -102,7 +102,7 @@ impl Frames {
         let at = self.all.len();
         if self.by_name.contains_key(whole) {
             if version >= (1, 7) {
-                let message = format!("two things are called `{}`", frame.name);
+                let message = format!("two elements have the name `{}`", frame.name);
                 let help = "give each link, joint, frame and model a name of its own in its model";
                 files.report(&frame.place, message, help);
             }
@@ -189,11 +189,8 @@ impl Frames {
                     other = self.to[other];
                 }
                 let frame = &self.all[first];
-                let message = format!(
-                    "the pose of `{}` is told in frames that go in a circle",
-                    frame.name
-                );
-                let help = "let one of them stand on something else: take its `relative_to` or `attached_to` out";
+                let message = format!("the pose of `{}` refers to frames in a cycle", frame.name);
+                let help = "break the cycle: remove one `relative_to` or `attached_to`";
                 files.report(&frame.place, message, help);
                 return None;
             }
@@ -216,8 +213,9 @@ impl Frames {
             let mut at = frame;
             while at != model {
                 if at == 0 {
-                    let message = format!("`{}` does not stand on its own model", name.text);
-                    let help = "a model is placed by a frame whose pose is told in the model";
+                    let message =
+                        format!("`{}` is not placed relative to its own model", name.text);
+                    let help = "place a model by a frame with a pose in the model";
                     files.report(&name.place, message, help);
                     return None;
                 }
@@ -268,8 +266,8 @@ impl Frames {
                 }
             }
         }
-        let message = format!("`{}` is attached to frames that go in a circle", asked.text);
-        let help = "let one of them be attached to a link";
+        let message = format!("`{}` is attached to frames in a cycle", asked.text);
+        let help = "attach one of them to a link";
         files.report(&asked.place, message, help);
         None
     }

@@ -104,15 +104,15 @@ impl<'f> Gathered<'f> {
     ) -> Option<()> {
         self.models += 1;
         if self.frames.scopes.len() > MODELS || self.models > MODELS || self.depth > DEPTH {
-            let message = format!("more than {MODELS} models, or {DEPTH} within each other");
+            let message = format!("more than {MODELS} models, or {DEPTH} nested");
             let help = "describe the robot in fewer parts";
             self.files.report(&element.place, message, help);
             return None;
         }
         let name = element.required(self.files, "name")?.to_owned();
         if flag(self.files, element, "static") && owner == Owner::Robot {
-            let message = format!("the model `{name}` is static: nothing of it moves");
-            let help = "take <static> out, and fix its base by a joint of type fixed whose parent is `world`";
+            let message = format!("the model `{name}` is static");
+            let help = "remove <static>, and fix its base by a joint of type fixed whose parent is `world`";
             self.files.report(&element.place, message, help);
             return None;
         }
@@ -192,7 +192,8 @@ impl<'f> Gathered<'f> {
                 "plugin" if scope > 0 && owner == Owner::Robot => {
                     let name = child.get("filename").or_else(|| child.get("name"));
                     let name = name.unwrap_or("plugin");
-                    let reason = format!("`{name}` is not read, nor which joints it drives");
+                    let reason =
+                        format!("`{name}` is not read, so the joints that it drives are unknown");
                     let place = &child.place;
                     self.files
                         .record(Use::Reported, place, "plugin", None, &reason);
@@ -251,7 +252,8 @@ impl<'f> Gathered<'f> {
         let name = element.required(self.files, "name")?;
         if name.trim().is_empty() || name == "world" || name.starts_with("__") {
             let message = format!("`{name}` can't be the name of a {}", element.name);
-            let help = "take a name that is neither empty nor `world` and does not begin with `__`";
+            let help =
+                "choose a name that is neither empty nor `world` and does not begin with `__`";
             self.files.report(&element.place, message, help);
             return None;
         }
@@ -271,7 +273,7 @@ impl<'f> Gathered<'f> {
         }
         let shown = self.shown(&whole);
         if !self.taken.insert(("link", shown.clone())) {
-            let message = format!("two links are called `{name}`");
+            let message = format!("two links have the name `{name}`");
             let help = "give each link a name of its own";
             self.files.report(&element.place, message, help);
         }
@@ -311,7 +313,7 @@ impl<'f> Gathered<'f> {
         }
         let shown = self.shown(&whole);
         if !self.taken.insert(("joint", shown.clone())) {
-            let message = format!("two joints are called `{name}`");
+            let message = format!("two joints have the name `{name}`");
             let help = "give each joint a name of its own";
             self.files.report(&element.place, message, help);
         }

@@ -50,7 +50,7 @@ pub(super) fn read(files: &Files, element: &Element, open: &[PathBuf]) -> Includ
 /// Reports an error for a URI that is not read.
 pub(super) fn refuse(files: &Files, uri: &str, place: &Place) {
     let message = format!("`{uri}` is not read: only files in the robot's own folder are");
-    let help = "put the model beside this file and write its path from here, or write it out: `gz sdf -p FILE` does";
+    let help = "put the model next to this file and write its relative path, or expand it with `gz sdf -p FILE`";
     files.report(place, message, help);
 }
 
@@ -93,8 +93,8 @@ fn included(
     let real = |path: &Path| path.canonicalize().ok();
     let is_open = |other: &PathBuf| real(other).is_some_and(|other| real(path) == Some(other));
     if open.iter().any(is_open) {
-        let message = format!("`{uri}` includes itself in the end");
-        files.report(place, message, "take one of the includes out");
+        let message = format!("`{uri}` includes itself");
+        files.report(place, message, "remove one of the includes");
         return None;
     }
     if files.count() > FILES {

@@ -74,10 +74,10 @@ pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis
         }
         other => {
             let message = format!(
-                "the joint `{}` is `{other}`, which can't be said",
+                "the joint `{}` is `{other}`, which is not supported",
                 item.name
             );
-            let help = "revolute, continuous, prismatic, fixed, universal, revolute2, ball, screw and gearbox joints can";
+            let help = "supported are revolute, continuous, prismatic, fixed, universal, revolute2, ball, screw and gearbox joints";
             gathered.files.report(&item.element.place, message, help);
             return None;
         }
@@ -183,8 +183,8 @@ fn lead(gathered: &Gathered<'_>, item: &JointItem) -> Option<f64> {
     };
     let lead = value?;
     if !lead.is_finite() || lead == 0.0 {
-        let message = format!("the pitch of the screw `{}` moves nothing", item.name);
-        let help = "write <screw_thread_pitch>, in m for a turn, and not 0";
+        let message = format!("the pitch of the screw `{}` is zero", item.name);
+        let help = "write <screw_thread_pitch>, in m for a turn, other than 0";
         files.report(&element.text.1, message, help);
         return None;
     }

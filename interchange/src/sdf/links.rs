@@ -20,7 +20,7 @@ pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>,
     }
     let own = inertial.child("pose");
     if let Some((name, place)) = told_in(own) {
-        let message = format!("the pose of an <inertial> is told in its link, not in `{name}`");
+        let message = format!("the pose of an <inertial> is relative to its link, not to `{name}`");
         let help = "give it in the frame of the link, without relative_to";
         files.report(place, message, help);
     }
@@ -90,10 +90,10 @@ pub(super) fn gravity(gathered: &Gathered<'_>, links: &[usize], model: &mut Mode
         let own = &gathered.links[link];
         let place = own.element.child("gravity").map(|element| &element.place);
         let message = format!(
-            "gravity does not act on `{}` alone, which can't be said",
+            "gravity does not act on `{}` only, which is not supported",
             own.name
         );
-        let help = "take <gravity> out, or say it of all links";
+        let help = "remove <gravity>, or write it for all links";
         files.report(place.unwrap_or(&own.element.place), message, help);
     }
 }

@@ -103,11 +103,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
 fn version(files: &Files, root: &Element) -> Option<(u32, u32)> {
     let Some((text, place)) = root.attribute("version") else {
         let help = "write for instance <sdf version=\"1.9\">";
-        files.report(
-            &root.place,
-            "the file does not say its version of SDFormat",
-            help,
-        );
+        files.report(&root.place, "the file has no version of SDFormat", help);
         return None;
     };
     let parts = text.trim().split_once('.');
@@ -116,7 +112,8 @@ fn version(files: &Files, root: &Element) -> Option<(u32, u32)> {
     let known = found.filter(|version| ((1, 4)..=(1, 12)).contains(version));
     if known.is_none() {
         let message = format!("SDFormat of version `{text}` is not read");
-        let help = "1.4 to 1.12 are: `gz sdf -p FILE` writes a file in the newest that it knows";
+        let help =
+            "supported are 1.4 to 1.12: `gz sdf -p FILE` converts a file to its newest version";
         files.report(place, message, help);
     }
     known
@@ -208,7 +205,7 @@ fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) 
         _ => {
             let list: Vec<String> = moving.iter().map(|&at| format!("`{}`", name(at))).collect();
             let message = format!("there are {} models: {}", moving.len(), list.join(", "));
-            let help = format!("say which is the robot: `--model {}`", name(moving[0]));
+            let help = format!("choose the robot: `--model {}`", name(moving[0]));
             files.report(&around.place, message, help);
             None
         }

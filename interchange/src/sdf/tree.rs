@@ -83,13 +83,13 @@ fn edges(gathered: &Gathered<'_>) -> Option<Vec<Edge>> {
         let ends = [end(gathered, &item.parent)?, end(gathered, &item.child)?];
         if item.child.text == "world" {
             let message = format!("the child of the joint `{}` is the world", item.name);
-            let help = "the world moves nowhere: write it as <parent>";
+            let help = "the world is fixed: write it as <parent>";
             gathered.files.report(&item.child.place, message, help);
             continue;
         }
         if ends[0] == ends[1] {
-            let message = format!("the joint `{}` joins a body to itself", item.name);
-            let help = "name two links that are not the same, nor both fixed in the world";
+            let message = format!("the joint `{}` connects a body to itself", item.name);
+            let help = "name two different links that are not both fixed in the world";
             gathered.files.report(&item.element.place, message, help);
             continue;
         }
@@ -111,7 +111,7 @@ pub(super) fn end(gathered: &Gathered<'_>, name: &Name) -> Option<Option<usize>>
     let link = gathered.frames.link(gathered.files, frame, name)?;
     if link.is_some_and(|link| gathered.links[link].owner == Owner::Stranger) {
         let message = format!("`{}` is of another model of the world", name.text);
-        let help = "put both into one model: one of a world is read, without the others";
+        let help = "put both into one model: only one model of a world is read";
         gathered.files.report(&name.place, message, help);
         return None;
     }
@@ -269,14 +269,14 @@ impl Tree<'_, '_> {
                 "no joint leads from the world to `{}`: it floats",
                 link.name
             );
-            let help = "a base that floats has no motor to identify from: `--fix-base` fixes it where it stands, and so does a joint of type fixed whose <parent> is world";
+            let help = "a floating base has no motor to identify it with: fix it with `--fix-base`, or with a joint of type fixed whose <parent> is world";
             self.gathered
                 .files
                 .report(&link.element.place, message, help);
             return None;
         }
         model.notes.push(format!(
-            "No joint leads from the world to `{}`; it is fixed here where it stands.",
+            "No joint leads from the world to `{}`; it is fixed here at its position.",
             link.name
         ));
         let placement = self.gathered.frames.seen(link.frame, 0);

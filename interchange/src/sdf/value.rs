@@ -31,7 +31,7 @@ pub(super) fn several<const N: usize>(files: &Files, element: &Element) -> Optio
             None
         }
         _ => {
-            let message = format!("<{}> has to be {N} finite numbers", element.name);
+            let message = format!("<{}> must be {N} finite numbers", element.name);
             files.report(place, message, "write numbers with blanks between them");
             None
         }
@@ -50,7 +50,7 @@ pub(super) fn limit(files: &Files, of: &Element, tag: &str) -> Option<f64> {
     match text.parse::<f64>() {
         Ok(value) if !value.is_nan() => (value.abs() < NO_LIMIT).then_some(value),
         _ => {
-            let message = format!("<{tag}> is no limit");
+            let message = format!("<{tag}> is not a limit");
             files.report(place, message, "write a number, or inf for none");
             None
         }
@@ -90,7 +90,7 @@ pub(super) fn pose(files: &Files, element: Option<&Element>) -> Pose {
             ([x, y, z], exact::roll_pitch_yaw([r, p, q].map(angle)))
         }),
         Some(other) => {
-            let message = format!("`{other}` is no format of rotations");
+            let message = format!("`{other}` is not a format of rotations");
             let help = "write euler_rpy or quat_xyzw";
             files.report(&element.place, message, help);
             None

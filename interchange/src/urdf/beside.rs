@@ -29,7 +29,7 @@ pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
         return;
     };
     model.notes.push(format!(
-        "Loops and motors are those of `{}` beside it.",
+        "Loops and motors are those of `{}` next to it.",
         path.file_name().unwrap_or_default().to_string_lossy()
     ));
     for (key, (place, value)) in &entries {
@@ -78,7 +78,7 @@ fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
             Some(value) => drop(entries.insert(key, (place, value))),
             None => files.report(
                 &place,
-                format!("`{key}` is no list"),
+                format!("`{key}` is not a list"),
                 "write [a, b], or one `- a` a line",
             ),
         }
@@ -169,7 +169,7 @@ fn motors(files: &Files, place: &Place, value: &Value, model: &mut Model) {
         match model.joint_named(name) {
             Some(joint) => model.joints[joint].actuated = true,
             None => {
-                let message = format!("there is no joint `{name}` that moves");
+                let message = format!("there is no moving joint `{name}`");
                 files.report(place, message, "name joints of the URDF that are not fixed");
             }
         }
@@ -219,7 +219,7 @@ fn closures(
                 at: [Pose::identity(); 2],
             },
             other => {
-                let message = format!("a closure of type `{other}` can't be said");
+                let message = format!("a closure of type `{other}` is not supported");
                 files.report(place, message, "write `3d` for a point or `6d` for a frame");
                 continue;
             }
@@ -245,11 +245,11 @@ fn kinds(files: &Files, place: &Place, value: &Value, entries: &Entries, model: 
         match (kind.as_str(), joint) {
             ("SPHERICAL", Some(joint)) => model.joints[joint].kind = Kind::Ball,
             (_, None) => {
-                let message = format!("there is no joint `{name}` that moves");
+                let message = format!("there is no moving joint `{name}`");
                 files.report(place, message, "name joints of the URDF that are not fixed");
             }
             (other, _) => {
-                let message = format!("the joint `{name}` is `{other}`, which can't be said");
+                let message = format!("the joint `{name}` is `{other}`, which is not supported");
                 files.report(
                     place,
                     message,

@@ -57,8 +57,8 @@ pub(super) fn tree<'e>(
     let reached: BTreeSet<&str> = bodies.keys().map(String::as_str).collect();
     for (name, link) in links.iter().filter(|(name, _)| !reached.contains(*name)) {
         let message =
-            format!("the link `{name}` is on no way from `{base}`: its joints go in a circle");
-        let help = "a <joint> may not close a loop: cut it, and name the frames that meet in <loop>, <constraint> or a YAML file beside";
+            format!("the link `{name}` is not connected to `{base}`: its joints form a cycle");
+        let help = "a <joint> may not close a loop: cut it, and name the frames of the closure in <loop>, <constraint> or a YAML file next to it";
         files.report(&link.place, message, help);
     }
     files.is_clean().then_some(Tree { bodies })
@@ -73,7 +73,7 @@ fn edges<'e>(files: &Files, root: &'e Element, links: &Links<'e>) -> Vec<Edge<'e
             continue;
         };
         if !names.insert(name) {
-            let message = format!("two joints are called `{name}`");
+            let message = format!("two joints have the name `{name}`");
             files.report(&element.place, message, "give each joint a name of its own");
         }
         let end = |tag: &str| {
@@ -101,8 +101,9 @@ fn edges<'e>(files: &Files, root: &'e Element, links: &Links<'e>) -> Vec<Edge<'e
             continue;
         };
         if let Some(other) = children.insert(child, name) {
-            let message = format!("the link `{child}` hangs on two joints, `{other}` and `{name}`");
-            let help = "a loop is cut at one joint: name the frames that meet in <loop>, <constraint> or a YAML file beside";
+            let message =
+                format!("the link `{child}` is the child of two joints, `{other}` and `{name}`");
+            let help = "a loop is cut at one joint: name the frames of the closure in <loop>, <constraint> or a YAML file next to it";
             files.report(&element.place, message, help);
             continue;
         }
@@ -128,13 +129,13 @@ fn base<'e>(
     let (first, second) = (free.next(), free.next());
     let message = match (first, second) {
         (Some(base), None) => return Some(base),
-        (Some(a), Some(b)) => format!("no joint carries the links `{a}` and `{b}`"),
-        _ => "every link hangs on a joint: there is no base".to_owned(),
+        (Some(a), Some(b)) => format!("the links `{a}` and `{b}` are children of no joint"),
+        _ => "every link is the child of a joint: there is no base".to_owned(),
     };
     files.report(
         &root.place,
         message,
-        "a robot has one base, the link that no joint carries",
+        "a robot has one base, the link that is the child of no joint",
     );
     None
 }
@@ -149,7 +150,7 @@ fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -
         Some("fixed") => return None,
         Some("floating") if options.fix_base => {
             model.notes.push(format!(
-                "The joint `{}` floats; it is fixed here where it stands.",
+                "The joint `{}` floats; it is fixed here at its position.",
                 edge.name
             ));
             return None;
@@ -157,14 +158,14 @@ fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -
         other => {
             let other = other.unwrap_or("no type");
             let message = format!(
-                "the joint `{}` is `{other}`, which can't be said",
+                "the joint `{}` is `{other}`, which is not supported",
                 edge.name
             );
             let help = match other {
                 "floating" => {
-                    "a base that floats has no motor to identify from: `--fix-base` fixes it where it stands"
+                    "a floating base has no motor to identify it with: `--fix-base` fixes it"
                 }
-                _ => "revolute, continuous, prismatic, fixed and spherical joints can",
+                _ => "supported are revolute, continuous, prismatic, fixed and spherical joints",
             };
             files.report(&element.place, message, help);
             return None;
@@ -222,7 +223,7 @@ pub(super) fn mimics(files: &Files, root: &Element, model: &Model, couplings: &m
             continue;
         };
         let Some(leader) = model.joint_named(name) else {
-            let message = format!("there is no joint `{name}` that moves to follow");
+            let message = format!("there is no moving joint `{name}` to couple to");
             let help = "name another joint that is not fixed";
             files.report(&mimic.place, message, help);
             continue;

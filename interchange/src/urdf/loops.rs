@@ -30,7 +30,10 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
             };
             let (Some(a), Some(b)) = (frame(0), frame(1)) else {
                 let [first, second] = ends;
-                let message = format!("`{}` does not say which links it joins", named(element));
+                let message = format!(
+                    "`{}` does not name the links that it connects",
+                    named(element)
+                );
                 let help = format!("write <{first} link=\"…\"/> and <{second} link=\"…\"/>");
                 files.report(&element.place, message, help);
                 continue;
@@ -61,7 +64,7 @@ fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Mode
         let first = end("ball_constraint_body_A", "ball_constraint_p_AP");
         let second = end("ball_constraint_body_B", "ball_constraint_p_BQ");
         let (Some(first), Some(second)) = (first, second) else {
-            let message = "the constraint does not say which points of which links coincide";
+            let message = "the constraint does not name the coinciding points and their links";
             let help = "give drake:ball_constraint_body_A, _p_AP, _body_B and _p_BQ";
             files.report(&element.place, message, help);
             continue;
@@ -115,8 +118,8 @@ fn kind(
             Some(ClosureKind::Pin { bodies, at })
         }
         other => {
-            let message = format!("a loop closed by `{other}` can't be said");
-            let help = "spherical, revolute, continuous and fixed closures can";
+            let message = format!("a closure by `{other}` is not supported");
+            let help = "supported are spherical, revolute, continuous and fixed closures";
             files.report(&element.place, message, help);
             None
         }
@@ -147,8 +150,8 @@ pub(super) fn couplings(files: &Files, root: &Element, model: &Model, couplings:
         let joint = |link: Option<&str>| model.bodies[model.body_named(link?)?].joint;
         let (Some(leader), Some(follower)) = (joint(end("predecessor")), joint(end("successor")))
         else {
-            let message = "the coupling does not join two links that joints carry";
-            let help = "name links behind moving joints, or write the coupling as <mimic>";
+            let message = "the coupling does not connect two links of joints";
+            let help = "name child links of moving joints, or write the coupling as <mimic>";
             files.report(&element.place, message, help);
             continue;
         };

@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let mut root = xml::parse(files, file)?;
     if root.name != "robot" {
-        let message = format!("`{}` is no robot of URDF", root.name);
+        let message = format!("`{}` is not a URDF robot", root.name);
         files.report(&root.place, message, "the first element of URDF is <robot>");
         return None;
     }
@@ -58,7 +58,7 @@ fn links<'e>(files: &Files, root: &'e Element) -> Links<'e> {
             continue;
         };
         if links.insert(name, link).is_some() {
-            let message = format!("two links are called `{name}`");
+            let message = format!("two links have the name `{name}`");
             files.report(&link.place, message, "give each link a name of its own");
         }
     }

@@ -16,10 +16,7 @@ pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
         Ok(experiment) => experiment,
         Err(reason) => {
             text.push('\n');
-            comment(
-                text,
-                &format!("No virtual experiment was found for it: {reason}."),
-            );
+            comment(text, &format!("No virtual experiment was found: {reason}."));
             return;
         }
     };

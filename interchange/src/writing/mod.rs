@@ -44,7 +44,7 @@ pub(crate) fn toml(
     if let Some(given) = given(options) {
         comment(
             &mut text,
-            &format!("Imported with {given}, which `overact export` needs as well."),
+            &format!("Imported with {given}, which `overact export` also needs."),
         );
     }
     for note in &plan.notes {
@@ -77,7 +77,7 @@ fn unused(text: &mut String, account: &Account) {
     if account.reported.is_empty() {
         return;
     }
-    text.push_str("# Not used of the file:\n");
+    text.push_str("# Not used from the file:\n");
     for entry in &account.reported {
         let (subject, reason) = (entry.subject(), entry.counted_reason());
         comment(
@@ -314,7 +314,7 @@ fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
     if lines.is_empty() {
         return;
     }
-    text.push_str("\n# What the file says of masses, inertias and friction: the virtual robot's,\n[experiment.parameters]\n");
+    text.push_str("\n# Masses, inertias and friction of the file: the virtual robot's,\n[experiment.parameters]\n");
     let mut write = |text: &mut String, line: &str, of: Option<usize>| {
         let start = text.len();
         let _ = writeln!(text, "{line}");
@@ -324,12 +324,11 @@ fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
     for (_, line, of) in known {
         write(text, line, *of);
     }
-    text.push_str("\n# and what is believed before data speak.\n");
+    text.push_str("\n# and the prior of identification.\n");
     if !impossible.is_empty() {
         let list = impossible.join(", ");
         let note = format!(
-            "LEFT OUT here are the moments of inertia of {list}: no body has them, as its pseudo-inertia would not be \
-             positive definite."
+            "LEFT OUT: the moments of inertia of {list}, which are not physically consistent."
         );
         comment(text, &note);
     }

@@ -237,7 +237,10 @@ fn evaluate(
         None => Ok(values),
         Some(at) => {
             let width = program.entries.len();
-            let message = format!("number {} of the result overflows", at % width);
+            let message = format!(
+                "number {} of the result is too large for a number",
+                at % width
+            );
             let help = "check the units: positions in m and rad, velocities in m/s and rad/s";
             Err(states.problem(at / width, &message).help(help).into())
         }

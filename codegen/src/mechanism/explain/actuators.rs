@@ -41,7 +41,7 @@ pub(in crate::mechanism) fn too_few_actuators(
                 ),
             };
             format!(
-                "the legs leave the platform only {left} of these {dof} motions ({words}), so more actuators are no way out: {way}"
+                "the legs allow the platform only {left} of these {dof} motions ({words}), so more actuators do not help: {way}"
             )
         }
         _ => "mark more joints with actuated = true".to_owned(),
@@ -54,7 +54,7 @@ pub(in crate::mechanism) fn too_few_actuators(
 /// Describes the platform's parasitic motion and how to declare it.
 fn moves_aside(found: &Parasitic) -> String {
     format!(
-        "these determine the others best (condition number {:.1} at home), and beside the home pose the platform moves aside with them, {}: write {} beside `motion`, or give the legs more passive joints",
+        "these determine the others best (condition number {:.1} at home), and away from home the platform has parasitic motion with them, {}: write {} next to `motion`, or give the legs more passive joints",
         found.condition,
         words(&found.following),
         key(&found.independent)
@@ -82,7 +82,7 @@ pub(in crate::mechanism) fn independent(
         let help = match Parasitic::at_home(mechanism) {
             Some(found) => format!("write {}", key(&found.independent)),
             None if left == 6 => {
-                "leave `independent` out: the legs leave the platform all six".to_owned()
+                "leave `independent` out: the legs allow the platform all six".to_owned()
             }
             None => "choose a `motion` that the legs allow, or give the legs other passive joints"
                 .to_owned(),
@@ -94,7 +94,7 @@ pub(in crate::mechanism) fn independent(
         };
         let motions = if left == 1 { "motion" } else { "motions" };
         let message = format!(
-            "{own} {coordinates} independent, but the legs leave the platform {left} {motions}"
+            "{own} {coordinates} independent, but the legs allow the platform {left} {motions}"
         );
         return Diagnostic::new(Code::NOT_HELD, message, span).help(help);
     };
@@ -103,7 +103,7 @@ pub(in crate::mechanism) fn independent(
         .label(if found.condition.is_finite() {
             format!("their condition number is {:.1e}", found.condition)
         } else {
-            "the others do not follow from them".to_owned()
+            "they do not determine the others".to_owned()
         })
         .help(format!(
             "write {}, whose condition number is {:.1}",
@@ -135,12 +135,12 @@ pub(in crate::mechanism) fn not_held(description: &Description, mobility: &Mobil
     let span = description.platform.as_ref().map(|p| p.motion.span.clone());
     let span = span.unwrap_or(description.name.span.clone());
     let words = Motions::of_directions(&mobility.parts()).words("along", "about");
-    Diagnostic::new(Code::NOT_HELD, "the legs do not hold the platform to this motion", span)
+    Diagnostic::new(Code::NOT_HELD, "the legs do not restrict the platform to this motion", span)
         .label(format!(
-            "they leave it {} motions, {words}, and the actuators drive all of them",
+            "they allow {} motions, {words}, and the actuators drive all of them",
             mobility.count()
         ))
-        .help("choose a `motion` with all of these coordinates: actuators may keep the platform to fewer, but what its model takes for internal torques then moves it; a platform that moves aside while it turns, as that of a 3-RPS, is `spatial` with `independent` coordinates")
+        .help("choose a `motion` with all of these coordinates: with fewer, torques that the model considers internal would move the platform; a platform with parasitic motion, as that of a 3-RPS, is `spatial` with `independent` coordinates")
         .kind(DiagnosticKind::NotHeld)
 }
 
@@ -167,10 +167,10 @@ pub(in crate::mechanism) fn underactuated(
     let (message, help) = if everywhere {
         let help = match twins.first() {
             Some((a, b)) if mechanism.platform.is_none() => {
-                format!("the motors `{a}` and `{b}` do the same: actuate another joint")
+                format!("the motors `{a}` and `{b}` have the same effect: actuate another joint")
             }
             Some((a, b)) => format!(
-                "the motors `{a}` and `{b}` do the same, as those of legs do that stand at the same place: move or turn one of the legs, or actuate another joint"
+                "the motors `{a}` and `{b}` have the same effect, as in legs at the same place: move or rotate one of the legs, or actuate another joint"
             ),
             None if mechanism.platform.is_none() => "actuate another joint".to_owned(),
             None => "actuate another joint, or attach the legs at other points".to_owned(),

@@ -71,7 +71,7 @@ pub(super) fn defect(leg: &overact_description::Leg, defect: &Defect) -> Diagnos
             leg.joints[joints[0]].span.clone(),
         )
         .label("nothing determines its position")
-        .help("let it follow other joints, such as theta = \"-q2\", or put the joint that carries the leg's end last"),
+        .help("couple it to other joints, such as theta = \"-q2\", or put the joint that carries the leg's end last"),
         Defect::Idle(joints) => Diagnostic::new(Code::USELESS_JOINT,
             format!(
                 "{} of {shape} never {} the {kind}'s end",
@@ -81,13 +81,13 @@ pub(super) fn defect(leg: &overact_description::Leg, defect: &Defect) -> Diagnos
             at(joints[joints.len() - 1]),
         )
         .label("the axis passes through the end, whatever the position")
-        .help("a rod of zero length? give it a length; an end of type \"point\" turns freely, so it needs no joints of its own there"),
+        .help("a rod of zero length? give it a length; an end of type \"point\" rotates freely and needs no joints there"),
         Defect::Twins(first, second) => {
             let slides = leg.joints[*second].kind.value == JointKind::Prismatic;
             let (what, way) = if slides {
-                ("slide in the same direction", "turn one of the axes by `alpha`, or leave one of the joints out")
+                ("slide in the same direction", "rotate one of the axes by `alpha`, or leave one of the joints out")
             } else {
-                ("turn about the same axis", "the link between them has no length: give the second a `d`, or turn its axis by `alpha`")
+                ("turn about the same axis", "the link between them has no length: give the second a `d`, or rotate its axis by `alpha`")
             };
             Diagnostic::new(Code::USELESS_JOINT,
                 format!("joints {} and {} of {shape} always {what}", name(*first), name(*second)),
@@ -100,9 +100,9 @@ pub(super) fn defect(leg: &overact_description::Leg, defect: &Defect) -> Diagnos
             format!("{shape} has too few joints to follow {carriers} motion"),
             leg.joints[leg.joints.len() - 1].span.clone(),
         )
-        .label(format!("its joints give its end {motions} of the {needed} motions that {carrier} has there"))
+        .label(format!("its joints allow its end {motions} of the {needed} motions that {carrier} has there"))
         .help(match leg.end_body {
-            None => "add a passive joint, choose a platform motion with fewer coordinates, or an end that leaves more free (`type`, `along`)",
+            None => "add a passive joint, choose a platform motion with fewer coordinates, or an end with fewer constraints (`type`, `along`)",
             Some(_) => "add a passive joint, or choose an end that leaves more free (`type`, `along`)",
         }),
         Defect::Loose { joints, motions } => Diagnostic::new(Code::USELESS_JOINT,
@@ -124,9 +124,9 @@ fn loose_help(leg: &overact_description::Leg) -> &'static str {
         _ => false,
     };
     if shares_few_directions {
-        "leave out a joint, let one follow others such as theta = \"-q2\", or let the end share more: `along` with more directions, or left out"
+        "leave out a joint, couple one to others such as theta = \"-q2\", or constrain the end more: `along` with more directions, or without `along`"
     } else {
-        "leave out a joint, let one follow others such as theta = \"-q2\", or fix the leg's end with type = \"rigid\""
+        "leave out a joint, couple one to others such as theta = \"-q2\", or fix the leg's end with type = \"rigid\""
     }
 }
 
@@ -181,7 +181,7 @@ fn open(
             .label("it closes elsewhere")
             .help(format!("give home = {}, or another place near the wanted working mode", home(leg, &joints))),
         Reach::Turned => error(format!("{name} cannot take {carriers} orientation at the home pose"))
-            .label("its end gets there, but stays turned")
+            .label("its end reaches the position, but not the orientation")
             .help("check `alpha`, `base` and `end.rotation`; an end that is a spherical or universal joint has type = \"point\""),
         Reach::Away(distance) => error(format!("{name} never reaches its place on {carrier} at the home pose"))
             .label(format!("its end stays at least {} away", length(distance)))
@@ -241,7 +241,7 @@ pub(super) fn blocked(
         )
         .label(format!("it blocks {}", listed(&names)))
         .help(
-            "add a passive joint to the chain, or an end that leaves more free (`type`, `along`)",
+            "add a passive joint to the chain, or an end with fewer constraints (`type`, `along`)",
         );
     }
     Diagnostic::new(Code::LEG_TOO_STIFF,
@@ -249,5 +249,5 @@ pub(super) fn blocked(
         place.span.clone(),
     )
     .label(format!("it blocks {}", Motions::new(mechanism, &blocked, 1e-6).words("motion along", "rotation about")))
-    .help("add a passive joint, choose a platform motion without it, or an end that leaves it free (`type`, `along`)")
+    .help("add a passive joint, choose a platform motion without it, or an end that does not constrain it (`type`, `along`)")
 }

@@ -56,10 +56,10 @@ fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
         "5:10",
         &[
             "the platform has 6 degrees of freedom, but the robot has 3 actuators",
-            "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
+            "the legs allow the platform only 3 of these 6 motions (along z, and about x and y)",
             "these determine the others best (condition number 1.0 at home)",
-            "moves aside with them, along x and y",
-            "write independent = [\"z\", \"rx\", \"ry\"] beside `motion`",
+            "has parasitic motion with them, along x and y",
+            "write independent = [\"z\", \"rx\", \"ry\"] next to `motion`",
             "leg `rps` has too few joints to follow the platform's motion",
         ],
     );
@@ -91,7 +91,7 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
         &with_independent("\"z\", \"rx\""),
         "5:10",
         &[
-            "2 coordinates are independent, but the legs leave the platform 3 motions",
+            "2 coordinates are independent, but the legs allow the platform 3 motions",
             "write independent = [\"z\", \"rx\", \"ry\"]",
         ],
     );
@@ -130,9 +130,9 @@ fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
         &tilted,
         "5:10",
         &[
-            "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
+            "the legs allow the platform only 3 of these 6 motions (along z, and about x and y)",
             "these determine the others best (condition number 1.",
-            "moves aside with them, along x and y, and about z: write independent = ",
+            "has parasitic motion with them, along x and y, and about z: write independent = ",
         ],
     );
     assert!(!said(&tilted).contains("mark more joints"));
@@ -211,7 +211,7 @@ fn a_platform_that_does_not_move_aside_has_a_motion() {
     ] {
         assert!(said.contains(words), "{words}\nin\n{said}");
     }
-    assert!(!said.contains("moves aside"), "{said}");
+    assert!(!said.contains("parasitic motion"), "{said}");
 }
 
 #[test]
@@ -220,8 +220,8 @@ fn a_motion_that_the_legs_do_not_enforce_is_refused() {
         &three_rps("fixed axis"),
         "5:10",
         &[
-            "the legs do not hold the platform to this motion",
-            "they leave it 3 motions, along z, and about x and y, and the actuators drive all of them",
+            "the legs do not restrict the platform to this motion",
+            "they allow 3 motions, along z, and about x and y, and the actuators drive all of them",
         ],
     );
 }
@@ -230,9 +230,8 @@ fn a_motion_that_the_legs_do_not_enforce_is_refused() {
 #[test]
 fn redundant_actuators_do_not_hold_the_platform_instead_of_the_legs() {
     let text = rps("fixed axis", &[0, 120, 240, 180]);
-    let what = [
-        "they leave it 3 motions, along z, and about x and y, and the actuators drive all of them",
-    ];
+    let what =
+        ["they allow 3 motions, along z, and about x and y, and the actuators drive all of them"];
     assert_said(&text, "5:10", &what);
     let description =
         overact_description::parse(&Source::new("rps.toml", text)).expect("a description");

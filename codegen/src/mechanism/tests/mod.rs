@@ -131,7 +131,7 @@ fn joints_too_many() {
         "39:5",
         &[
             "joint `3` of leg `arm` never moves the leg's end",
-            "an end of type \"point\" turns freely",
+            "an end of type \"point\" rotates freely",
         ],
     );
 }
@@ -144,7 +144,7 @@ fn joints_too_few() {
         "37:1",
         &[
             wanted,
-            "its joints give its end 2 of the 3 motions",
+            "its joints allow its end 2 of the 3 motions",
             "add a passive joint",
         ],
     );
@@ -281,7 +281,7 @@ fn actuators_that_do_not_move_the_platform() {
             "the actuators never determine the platform's motion",
             locked,
             "at once",
-            "`leg1` and `leg2` do the same",
+            "`leg1` and `leg2` have the same effect",
         ],
     );
     // All legs at one point of the platform.
@@ -325,10 +325,7 @@ fn joints_that_follow_each_other() {
     assert_said(
         &changed(PLANAR, &cycle),
         "34:9",
-        &[
-            "the joints follow each other in a cycle",
-            "has `q` in place",
-        ],
+        &["the joints are coupled in a cycle", "has `q` instead"],
     );
 }
 
