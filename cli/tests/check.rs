@@ -248,7 +248,7 @@ fn columns_that_a_log_lacks_are_told_with_the_line_that_names_them() {
     let said = bench.bad(&["identify", "my.toml", "--data", "log.csv"]);
     let line = line(&bench, "\"right\"]");
     let expected = format!(
-        "did you mean `rigth` for `right`? The names stand in the table [data], my.toml:{line}"
+        "did you mean `rigth` for `right`? The names are in the table [data], my.toml:{line}"
     );
     assert!(said.contains(&expected), "{said}");
 }

@@ -312,7 +312,7 @@ fn a_run_of_another_description_is_told_with_what_differs() {
     bench.write("commented.toml", &format!("{text}# Looked through.\n"));
     bench.good(&["factor", "commented.toml", "log_2.csv", "-o", "2.parquet"]);
     let told = bench.bad(&["identify", "my.toml", "--factors", "1.parquet", "2.parquet"]);
-    assert!(told.contains("a comment is enough"), "{told}");
+    assert!(told.contains("a comment suffices"), "{told}");
     bench.write(
         "renamed.toml",
         &text.replace("name = \"FiveBar\"", "name = \"Other\""),

@@ -159,7 +159,7 @@ fn a_format_that_is_not_built_in_is_named_with_its_feature() {
         ];
         let told = bench.bad(&arguments);
         assert!(
-            told.contains("this build of overact does not read"),
+            told.contains("this build of overact does not support"),
             "{told}"
         );
         assert!(told.contains(&format!("--features {feature}")), "{told}");

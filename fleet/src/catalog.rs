@@ -145,7 +145,7 @@ async fn runs(
     ] {
         if !has(name) {
             return Err(format!(
-                "the file holds no factors: there is no column `{name}`"
+                "the file has no factors: there is no column `{name}`"
             ));
         }
     }
@@ -162,7 +162,7 @@ async fn runs(
         let versions = batch.column(0).as_primitive_opt::<Int64Type>();
         let contents = batch.column(1).as_string_opt::<i32>();
         let (Some(versions), Some(contents)) = (versions, contents) else {
-            return Err("the file holds no factors: its columns are of other types".to_owned());
+            return Err("the file has no factors: its columns have other types".to_owned());
         };
         if let Some(other) = versions.iter().flatten().find(|own| *own != VERSION) {
             return Err(format!(

@@ -250,7 +250,7 @@ async fn open(data: &Data) -> Result<Fleet, String> {
 /// Prints times and ignored files on stderr.
 fn tell(fleet: &Fleet, rows: usize, times: [f64; 2]) {
     let mut text = format!(
-        "{rows} rows in {:.2} s, files looked through in {:.2} s\n",
+        "{rows} rows in {:.2} s, files scanned in {:.2} s\n",
         times[1], times[0]
     );
     for own in fleet.left_out() {
@@ -298,7 +298,7 @@ fn csv(rows: &[RecordBatch]) -> Result<String, String> {
     let mut writer = WriterBuilder::new().with_header(true).build(&mut bytes);
     for batch in rows {
         writer.write(batch).map_err(|error| {
-            format!("{error}: a column has several values; take them apart in the query")
+            format!("{error}: a column has several values; separate them in the query")
         })?;
     }
     drop(writer);

@@ -139,8 +139,7 @@ pub fn page(
     let _ = write!(
         html,
         "<h1>Fleet of {} robots</h1><p>{runs} runs on {} days. {} alarms of drift, {} outliers, {} days without an \
-         estimate. Left out: {} files, {twice} copies, {damaged} damaged records, {unlike} runs of another \
-         description.</p>",
+         estimate. Skipped: {} files, {twice} copies, {damaged} damaged records, {unlike} runs of another description.</p>",
         robots.len(),
         days.points
             .iter()
@@ -176,8 +175,7 @@ pub fn page(
 fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>) {
     let _ = write!(
         html,
-        "<h2>Drifts</h2><p>A robot without drift is accused with a probability of at most {} over all looks and \
-         parameters.</p>",
+        "<h2>Drifts</h2><p>The probability of an alarm for a robot without drift is at most {} over all looks and parameters.</p>",
         rule.false_alarms
     );
     if alarms.is_empty() {
@@ -210,14 +208,14 @@ fn drifts(html: &mut String, alarms: &[&Chart], rule: &Rule, link: Option<&str>)
 fn unlike_others(html: &mut String, outliers: &[Outlier], link: Option<&str>) {
     let _ = write!(
         html,
-        "<h2>Outliers</h2><p>Medians over the days that are further than {BEYOND} deviations of the fleet from its median.</p>"
+        "<h2>Outliers</h2><p>Medians over the days that are further than {BEYOND} standard deviations of the fleet from its median.</p>"
     );
     if outliers.is_empty() {
         html.push_str("<p>None.</p>");
         return;
     }
     html.push_str(
-        "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>robot<th>parameter<th>value<th>fleet<th>deviations</tr>",
+        "<div class=\"scroll\" tabindex=\"0\"><table><tr><th>robot<th>parameter<th>value<th>fleet<th>σ</tr>",
     );
     for own in outliers {
         let _ = write!(
@@ -237,7 +235,7 @@ fn troubles(html: &mut String, days: &Days, left_out: &[LeftOut], link: Option<&
     if days.problems.is_empty() && left_out.is_empty() {
         return;
     }
-    html.push_str("<h2>Left out</h2><details><summary>All of it</summary><table class=\"long\">");
+    html.push_str("<h2>Skipped</h2><details><summary>All</summary><table class=\"long\">");
     for own in left_out {
         let runs = match own.runs.len() {
             0 => String::new(),

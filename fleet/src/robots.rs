@@ -30,7 +30,7 @@ impl Robots {
                     let name = robot.model().info().name.to_owned();
                     if robots.insert(name.clone(), robot).is_some() {
                         problems.push(format!(
-                            "{}: another description has the name `{name}`, too",
+                            "{}: another description also has the name `{name}`",
                             file.display()
                         ));
                     }

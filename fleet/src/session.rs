@@ -83,7 +83,7 @@ fn of_cluster(error: DataFusionError) -> DataFusionError {
         return error;
     }
     DataFusionError::Execution(format!(
-        "{}\n  scheduler and executors read files by themselves: a folder has to be there under the same path on each, \
+        "{}\n  scheduler and executors read files themselves: a folder must exist under the same path on each, \
          and for a bucket each needs AWS_ENDPOINT_URL, AWS_REGION, AWS_ACCESS_KEY_ID, AWS_SECRET_ACCESS_KEY, and \
          AWS_ALLOW_HTTP=true where the address is http://, in its environment",
         text.trim_end()
@@ -184,8 +184,7 @@ impl Fleet {
             }
             let why = last.map_or_else(String::new, |error| error.strip_backtrace());
             Err(DataFusionError::Execution(format!(
-                "executors were lost in each of {attempts} attempts at the query: see whether scheduler and executors \
-                 run and can reach each other (`--log info` makes them tell), then ask again\n  {why}"
+                "executors were lost in each of {attempts} attempts at the query: check that scheduler and executors run and reach each other (`--log info` prints their messages), then repeat the query\n  {why}"
             )))
         };
         let Some(limit) = self.options.limit else {
@@ -194,8 +193,7 @@ impl Fleet {
         let late = |_| {
             DataFusionError::Execution(format!(
                 "{LATE} {} s: give it more time with `--limit SECONDS`, or more partitions and \
-                 executors; if it always takes that long, see whether all executors run (`--log info` makes \
-                 scheduler and executors tell)",
+                 executors; if it always takes that long, check that all executors run (`--log info` prints their messages)",
                 limit.as_secs_f64()
             ))
         };
@@ -338,7 +336,7 @@ fn none_left(files: &[String], place: &Place, left_out: &[LeftOut]) -> Result<()
         .iter()
         .map(|own| format!("\n  {}: {}", own.file, own.why));
     let why: String = why.take(10).collect();
-    let message = format!("{place}: there is no file that can be read{why}");
+    let message = format!("{place}: there is no readable file{why}");
     Err(DataFusionError::Execution(message))
 }
 

@@ -166,7 +166,7 @@ async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
     );
     for (place, word) in [
         ("s3://nothing/below", "AWS_ENDPOINT_URL"),
-        ("s3://fleet/nothing", "no file that can be read"),
+        ("s3://fleet/nothing", "no readable file"),
         ("s3:///below", "BUCKET"),
         ("ftp://fleet/below", "s3://BUCKET/PREFIX"),
     ] {

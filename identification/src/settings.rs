@@ -292,7 +292,7 @@ impl Settings {
         }
         if self.filter_torques && self.filter_equations {
             problems.push(
-                Problem::new(Code::SETTINGS, "the torques would pass the low-pass twice: both `filter_torques` and `filter_equations` are set")
+                Problem::new(Code::SETTINGS, "the torques would be filtered twice: both `filter_torques` and `filter_equations` are set")
                     .help("`filter_equations` filters torques and columns alike; leave out the other one"),
             );
         }
@@ -319,8 +319,8 @@ impl Settings {
             return None;
         }
         if actuators > info.sizes.dof {
-            let message = "equations can't be left out at a joint's standstill: those of a redundant robot are not those of single joints";
-            let help = "leave out `standstill_velocity`; `velocity_dead_band` serves any robot";
+            let message = "equations can't be skipped at a joint's standstill: those of a redundant robot are not those of single joints";
+            let help = "leave out `standstill_velocity`; use `velocity_dead_band` for this robot";
             return Some(Problem::new(Code::SETTINGS, message).help(help));
         }
         if limits.len() != actuators {

@@ -168,7 +168,7 @@ fn matrices_and_structures_of_matlab() {
     assert_eq!(
         log("a.mat", &file, &mapping("q", "run.j")).expect_err("missing"),
         "a.mat: there are no variables `q`, `run.j`; the file has `q`, `wide`, `gain`, `run.i`, `run.arm.q`\n  \
-         help: of a matrix name the columns one by one, `q(:,1)` is the first"
+         help: name the columns of a matrix one by one, `q(:,1)` is the first"
     );
     // A truncated file is refused, or lacks the requested columns.
     for length in (0..file.len()).step_by(7) {
@@ -243,18 +243,18 @@ fn arrays_that_are_none_are_named() {
     let refused = |file: &[u8]| log("a.npz", file, &mapping("q", "tau")).expect_err("an error");
     assert_eq!(
         refused(&npy("<U3", "False", "(1,)", &[0; 12])),
-        "a.npz: the file is NumPy's, but its elements are no numbers that are read (`<U3`)\n  \
-         help: write it anew with `numpy.save`, an array of numbers, samples x columns"
+        "a.npz: the file is NumPy's, but its elements are not supported numbers (`<U3`)\n  \
+         help: write it again with `numpy.save`, an array of numbers, samples x columns"
     );
     assert_eq!(
         refused(&npy("<f8", "False", "(2, 2, 2)", &[0; 64])),
         "a.npz: the file is NumPy's, but the array has 3 dimensions\n  \
-         help: write it anew with `numpy.save`, an array of numbers, samples x columns"
+         help: write it again with `numpy.save`, an array of numbers, samples x columns"
     );
     assert_eq!(
         refused(&npy("<f8", "False", "(4000000000, 4000000000)", &[0; 64])),
-        "a.npz: the file is NumPy's, but it is cut off\n  \
-         help: write it anew with `numpy.save`, an array of numbers, samples x columns"
+        "a.npz: the file is NumPy's, but it is truncated\n  \
+         help: write it again with `numpy.save`, an array of numbers, samples x columns"
     );
     assert_eq!(
         refused(&zip(&[("xl/workbook.xml", b"<x/>".to_vec())])),
@@ -264,8 +264,8 @@ fn arrays_that_are_none_are_named() {
     let names = zip(&[("names.npy", npy("<U3", "False", "(1,)", &[0; 12]))]);
     assert_eq!(
         refused(&names),
-        "a.npz: no array of the file can be read: `names`: its elements are no numbers that are read (`<U3`)\n  \
-         help: write it anew with `numpy.savez`, arrays of numbers, samples x columns"
+        "a.npz: no array of the file can be read: `names`: its elements are not supported numbers (`<U3`)\n  \
+         help: write it again with `numpy.savez`, arrays of numbers, samples x columns"
     );
 }
 
@@ -345,7 +345,7 @@ fn members_of_an_archive_are_limited_together() {
     file.extend(tail);
     let error = log("a.npz", &file, &mapping("t", "t")).expect_err("too large");
     assert!(
-        error.contains("unpacked it has more than 256 MB"),
+        error.contains("uncompressed it has more than 256 MB"),
         "{error}"
     );
 }

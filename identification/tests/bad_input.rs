@@ -45,8 +45,7 @@ fn a_value_that_nothing_measures_is_named_with_its_line() {
     let (log, folder) = csv("time,q_1,tau_1\n0,1,3\n0.1,2,1e300\n0.2,5,6\n");
     assert_eq!(
         text(log, folder.path()),
-        "log.csv:3: sample 1: `tau_1` is 1e300, which nothing measures\n  help: cut the run there, or \
-         look at how the log was written"
+        "log.csv:3: sample 1: `tau_1` is 1e300, which is not plausible\n  help: cut the run there, or check how the log was written"
     );
 }
 
@@ -63,7 +62,7 @@ fn a_missing_file_is_named() {
             text,
             format!(
                 "{name}: the file can't be read: No such file or directory (os error 2)\n  help: \
-                 check the path; it is taken from the folder in which the program was started"
+                 check the path, which is relative to the folder in which the program was started"
             )
         );
     }
@@ -96,8 +95,7 @@ fn cells_are_named_by_line_and_column() {
     assert_eq!(error.problems[0].column.as_deref(), Some("q_1"));
     assert_eq!(
         text(log, folder.path()),
-        "log.csv:3: column `q_1`: `abc` is not a number\n  help: cut the log before or after this line, or fill the \
-         gap; overact invents no samples\n\
+        "log.csv:3: column `q_1`: `abc` is not a number\n  help: cut the log before or after this line, or fill the gap\n\
          log.csv:3: column `tau_1`: `NaN` is not a finite number\n\
          log.csv:4: column `tau_1`: the line ends before this column\n\
          log.csv:5: column `q_1`: the cell is empty"
@@ -109,8 +107,7 @@ fn lines_with_more_cells_than_others_are_errors() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,1,0,5\n0.2,,2,1\n0.3,1,1,\n");
     assert_eq!(
         text(log, folder.path()),
-        "log.csv:3: the line has 4 columns, but the header names 3, here and in one line further down\n  help: if \
-         decimals stand behind commas, separate the columns by semicolons or tabs; else name every column"
+        "log.csv:3: the line has 4 columns, but the header names 3, here and in one line further down\n  help: if commas are decimal marks, separate the columns by semicolons or tabs; otherwise name every column"
     );
     // A separator at line ends is no column.
     let (log, _folder) = csv("time,q_1,tau_1\n0,0,0,\n0.1,1,0,\n0.2,2,1,\n");
@@ -148,8 +145,7 @@ fn a_time_that_is_not_uniform_is_located() {
     assert_eq!(
         text(log, folder.path()),
         "log.csv:5: the time is not uniform: between samples 2 and 3 it steps by 0.200000000 s, \
-         expected 0.100000000 s\n  help: let `resample = \"1 kHz\"` in [data] interpolate at uniform times, or cut the \
-         run where samples are missing"
+         expected 0.100000000 s\n  help: set `resample = \"1 kHz\"` in [data] to interpolate at uniform times, or cut the run where samples are missing"
     );
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0,0,0\n");
     assert!(text(log, folder.path()).contains("it steps by 0 s, expected 0 s"));
@@ -228,7 +224,7 @@ fn broken_mat_files_are_errors() {
     let expected = if cfg!(feature = "hdf5") {
         "log.mat: the HDF5 file can't be read: "
     } else {
-        "log.mat: the file is of MATLAB's version 7.3, which is HDF5, which this build of overact does not read\n  help: \
+        "log.mat: the file is of MATLAB's version 7.3, which is HDF5, which this build of overact does not support\n  help: \
          build it with the feature `hdf5`: `cargo run --release --features hdf5 -- …`; or save it in MATLAB with \
          `save(..., '-v7')`"
     };
@@ -268,8 +264,8 @@ fn short_runs_and_other_robots_are_errors() {
     assert_eq!(
         text,
         "run 1: the run has 1 actuator, the robot `pair` has 2\n  help: map one position and one torque column to each actuator\n\
-         run 1: the run has 20 samples; the filters, the decimation and the skipped samples need at least 55\n  help: record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]; the run lasts 0.2 s: is the time in minutes? It has to be in seconds\n\
-         run 1: the cutoff frequency of 60 Hz is not below half the sampling frequency, 50 Hz\n  help: is the time in milliseconds? It has to be in seconds: divide the column by 1000. Else give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"
+         run 1: the run has 20 samples; the filters, the decimation and the skipped samples need at least 55\n  help: record a longer run, or lower `skip_start`, `skip_end` or `decimation` of [identification]; the run lasts 0.2 s: is the time in minutes? It must be in seconds\n\
+         run 1: the cutoff frequency of 60 Hz is not below half the sampling frequency, 50 Hz\n  help: is the time in milliseconds? It must be in seconds: divide the column by 1000. Else give `filter_cutoff` of [identification] about ten times the bandwidth of the motion"
     );
 }
 
@@ -325,7 +321,7 @@ fn experiments_are_checked() {
     };
     assert_eq!(
         run(&[], &PAIR),
-        "there is no run to identify from\n  help: give at least one log with --data, or runs in [[experiment.run]]"
+        "there is no training run\n  help: give at least one log with --data, or runs in [[experiment.run]]"
     );
     let loaded = Log::new("run 3", 100.0, 1, vec![0.0; 200], vec![0.0; 200], true).expect("a log");
     assert_eq!(

@@ -26,16 +26,16 @@ fn what_is_no_vector_of_numbers_is_named() {
     for (name, what) in [
         (
             "label",
-            "`label` holds texts or lists of any length, not numbers",
+            "`label` has texts or lists of variable length, not numbers",
         ),
         ("cube", "`cube` has more than two dimensions"),
         (
             "table",
-            "`table` holds structures (a table, or complex numbers), not single numbers",
+            "`table` has structures (a table, or complex numbers), not single numbers",
         ),
         (
             "half",
-            "`half` holds floating numbers of other sizes than 32 and 64 bits",
+            "`half` has floating-point numbers of other sizes than 32 and 64 bits",
         ),
         ("hole", "`hole`: sample 50 is not a finite number"),
         (
@@ -45,7 +45,7 @@ fn what_is_no_vector_of_numbers_is_named() {
         ("run.q", "there is no dataset `run.q`; the file has"),
         (
             "run.q",
-            "of a matrix name the columns one by one, `run.q(:,1)` is the first",
+            "name the columns of a matrix one by one, `run.q(:,1)` is the first",
         ),
         ("run.q(:,3)", "there is no dataset `run.q(:,3)`"),
         ("lost", "there is no dataset `lost`"),

@@ -51,7 +51,7 @@ fn a_slower_file_is_interpolated_onto_the_times_of_the_first() {
         "{note}"
     );
     assert!(
-        note.ends_with("51 of its 1001 samples, outside of the others' times, are left out"),
+        note.ends_with("51 of its 1001 samples, outside the times of the others, are skipped"),
         "{note}"
     );
 }
@@ -74,9 +74,7 @@ fn a_faster_file_with_an_uneven_clock_is_interpolated() {
     let note = log.note().expect("a note");
     // The torques have twenty times the rate.
     assert!(
-        note.contains(
-            ", after a low-pass that keeps what lies below 40 Hz, since the clocks differ"
-        ),
+        note.contains(", after a low-pass filter at 40 Hz, since the clocks differ"),
         "{note}"
     );
 }
@@ -108,8 +106,7 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
         );
         log.expect_err("an error")
     };
-    let way_out = "files are joined by time: check that they are of one run and that their clocks count from the same \
-                   start";
+    let way_out = "files are joined by time: check that they are of one run and that their clocks have the same origin";
     assert_eq!(
         told(&mut (0..50).map(row)),
         format!("i.csv: the file ends at 4.9 s, before q.csv begins at 10 s\n  help: {way_out}")
@@ -120,7 +117,7 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
             "i.csv: the file begins at 20 s, when q.csv has ended at 14.9 s\n  help: {way_out}"
         )
     );
-    let grow = "numbers are interpolated between times that grow without gaps: cut the run there";
+    let grow = "interpolation needs increasing times without gaps: cut the run there";
     assert_eq!(
         told(&mut (90..160).filter(|k| !(120..130).contains(k)).map(row)),
         format!("i.csv: the time steps from 11.9 s to 13 s\n  help: {grow}")
@@ -137,8 +134,7 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
     );
     assert_eq!(
         broken.expect_err("no number"),
-        "i.csv:3: column `tau`: `x` is not a number\n  help: cut the log before or after this line, or fill \
-         the gap; overact invents no samples"
+        "i.csv:3: column `tau`: `x` is not a number\n  help: cut the log before or after this line, or fill the gap"
     );
 }
 

@@ -59,8 +59,7 @@ fn files_are_joined_sample_by_sample() {
     assert_eq!(numbers(joined("file1.a", "file2.a")).1, [0.5, 1.5, 2.5]);
     assert_eq!(
         joined("a", "c").expect_err("both have it"),
-        "pos.csv+torque.csv: several of the files have a column `a`\n  help: call it `file1.a` or `file2.a`, or \
-         by its number through all files"
+        "pos.csv+torque.csv: several of the files have a column `a`\n  help: call it `file1.a` or `file2.a`, or by its number in all files"
     );
     assert_eq!(
         joined("file3.b", "$5").expect_err("missing"),
@@ -97,7 +96,9 @@ fn columns_of_joined_files_are_called_by_their_file() {
         "file2.c",
     );
     assert!(
-        text.contains("bare.csv has no names: its columns are called by their numbers through all files, `$3` to `$4`"),
+        text.contains(
+            "bare.csv has no names: its columns have the numbers `$3` to `$4` in all files"
+        ),
         "{text}"
     );
     let text = told(&[POSITIONS, ("colons.csv", "a:c\n1:2\n3:4\n")], "file2.c");
@@ -251,8 +252,7 @@ fn expressions_that_are_none_are_named() {
     assert_eq!(
         refused("q5 + q7", "(i"),
         "log.csv: there is no column `q7`; the file has `t`, `q5`, `q6`, `i`\n  help: did you mean `q5` for `q7`?\n\
-         log.csv: `(i` is neither a column nor an expression of columns: `)` is missing at the end\n  help: put \
-         names with blanks or signs between single quotation marks: `'motor 1' / 50`"
+         log.csv: `(i` is neither a column nor an expression of columns: `)` is missing at the end\n  help: put names with blanks or signs in single quotation marks: `'motor 1' / 50`"
     );
     assert_eq!(
         refused("q5/q6", "i"),

@@ -157,7 +157,7 @@ fn messages_that_do_not_fit_are_located() {
     assert!(
         order.starts_with(
             "a.mcap: message 9 of `/joint_states` has the joints of the first message in another order: b, a, and not a, b"
-        ) && order.contains("several publishers share this topic"),
+        ) && order.contains("several publishers seem to share this topic"),
         "{order}"
     );
     let joints = at_7(two(7, &["a", "b"]));
@@ -176,17 +176,17 @@ fn messages_that_do_not_fit_are_located() {
     );
     let back = at_7(state(3 * STEP, &["a"], [&[1.0], &[], &[1.0]]));
     assert!(
-        back.contains("message 7 of `/joint_states` has the time 0.03 s, which is not behind that of the message before, 0.06 s"),
+        back.contains("message 7 of `/joint_states` has the time 0.03 s, which is not later than the previous message, 0.06 s"),
         "{back}"
     );
     let cut = at_7(usual(7)[..40].to_vec());
     assert!(
-        cut.contains("message 7 of `/joint_states` is cut off, or no JointState"),
+        cut.contains("message 7 of `/joint_states` is truncated, or not a JointState"),
         "{cut}"
     );
     let other = at_7([&[0, 7, 0, 0][..], &usual(7)[4..]].concat());
     assert!(
-        other.contains("is in the representation 0x00 0x07, and not in plain CDR"),
+        other.contains("has the representation 0x00 0x07 instead of plain CDR"),
         "{other}"
     );
     let unstamped = told(&|k| stamped((0, 0), &["a"], [&[k as f64], &[], &[0.0]]));
@@ -261,7 +261,7 @@ fn files_that_are_cut_off_or_broken_are_located() {
     for end in [8, 9, 30, 200, 1000, whole.len() - 1] {
         let told = refused(&whole[..end]);
         assert!(
-            told.contains("it is cut off: its end is missing") && told.contains("mcap recover"),
+            told.contains("it is truncated: its end is missing") && told.contains("mcap recover"),
             "{told}"
         );
     }
@@ -277,32 +277,32 @@ fn files_that_are_cut_off_or_broken_are_located() {
         "",
         &all,
         (size, 1),
-        "its checksum is another one: some bytes were changed",
+        "its checksum does not match: some bytes were changed",
     );
     broken(
         "",
         &all,
         (size + 1000, 0),
-        "it has fewer bytes than it says",
+        "it has fewer bytes than declared",
     );
-    broken("", &all, (size - 3, 0), "a record ends behind its end");
+    broken("", &all, (size - 3, 0), "a record ends after its end");
     broken(
         "brotli",
         &all,
         (size, 0),
-        "it is packed by `brotli`, which is not read",
+        "it is compressed by `brotli`, which is not supported",
     );
     broken("zstd", &all, (size, 0), "it can't be unpacked");
     broken("lz4", &all, (size, 0), "it can't be unpacked");
-    broken("", &all, (u64::MAX, 0), "it has fewer bytes than it says");
+    broken("", &all, (u64::MAX, 0), "it has fewer bytes than declared");
     // Impossible lengths.
     for length in [u64::MAX, 1 << 40, 1 << 63] {
         let mut record = record(5, &[0; 30]);
         record[1..9].copy_from_slice(&length.to_le_bytes());
         let told = refused(&file(&[record.clone()]));
-        assert!(told.contains("ends behind the end of the file"), "{told}");
+        assert!(told.contains("ends after the end of the file"), "{told}");
         let told = refused(&file(&[chunk("", &record, (record.len() as u64, 0))]));
-        assert!(told.contains("a record ends behind its end"), "{told}");
+        assert!(told.contains("a record ends after its end"), "{told}");
     }
     let long = message(1, 0, &vec![0; 5_000_000]);
     let told = refused(&file(&[topic(1, "/joint_states", CDR), long]));

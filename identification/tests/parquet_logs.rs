@@ -301,7 +301,7 @@ fn the_files_of_pyarrow_have_the_same_numbers() {
     let told = from("brotli.parquet").expect_err("Brotli").to_string();
     assert!(
         told.ends_with(
-            "column `t` can't be read from sample 0 on: it is packed by Brotli, which is not read\n  help: write it \
+            "column `t` can't be read from sample 0 on: it is compressed by Brotli, which is not supported\n  help: write it \
              with the compression snappy, zstd, gzip or lz4, or none"
         ),
         "{told}"

@@ -73,14 +73,14 @@ fn columns_that_are_no_numbers_are_named() {
     assert_eq!(numbers(log(&file, &untimed("q", "$6"))).1, [3.0, 4.0]);
     let way_out = "help: write a column of numbers (float64) for each signal and each actuator";
     for (name, what) in [
-        ("note", "column `note` holds texts or bytes, not numbers"),
-        ("$2", "column `note` holds texts or bytes, not numbers"),
-        ("2*note", "column `note` holds texts or bytes, not numbers"),
-        ("on", "column `on` holds days, not numbers"),
+        ("note", "column `note` has texts or bytes, not numbers"),
+        ("$2", "column `note` has texts or bytes, not numbers"),
+        ("2*note", "column `note` has texts or bytes, not numbers"),
+        ("on", "column `on` has days, not numbers"),
         ("pose", "column `pose` is nested (a list or a structure)"),
         (
             "half",
-            "column `half` holds numbers of 16 bits, which are not read",
+            "column `half` has 16-bit numbers, which are not supported",
         ),
     ] {
         assert_eq!(
@@ -126,9 +126,9 @@ fn files_that_are_cut_off_or_empty_are_refused() {
     let file = written_with(packed.build(), SCHEMA, &columns, 20);
     let mapping = timed("q", "tau");
     for length in 4..file.len() {
-        let told = log(&file[..length], &mapping).expect_err("cut off");
+        let told = log(&file[..length], &mapping).expect_err("truncated");
         assert!(
-            told.starts_with("a.parquet: the file starts as Parquet does, but can't be read: "),
+            told.starts_with("a.parquet: the file starts like Parquet, but can't be read: "),
             "{told}"
         );
         assert!(
@@ -150,7 +150,7 @@ fn files_that_are_cut_off_or_empty_are_refused() {
     );
     assert_eq!(
         log(b"PARE and more", &mapping).expect_err("encrypted"),
-        "a.parquet: the file is encrypted Parquet, which is not read\n  help: write it without encryption"
+        "a.parquet: the file is encrypted Parquet, which is not supported\n  help: write it without encryption"
     );
 }
 

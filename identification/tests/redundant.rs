@@ -289,7 +289,7 @@ fn friction_splits_by_the_direction_of_each_joint() {
         result
             .warnings
             .iter()
-            .any(|w| w.contains("other: the cross-validation run carries"))
+            .any(|w| w.contains("other: the validation run carries"))
     );
 }
 

@@ -225,7 +225,7 @@ fn a_file_of_a_feature_is_named_with_it() {
         let told = read(&kept().join(name), &matrices(""), false).expect_err(name);
         let told = told.to_string();
         assert!(
-            told.contains("which this build of overact does not read"),
+            told.contains("which this build of overact does not support"),
             "{told}"
         );
         assert!(told.contains(&format!("--features {feature}")), "{told}");

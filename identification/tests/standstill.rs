@@ -95,11 +95,11 @@ fn limits_that_leave_little_are_told() {
     let left_out = most.runs[0].standstill_equations[0];
     let all = left_out + most.estimates[0].equations;
     assert!(2 * left_out > all, "{left_out} of {all}");
-    let expected = format!("{left_out} of {all} equations are left out at standstill");
+    let expected = format!("{left_out} of {all} equations are skipped at standstill");
     let told = |text: &String| text.starts_with(&expected) && text.contains("`position_scale`");
     assert!(most.warnings.iter().any(told), "{:?}", most.warnings);
     let few = identified(vec![0.08]);
-    assert!(!few.warnings.iter().any(|text| text.contains("left out at")));
+    assert!(!few.warnings.iter().any(|text| text.contains("skipped at")));
     let log = log();
     let refused = |settings: Settings| {
         let dataset = Dataset {
@@ -114,7 +114,7 @@ fn limits_that_leave_little_are_told() {
     };
     let text = refused(settings(vec![100.0]));
     assert!(
-        text.starts_with("the data determine no parameter: `standstill_velocity` leaves out"),
+        text.starts_with("the data determine no parameter: `standstill_velocity` skips"),
         "{text}"
     );
     let text = refused(Settings {
@@ -122,7 +122,7 @@ fn limits_that_leave_little_are_told() {
         ..settings(Vec::new())
     });
     assert!(
-        text.contains("`decimation` makes one equation of 5000 samples"),
+        text.contains("`decimation` keeps one equation per 5000 samples"),
         "{text}"
     );
 }

@@ -132,13 +132,11 @@ fn large_texts_of_any_kind_stay_in_their_files() {
 fn what_can_be_read_in_two_ways_is_refused() {
     assert_eq!(
         refused(b"time,q_1,tau_1\n0,0,1,5,3,0\n0,1,-2,0,4,25\n", &named()),
-        "log.txt:2: the line has 6 columns, but the header names 3\n  help: if decimals stand behind commas, \
-         separate the columns by semicolons or tabs; else name every column"
+        "log.txt:2: the line has 6 columns, but the header names 3\n  help: if commas are decimal marks, separate the columns by semicolons or tabs; otherwise name every column"
     );
     assert_eq!(
         refused(b"time;q_1;tau_1\n0;1,5;3\n0.1;1;1\n", &named()),
-        "log.txt:2: `1,5` has a comma where `0.1` has a decimal point\n  help: write all decimals behind \
-         points, or all behind commas, and no mark between thousands"
+        "log.txt:2: `1,5` has a comma where `0.1` has a decimal point\n  help: use decimal points or decimal commas throughout, and no mark between thousands"
     );
     assert_eq!(
         refused(b"time q 1 tau 1\n0 0 0\n0.1 0 0\n", &named()),
@@ -157,16 +155,14 @@ fn columns_that_are_not_there_are_named_by_number() {
     assert_eq!(
         refused(b"0 0\n0.1 0\n", &numbered(Time::Frequency(10.0))),
         "log.txt: there is no column `$3`; the file has 2 columns, without names\n  help: \
-         the columns that can be called by number are `$1` to `$2`; where the others stand in \
-         another file of this run, give both as one, `a.csv+b.csv`"
+         columns have the numbers `$1` to `$2`; if others are in another file of this run, join both files, `a.csv+b.csv`"
     );
     assert_eq!(
         refused(
             b"0;0;0\n0,1;0;0\n0,2;a,b;0\n",
             &numbered(Time::Frequency(10.0))
         ),
-        "log.txt:3: column `$2`: `a,b` is not a number\n  help: cut the log before or after this line, or fill \
-         the gap; overact invents no samples"
+        "log.txt:3: column `$2`: `a,b` is not a number\n  help: cut the log before or after this line, or fill the gap"
     );
 }
 
@@ -193,10 +189,10 @@ fn files_that_are_no_text_are_named_and_never_shown() {
         (b"\x89MCAP0\r\n", "MCAP"),
         (b"PARE\x15", "Parquet"),
         (b"PAR1\x15", "Parquet"),
-        (b"\x93NUMPY\x01\x00", "NumPy's, but it is cut off"),
+        (b"\x93NUMPY\x01\x00", "NumPy's, but it is truncated"),
         (
             b"PK\x03\x04\x14\x00",
-            "the zip archive can't be read: it is cut off",
+            "the zip archive can't be read: it is truncated",
         ),
         (b"\x1f\x8b\x08\x00", "gzip"),
         (b"\xff\xfet\x00i\x00", "UTF-16"),

@@ -62,7 +62,7 @@ class Drawing {
   put(text) {
     if (!text) return;
     const parsed = new DOMParser().parseFromString(text, 'image/svg+xml').documentElement;
-    if (parsed.nodeName !== 'svg') throw new Error('the drawing is no SVG');
+    if (parsed.nodeName !== 'svg') throw new Error('the drawing is not SVG');
     this.element.setAttribute('aria-label', `${parsed.getAttribute('aria-label')}; arrow keys turn it`);
     this.element.replaceChildren(document.importNode(parsed, true));
   }

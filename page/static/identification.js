@@ -65,11 +65,11 @@ class Logs {
       box.addEventListener('change', () => { log[key] = box.checked; this.show(); });
       return element('label', {}, box, ` ${label}`);
     };
-    const remove = element('button', { type: 'button', 'aria-label': `Leave out ${log.name}` }, 'Leave out');
+    const remove = element('button', { type: 'button', 'aria-label': `Remove ${log.name}` }, 'Remove');
     remove.addEventListener('click', () => { this.logs = this.logs.filter(one => one !== log); this.show(); });
     const keep = element('button', { type: 'button', 'aria-label': `Save ${log.name}` }, 'Save');
     keep.addEventListener('click', () => save(log.name, 'application/octet-stream', log.bytes));
-    return element('li', {}, element('span', { class: 'name' }, log.name), tick('payload', 'with payload'), tick('held_out', 'to validate'), keep, remove);
+    return element('li', {}, element('span', { class: 'name' }, log.name), tick('payload', 'with payload'), tick('held_out', 'validation'), keep, remove);
   }
 
   tell(found) {
@@ -80,7 +80,7 @@ class Logs {
     this.result.replaceChildren(
       element('p', { class: 'bar' }, saving('report.html', 'text/html', found.page), saving('report.json', 'application/json', found.document), saving('report.csv', 'text/csv', found.numbers)),
       frame,
-      element('details', {}, element('summary', {}, 'As the command line prints it'), element('pre', { class: 'summary', tabindex: '0' }, found.summary)));
+      element('details', {}, element('summary', {}, 'Output of the command line'), element('pre', { class: 'summary', tabindex: '0' }, found.summary)));
     this.result.found = found;
   }
 }

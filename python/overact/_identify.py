@@ -136,7 +136,7 @@ def _run(robot: Robot, item: Any, payload: bool, label: str) -> tuple:
     if hasattr(item, "__arrow_c_stream__") or hasattr(item, "__arrow_c_array__"):
         return ("arrays", payload, label, _of_table(robot, item, label))
     raise TypeError(
-        f"`{label}` is a {type(item).__name__}, which is no run: give a path, a Run, a mapping of arrays, or "
+        f"`{label}` is a {type(item).__name__}, which is not a run: give a path, a Run, a mapping of arrays, or "
         "a data frame with Arrow's interface"
     )
 
@@ -153,7 +153,7 @@ def _of_mapping(robot: Robot, item: Mapping[str, Any], payload: bool, label: str
     for name, one in (("positions", positions), ("torques", torques), ("velocities", velocities)):
         if one is not None and one.shape != (len(positions), robot.n):
             wanted = f"({len(positions)}, {robot.n})"
-            raise DataError(f"`{label}['{name}']` has the shape {one.shape}, but {wanted} is wanted")
+            raise DataError(f"`{label}['{name}']` has the shape {one.shape}, expected {wanted}")
     return (
         "samples",
         bool(item.get("payload", payload)),
@@ -173,7 +173,7 @@ def _sampling(item: Mapping[str, Any], samples: int, label: str) -> float:
         raise DataError(f"`{label}` has neither `sampling` (Hz) nor `time` (s)")
     time = np.asarray(item["time"], dtype=np.float64)
     if time.shape != (samples,) or samples < 2:
-        raise DataError(f"`{label}['time']` has the shape {time.shape}, but ({samples},) is wanted")
+        raise DataError(f"`{label}['time']` has the shape {time.shape}, expected ({samples},)")
     step = (time[-1] - time[0]) / (samples - 1)
     if not (step > 0 and np.all(np.abs(np.diff(time) - step) <= _UNIFORM * step)):
         raise DataError(
@@ -202,7 +202,7 @@ def _array(name: str, value: Any, label: str) -> tuple:
     """Name, rows, columns, and the numbers in column-major order."""
     array = np.asarray(value)
     if np.ma.isMaskedArray(value) or array.dtype.kind not in "fiub":
-        raise TypeError(f"`{label}['{name}']` has the dtype {array.dtype}, no real numbers")
+        raise TypeError(f"`{label}['{name}']` has the dtype {array.dtype}, not real numbers")
     if array.ndim > 2:
         raise DataError(f"`{label}['{name}']` has {array.ndim} axes; give vectors or matrices")
     rows, columns = (*array.shape, 1, 1)[:2]
@@ -213,11 +213,11 @@ def _array(name: str, value: Any, label: str) -> tuple:
 def _matrix(value: Any, label: str) -> np.ndarray:
     array = np.asarray(value)
     if np.ma.isMaskedArray(value) or array.dtype.kind not in "fiub":
-        raise TypeError(f"`{label}` has the dtype {array.dtype}, no real numbers")
+        raise TypeError(f"`{label}` has the dtype {array.dtype}, not real numbers")
     if array.ndim == 1:
         array = array[:, None]
     if array.ndim != 2:
-        raise DataError(f"`{label}` has {array.ndim} axes; samples x actuators are wanted")
+        raise DataError(f"`{label}` has {array.ndim} axes; expected are samples x actuators")
     return np.ascontiguousarray(array, dtype=np.float64)
 
 

@@ -102,8 +102,8 @@ class Estimate(Mapping):
 
     def __repr__(self) -> str:
         title = (
-            f"{self.model}, {self.stage}, {self.estimator}: {len(self)} parameters leave "
-            f"{self.relative_error_percent:.4g} % unexplained"
+            f"{self.model}, {self.stage}, {self.estimator}: {len(self)} parameters, "
+            f"relative residual {self.relative_error_percent:.4g} %"
         )
         widest = max((len(name) for name in self), default=0)
         rows = [
@@ -257,7 +257,7 @@ class Identification:
         }
         end = os.path.splitext(os.fspath(path))[1].lower()
         if end not in kinds:
-            raise ValueError(f"a report ends with .html, .json or .csv, unlike {os.fspath(path)!r}")
+            raise ValueError(f"the name of a report must end with .html, .json or .csv, unlike {os.fspath(path)!r}")
         self._save(path, kinds[end]())
 
     def save_parameters(self, path: str | os.PathLike[str]) -> None:
@@ -265,7 +265,7 @@ class Identification:
         ``evaluate`` and ``generate`` read."""
         text = self._handle.parameters_toml()
         if text is None:
-            raise ValueError("there are no physically consistent parameters: their search did not end")
+            raise ValueError("no physically consistent parameters: the search did not converge")
         self._save(path, text)
 
     def _save(self, path: str | os.PathLike[str], text: str) -> None:

@@ -78,8 +78,7 @@ pub(crate) fn common_samples(inputs: &[Rows<'_>]) -> PyResult<Vec<usize>> {
             Some(first) if first.samples() == input.samples() => {}
             Some(first) => {
                 return Err(PyValueError::new_err(format!(
-                    "`{}` and `{}` have different samples: their shapes are {} and {}. A row that \
-                     serves all samples has the shape ({},)",
+                    "`{}` and `{}` have different samples: their shapes are {} and {}. A row for all samples has the shape ({},)",
                     first.name,
                     input.name,
                     shown(first.array.shape()),
@@ -113,12 +112,12 @@ fn converted<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, 
     let array = numpy
         .call_method1(intern!(py, "asarray"), (value,))
         .map_err(|error| {
-            PyTypeError::new_err(format!("`{name}` is no array of numbers: {error}"))
+            PyTypeError::new_err(format!("`{name}` is not an array of numbers: {error}"))
         })?;
     let kind = array.getattr("dtype")?.getattr("kind")?;
     if !matches!(kind.extract::<&str>()?, "f" | "i" | "u" | "b") {
         return Err(PyTypeError::new_err(format!(
-            "`{name}` has the dtype {}; real numbers are wanted (float64)",
+            "`{name}` has the dtype {}; expected are real numbers (float64)",
             array.getattr("dtype")?.str()?
         )));
     }
@@ -130,14 +129,14 @@ fn converted<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, 
 fn wrong_shape(name: &str, shape: &[usize], width: usize, what: &str) -> PyErr {
     let hint = match shape {
         [_] if width == 1 => {
-            format!("; one number a sample has the shape (N, 1): `{name}[:, None]`")
+            format!("; one number per sample has the shape (N, 1): `{name}[:, None]`")
         }
-        [first, .., _] if *first == width => format!("; is it turned? `{name}.T`"),
+        [first, .., _] if *first == width => format!("; is it transposed? `{name}.T`"),
         _ => String::new(),
     };
     let numbers = if width == 1 { "number" } else { "numbers" };
     PyValueError::new_err(format!(
-        "`{name}` has the shape {}, but its last axis has to have {width} {numbers}{what}{hint}",
+        "`{name}` has the shape {}, but its last axis must have {width} {numbers}{what}{hint}",
         shown(shape)
     ))
 }
@@ -175,7 +174,7 @@ fn right_output<'py>(
             Err(_) => format!("a {}", given.get_type().name()?),
         };
         return Err(PyTypeError::new_err(format!(
-            "`out` has to be an array of float64, not {found}"
+            "`out` must be an array of float64, not {found}"
         )));
     };
     if array.shape() != shape {
@@ -187,7 +186,7 @@ fn right_output<'py>(
     }
     if !(array.is_c_contiguous() && array.is_aligned()) {
         return Err(PyValueError::new_err(
-            "`out` has to lie row after row in memory (C order), without gaps",
+            "`out` must be contiguous in memory (C order)",
         ));
     }
     Ok(array.clone())

@@ -54,7 +54,7 @@ pub(crate) fn columns<'py>(
             }
             match values(array) {
                 Some(values) => numbers.extend(values),
-                None => *column = Column::Other(format!("{}, no numbers", array.data_type())),
+                None => *column = Column::Other(format!("{}, not numbers", array.data_type())),
             }
         }
     }
@@ -85,7 +85,7 @@ fn read(table: &Bound<'_, PyAny>) -> PyResult<(Schema, Vec<RecordBatch>)> {
         return Ok((batch.schema().as_ref().clone(), vec![batch]));
     }
     let message = format!(
-        "a {} is no table: it has neither __arrow_c_stream__ nor __arrow_c_array__",
+        "a {} is not a table: it has neither __arrow_c_stream__ nor __arrow_c_array__",
         table.get_type().name()?
     );
     Err(PyTypeError::new_err(message))

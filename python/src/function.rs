@@ -236,7 +236,7 @@ impl Function {
             return Ok(info.home_pose.to_vec());
         };
         if !self.form.follows() {
-            return Err(self.misused("takes no `start`, since it finds no pose"));
+            return Err(self.misused("takes no `start`, since it does not compute a pose"));
         }
         let rows = Rows::new(given, "start", (info.sizes.pose, ""))?;
         if rows.is_shared() {

@@ -109,7 +109,7 @@ def test_outputs_that_can_not_be_written_are_refused(dualv):
         (0.0, ValueError, r"shape \(\)"),
         (["a", "b", "c"], TypeError, "dtype <U1"),
         (np.zeros(3, dtype=complex), TypeError, "complex128"),
-        ([[1.0, 2.0], [3.0]], TypeError, "no array of numbers"),
+        ([[1.0, 2.0], [3.0]], TypeError, "not an array of numbers"),
         (None, TypeError, "dtype object"),
         (np.ma.masked_array(np.zeros(3), [0, 1, 0]), TypeError, "masked"),
     ],

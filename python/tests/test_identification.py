@@ -248,7 +248,7 @@ def test_data_that_can_not_be_used_are_refused(robot, split, change, error, says
 
 def test_other_mistakes_are_told(robot, split, tmp_path):
     run = split[0][0]
-    with pytest.raises(TypeError, match="is a int, which is no run"):
+    with pytest.raises(TypeError, match="is a int, which is not a run"):
         overact.identify(robot, 7)
     with pytest.raises(overact.DataError, match="can't be read"):
         overact.identify(robot, tmp_path / "none.csv")

@@ -190,7 +190,7 @@ fn check_filters(
     let longest = longest.max().unwrap_or(0) as f64 / frequency;
     if cutoff * longest < 1.0 {
         let message = format!(
-            "the cutoff frequency of {cutoff} Hz is below one period in the longest run, of {longest} s: nothing of the motion would be left"
+            "the cutoff frequency of {cutoff} Hz is below one period in the longest run, of {longest} s: the filter would remove the whole motion"
         );
         let help =
             "give `filter_cutoff` of [identification] about ten times the bandwidth of the motion";
@@ -204,7 +204,7 @@ fn check_filters(
                 "the run `{}` has {samples} samples; the filters, the decimation and the skipped samples of the identification need at least {needed}",
                 run.name
             );
-            let help = "make the run longer, or skip fewer samples";
+            let help = "extend the run, or skip fewer samples";
             errors.push(at(
                 &format!("experiment.run[{index}].duration"),
                 message,

@@ -79,9 +79,9 @@ impl Robot {
         if !identification.gains && !identification.gravity_direction {
             return Ok(());
         }
-        let message = "the description asks for gains of drives or for the direction of gravity, which factors can't give";
+        let message = "the description requests gains of drives or the direction of gravity, which factors do not support";
         let help =
-            "identify them from logs first, write them into the description and leave out the key";
+            "first identify them from logs, write them into the description and leave out the key";
         Err(Problem::new(Code::FACTORS, message)
             .file(self.file())
             .help(help)

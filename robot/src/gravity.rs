@@ -27,10 +27,10 @@ impl Robot {
     ) -> Result<GravityDirection, Error> {
         let mechanism = &self.model().model().mechanism;
         if !mechanism.is_tree() {
-            let message = "the direction of gravity is identified of robots without loops only";
+            let message = "the direction of gravity is not supported for robots with loops";
             return Err(Problem::new(Code::GRAVITY_DIRECTION, message)
                 .file(self.file())
-                .help("leave `gravity_direction` out, measure how the base stands with a level, and write it as `gravity`")
+                .help("leave `gravity_direction` out, measure the tilt of the base with a level, and write it as `gravity`")
                 .into());
         }
         let along = |axis: usize| {
@@ -88,7 +88,7 @@ impl Robot {
     }
 
     fn without_model(&self) -> Error {
-        let message = "there is no model of this robot in another gravity";
+        let message = "there is no model of this robot for other directions of gravity";
         Problem::new(Code::GRAVITY_DIRECTION, message)
             .file(self.file())
             .into()

@@ -251,7 +251,7 @@ impl<'a> Identifier<'a> {
         make: impl FnOnce(&Identifier<'_>, &GravityDirection) -> Result<T, Error>,
     ) -> Result<(T, GravityDirection), Error> {
         if self.gains {
-            let help = "identify the gains first, put them into `torque_gain` of [data], then ask for the direction";
+            let help = "identify the gains first, put them into `torque_gain` of [data], then identify the direction";
             let problem =
                 Problem::new(Code::CONTRADICTION, GAINS_AND_GRAVITY).file(self.robot.file());
             return Err(problem.help(help).into());

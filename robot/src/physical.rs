@@ -39,7 +39,7 @@ fn negative(source: &Source, one: &TrueParameter) -> Option<String> {
     let TrueParameter { name, value, .. } = one;
     (one.symbol.is_nonnegative() && *value < 0.0).then(|| {
         format!(
-            "{}: `{}` = {value} is negative, which no body or joint is",
+            "{}: `{}` = {value} is negative, which is not physically consistent",
             place(source, one),
             name.value
         )
@@ -86,7 +86,7 @@ fn impossible(source: &Source, own: &[&TrueParameter]) -> Option<String> {
         }
     }?;
     Some(format!(
-        "{}: no body has the inertia of the one with `{body}`: {wrong}",
+        "{}: the inertia of the body with `{body}` is not physically consistent: {wrong}",
         place(source, first)
     ))
 }

@@ -118,7 +118,7 @@ impl Robot {
                 let place = self.place_of_column(column);
                 let help = match problem.help.take() {
                     Some(help) if help.ends_with('?') => {
-                        format!("{help} The names stand in {place}")
+                        format!("{help} The names are in {place}")
                     }
                     Some(help) => format!("{help}; columns are named in {place}"),
                     None => format!("columns are named in {place}"),

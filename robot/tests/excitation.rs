@@ -159,7 +159,7 @@ fn a_five_bar_is_excited_within_its_limits() {
             &|_, _| (),
         )
         .expect("runs");
-    let own = &judged.described.expect("the runs that were found").cases[0];
+    let own = &judged.described.expect("the computed runs").cases[0];
     assert!(
         (own.condition / best.condition - 1.0).abs() < 1e-6,
         "{own:?} {best:?}"
@@ -232,7 +232,7 @@ fn a_time_that_is_up_ends_the_random_series_too() {
     let found = robot.excite(&effort, &|_, _| ()).expect("exciting runs");
     let count = found.hundred.len();
     assert!((1..100).contains(&count), "{count}");
-    let told = format!("the time was enough for {count} random series, not 100");
+    let told = format!("the time sufficed for only {count} random series, not 100");
     assert!(found.assumed.contains(&told), "{:?}", found.assumed);
     keeps_limits(&written(&robot, &found), &found);
 }
@@ -249,7 +249,7 @@ fn speeds_that_nothing_limits_are_told() {
         let text = format!("{text}\n[excitation]\nruns = 1\n{limit}");
         let robot = Robot::from_text("bare.toml", &text).expect("a robot");
         let told = excited(&robot).assumed.join("\n");
-        told.contains("nothing limits the speeds") && told.contains("rad/s")
+        told.contains("speeds have no limit") && told.contains("rad/s")
     };
     assert!(bare(""));
     assert!(!bare("velocity = \"9 rad/s\"\n"));
@@ -283,7 +283,7 @@ fn robots_that_cannot_move_are_refused() {
     let error = robot.excite(&EFFORT, &|_, _| ()).expect_err("no motion");
     let problems = error.problems();
     assert!(
-        problems[0].message.contains("no motion about home"),
+        problems[0].message.contains("no motion around home"),
         "{problems:?}"
     );
 }

@@ -168,7 +168,7 @@ fn a_direction_that_nothing_tells_is_refused() {
     let identifier = Identifier::new(&robot).data(&runs).gravity_direction(true);
     let error = identifier.run().expect_err("no direction").render(false);
     assert!(
-        error.contains("is not determined: wherever it points"),
+        error.contains("is not determined: for any direction"),
         "{error}"
     );
     let both = Identifier::new(&robot)

@@ -106,5 +106,5 @@ fn all_that_is_wrong_comes_at_once() {
 
     let error = Identifier::new(&robot).data(&Runs::default()).run();
     let error = error.expect_err("nothing to identify from");
-    assert_eq!(messages(&error), ["there is no run to identify from"]);
+    assert_eq!(messages(&error), ["there is no training run"]);
 }

@@ -154,7 +154,7 @@ fn without_an_unloaded_run_one_payload_is_told_beside_the_other() {
         result
             .warnings
             .iter()
-            .any(|one| one.contains("less its own")),
+            .any(|one| one.contains("are differences from it")),
         "{:?}",
         result.warnings
     );

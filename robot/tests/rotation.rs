@@ -148,5 +148,5 @@ fn half_a_turn_between_two_samples_is_refused() {
     let fast = |angle: f64| (100.0 * angle).rem_euclid(TAU);
     let error = log(&plain, fast).expect_err("a direction that is not known");
     let error = &error.problems()[0].message;
-    assert!(error.contains("its direction is not known"), "{error}");
+    assert!(error.contains("its direction is unknown"), "{error}");
 }

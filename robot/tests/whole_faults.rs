@@ -62,7 +62,7 @@ fn a_position_that_stands_for_two_joints_behind_their_gears_is_named() {
         positions[1] = 0.1 - positions[0] * 32.0 / 45.0;
     });
     let words = refused(&result, CheckKind::DuplicateColumns).join("\n");
-    assert!(words.contains("one column was taken twice"), "{words}");
+    assert!(words.contains("one column was used twice"), "{words}");
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn an_experiment_of_which_all_runs_are_held_out_is_refused() {
         .runs(&all, &|_, _| {})
         .expect_err("no run is left");
     assert!(
-        error.to_string().contains("none is left to identify from"),
+        error.to_string().contains("there are no training data"),
         "{error}"
     );
 }

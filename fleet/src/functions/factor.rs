@@ -84,8 +84,7 @@ impl AggregateUDFImpl for FactorOfLog {
                 Boolean | Utf8 | Utf8View | LargeUtf8 | Null,
             ] => Ok(vec![Utf8, numbers(fields), Utf8]),
             _ => Err(DataFusionError::Plan(
-                "`factor` takes the name of a robot, the columns of its logs, and what the platform carried if it \
-                 carried something (`true`, or the name of the payload): \
+                "`factor` takes the name of a robot, the columns of its logs, and the payload if there was one (`true`, or its name): \
                  `factor('FiveBar', named_struct('time', time, 'q_left', q_left, …))`"
                     .to_owned(),
             )),
@@ -163,7 +162,7 @@ impl Rows {
                 }
             }
             "true" => Err(format!(
-                "the robot has several payloads: say by its name which one the run carries, of {}",
+                "the robot has several payloads: name the one of the run, of {}",
                 names.join(", ")
             )),
             own => Err(if names.is_empty() {
@@ -186,10 +185,7 @@ impl Rows {
             )
         })?;
         let Time::Column(time) = robot.mapping().time else {
-            return Err(
-                "the description has no column of time, by which rows could be put in order"
-                    .to_owned(),
-            );
+            return Err("the description has no column of time to sort rows by".to_owned());
         };
         let place = self.columns.iter().position(|own| *own == time);
         let place = place.ok_or_else(|| format!("there is no column `{time}`"))?;

@@ -71,7 +71,7 @@ impl AggregateUDFImpl for Gather {
                 Ok(vec![DataType::LargeBinary, DataType::Int64])
             }
             _ => Err(DataFusionError::Plan(format!(
-                "`{0}` takes a column of factors, and how many independent groups of runs it keeps apart: \
+                "`{0}` takes a column of factors, and the number of independent groups of runs to keep separate: \
                  `{0}(factor)` or `{0}(factor, 64)`",
                 self.name()
             ))),
@@ -127,7 +127,7 @@ fn told(error: &PoolError) -> DataFusionError {
     DataFusionError::Execution(
         match error {
             PoolError::Twice => {
-                "a run is there twice in different files: select from the table `factors`, which leaves copies out"
+                "a run occurs in different files: select from the table `factors`, which skips copies"
             }
             _ => "a merged factor is damaged: merge it again from its parts",
         }

@@ -44,7 +44,7 @@ fn number(bytes: &[u8], place: usize, size: usize) -> Option<usize> {
 /// # Errors
 /// A description of the defect.
 pub(super) fn members(archive: &[u8]) -> Result<Vec<Member>, String> {
-    let cut_off = || String::from("it is cut off");
+    let cut_off = || String::from("it is truncated");
     let from = archive.len().saturating_sub(END_SIZE + LONGEST_COMMENT);
     let end = archive[from..]
         .windows(END.len())
@@ -92,7 +92,7 @@ impl Member {
             let start = 30 + number(record, 26, 2)? + number(record, 28, 2)?;
             record.get(start..start.checked_add(self.packed)?)
         });
-        let data = data.ok_or_else(|| broken("is cut off"))?;
+        let data = data.ok_or_else(|| broken("is truncated"))?;
         let content = match self.method {
             0 => {
                 // Several members may share the same bytes.
@@ -104,7 +104,7 @@ impl Member {
                 let unpacked = Decoder::new(data).take(self.size as u64 + 1);
                 budget.unpack(unpacked).map_err(|why| named(&why))?
             }
-            _ => return Err(broken("is packed in a way that is not read")),
+            _ => return Err(broken("is compressed with an unsupported method")),
         };
         if content.len() == self.size {
             Ok(content)

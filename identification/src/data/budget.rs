@@ -54,7 +54,7 @@ impl Budget {
     pub(super) fn unpack(&mut self, input: impl Read) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let read = self.limited(input).read_to_end(&mut bytes);
-        read.map_err(|_| String::from("it is broken"))?;
+        read.map_err(|_| String::from("it is damaged"))?;
         self.take(bytes.len() as u64)?;
         Ok(bytes)
     }
@@ -62,7 +62,7 @@ impl Budget {
 
 fn too_large() -> String {
     format!(
-        "unpacked it has more than {} MB: save it without compression, or as Parquet, which is read block by block",
+        "uncompressed it has more than {} MB: save it without compression, or as Parquet, which is read block by block",
         UNPACKED >> 20
     )
 }

@@ -116,11 +116,11 @@ impl Clock {
             shown(expected),
         ))
         .help(if is_rounded && step >= 0.0 {
-            "the times are numbers of 32 bits, too coarse for this step so long after zero: log times of 64 bits, or from zero on"
+            "the times are 32-bit numbers, too coarse for this step so long after zero: log 64-bit times, or start at zero"
         } else if step > 0.0 {
-            "let `resample = \"1 kHz\"` in [data] interpolate at uniform times, or cut the run where samples are missing"
+            "set `resample = \"1 kHz\"` in [data] to interpolate at uniform times, or cut the run where samples are missing"
         } else {
-            "the time stands or runs backwards: cut the run there, or take another column of the time"
+            "the time does not increase: cut the run there, or use another column of the time"
         });
         self.bad = Some(match line {
             Some(line) => problem.line(line),
@@ -183,6 +183,6 @@ mod tests {
     fn times_that_32_bits_do_not_tell_apart_are_told_as_such() {
         let told = frequency(9000.0, |time| f64::from(time as f32));
         let told = told.expect_err("too coarse").to_string();
-        assert!(told.contains("numbers of 32 bits"), "{told}");
+        assert!(told.contains("32-bit numbers"), "{told}");
     }
 }

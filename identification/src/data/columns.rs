@@ -1,6 +1,6 @@
 //! Finds the columns of all files of a run by the names of a mapping.
 //!
-//! A column is named by its name, or by its number through all files: `$1` is the first one of the
+//! A column is named by its name, or by its number in all files: `$1` is the first one of the
 //! first file. If several files have the name, it is `file2.NAME`.
 
 use super::{
@@ -115,7 +115,7 @@ impl<'a> Columns<'a> {
         let name = name.trim();
         self.find(name).ok().flatten()?;
         let message = format!(
-            "`{}`: behind the column `{}` stands `{}`",
+            "`{}`: `{}` is followed by `{}`",
             shown(text),
             shown(name),
             shown(unit)
@@ -220,7 +220,7 @@ impl<'a> Columns<'a> {
             ("topics of the file", "", [first, second].map(full))
         } else {
             let full = |number| format!("file{number}.{name}");
-            let way = ", or by its number through all files";
+            let way = ", or by its number in all files";
             ("files", way, numbers.map(full))
         };
         let [one, other] = names.map(|full| legible(&full));
@@ -311,7 +311,7 @@ impl<'a> Columns<'a> {
         });
         if let Some(first) = matrices.next() {
             return problem.help(format!(
-                "of a matrix name the columns one by one, `{}` is the first",
+                "name the columns of a matrix one by one, `{}` is the first",
                 shown(first)
             ));
         }
@@ -346,7 +346,7 @@ impl<'a> Columns<'a> {
         let problem = no_columns(self.run, (missing, what), &existing);
         if missing.iter().any(|name| name.starts_with('$')) {
             problem.help(format!(
-                "the columns that can be called by number are `$1` to `${columns}`; where the others stand in another file of this run, give both as one, `a.csv+b.csv`"
+                "columns have the numbers `$1` to `${columns}`; if others are in another file of this run, join both files, `a.csv+b.csv`"
             ))
         } else if let Some(guesses) = guesses(missing, &all) {
             problem.help(guesses)
@@ -380,7 +380,7 @@ impl<'a> Columns<'a> {
                 let last = first + own.columns - 1;
                 let file = shown(table.file());
                 return Some(format!(
-                    "{file} has no names: its columns are called by their numbers through all files, `${first}` to `${last}`"
+                    "{file} has no names: its columns have the numbers `${first}` to `${last}` in all files"
                 ));
             }
             first += own.columns;
@@ -412,11 +412,11 @@ fn way_out(text: &str) -> String {
     let has = |names: &[&str]| names.iter().any(|name| text.contains(name));
     if has(&angle) {
         return String::from(
-            "write `* pi/180` behind the column, or `position_scale = \"1 deg\"` in [data]",
+            "write `* pi/180` after the column, or `position_scale = \"1 deg\"` in [data]",
         );
     }
     if has(&back) {
-        return String::from("positions are to be in rad; without a function write `* 180/pi`");
+        return String::from("positions must be in rad; without a function write `* 180/pi`");
     }
-    String::from("put names with blanks or signs between single quotation marks: `'motor 1' / 50`")
+    String::from("put names with blanks or signs in single quotation marks: `'motor 1' / 50`")
 }

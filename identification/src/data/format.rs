@@ -54,27 +54,27 @@ const MCAP: &[u8] = b"\x89MCAP0\r\n";
 const REFUSED: [(&[u8], &str, &str); 9] = [
     (
         b"#ROSBAG",
-        "the file is a ROS bag, which is not read",
+        "the file is a ROS bag, which is not supported",
         "export the messages of the joints as CSV",
     ),
     (
         b"SQLite format 3\0",
-        "the file is a database of SQLite (a ROS 2 bag?), which is not read",
+        "the file is a database of SQLite (a ROS 2 bag?), which is not supported",
         "export the messages of the joints as CSV",
     ),
     (
         b"PARE",
-        "the file is encrypted Parquet, which is not read",
+        "the file is encrypted Parquet, which is not supported",
         "write it without encryption",
     ),
     (
         b"ARROW1",
-        "the file is Arrow, which is not read",
+        "the file is Arrow, which is not supported",
         "export CSV",
     ),
     (
         b"\xd0\xcf\x11\xe0",
-        "the file is an old document of Office, which is not read",
+        "the file is an old document of Office, which is not supported",
         "export CSV",
     ),
     (
@@ -89,12 +89,12 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
     ),
     (
         b"\xff\xfe",
-        "the file is text in UTF-16, which is not read",
+        "the file is text in UTF-16, which is not supported",
         "save it in UTF-8",
     ),
     (
         b"\xfe\xff",
-        "the file is text in UTF-16, which is not read",
+        "the file is text in UTF-16, which is not supported",
         "save it in UTF-8",
     ),
 ];
@@ -138,7 +138,7 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     if let Some((_, what, feature, help)) =
         optional.find(|(magic, ..)| beginning.starts_with(magic))
     {
-        let message = format!("{what}, which this build of overact does not read");
+        let message = format!("{what}, which this build of overact does not support");
         return Err(Problem::new(Code::LOG_FORMAT, message).help(format!(
             "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
         )));
@@ -161,7 +161,7 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     if beginning.iter().all(is_text) {
         return Ok(Format::Text);
     }
-    let message = "the file is neither text nor of a format that is known";
+    let message = "the file is neither text nor of a known format";
     Err(Problem::new(Code::LOG_FORMAT, message).help(
         "logs are text (CSV), Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
     ))

@@ -149,7 +149,7 @@ impl Mapping {
         problems.extend(self.bad_rate());
         if actuators == 0 {
             problems.push(
-                Problem::new(Code::DATA_TABLE, "the mapping names no position").column("positions"),
+                Problem::new(Code::DATA_TABLE, "the mapping has no position").column("positions"),
             );
         }
         problems.extend(self.bad_factors());
@@ -162,7 +162,7 @@ impl Mapping {
         let rate = self.resample?;
         let problem = |message: String| Problem::new(Code::DATA_TABLE, message).column("resample");
         if !(rate.is_finite() && rate > 0.0) {
-            return Some(problem(format!("the run is to be resampled at {rate} Hz")));
+            return Some(problem(format!("the run can't be resampled at {rate} Hz")));
         }
         matches!(self.time, Time::Frequency(_)).then(|| {
             let message = String::from(

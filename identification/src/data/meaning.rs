@@ -101,7 +101,7 @@ impl Columns {
             is_same(&self.positions[place], &self.torques[place])
         });
         if !same.is_empty() {
-            let message = format!("the torque is the column of the position: {same}");
+            let message = format!("torque and position are the same column: {same}");
             let problem = Problem::new(Code::SAME_COLUMN, message).column("torques");
             problems.push(problem.help(
                 "name columns of torques, forces or currents in `torques` of [data], or give the other file",
@@ -137,7 +137,7 @@ impl Columns {
         }
         let percent = |part: f64| significant(100.0 * part, 2);
         let message = format!(
-            "positions and torques look exchanged: from sample to sample positions jump by {} % of their deviation or more, torques by {} %",
+            "positions and torques look exchanged: from sample to sample positions jump by {} % of their standard deviation or more, torques by {} %",
             percent(position),
             percent(torque)
         );
@@ -176,12 +176,12 @@ impl Columns {
         let all = [
             tell(
                 &identical,
-                format!("the velocity is the column of the position: {identical}"),
+                format!("velocity and position are the same column: {identical}"),
                 without,
             ),
             tell(
                 &others,
-                format!("the velocities do not go with the positions: {others}"),
+                format!("the velocities are not the derivatives of the positions: {others}"),
                 without,
             ),
             tell(
@@ -190,7 +190,7 @@ impl Columns {
                     "the velocities are {} times what the positions give: {of_other_unit}",
                     significant(factor, 3)
                 ),
-                "check unit and sign of the columns, which have the positions' `position_scale`, and the time or `sampling`",
+                "check unit and sign of the columns (scaled by `position_scale`), and the time or `sampling`",
             ),
         ];
         all.into_iter().flatten().collect()
@@ -327,12 +327,12 @@ mod tests {
         let text =
             told(&|[q, t, v], actuator| [q, if actuator == 0 { 2.0 * q + 1.0 } else { t }, v]);
         assert!(
-            text.starts_with("run: the torque is the column of the position: joint 1\n"),
+            text.starts_with("run: torque and position are the same column: joint 1\n"),
             "{text}"
         );
         let text = told(&|[q, t, _], _| [q, t, q]);
         assert!(
-            text.starts_with("run: the velocity is the column of the position: joint 1, `leg2`\n"),
+            text.starts_with("run: velocity and position are the same column: joint 1, `leg2`\n"),
             "{text}"
         );
         let text = told(&|[q, t, v], _| [q, t, -57.3 * v]);
@@ -342,7 +342,9 @@ mod tests {
         );
         let text = told(&|[q, t, _], _| [q, t, t * t]);
         assert!(
-            text.contains("the velocities do not go with the positions: joint 1, `leg2`"),
+            text.contains(
+                "the velocities are not the derivatives of the positions: joint 1, `leg2`"
+            ),
             "{text}"
         );
     }

@@ -27,7 +27,7 @@ pub(super) fn open_array(file: String, medium: &Medium) -> Result<Arrays, Error>
     push(&mut arrays, "array", &bytes).map_err(|why| {
         let problem =
             Problem::new(Code::LOG_FORMAT, format!("the file is NumPy's, but {why}")).file(file);
-        problem.help("write it anew with `numpy.save`, an array of numbers, samples x columns")
+        problem.help("write it again with `numpy.save`, an array of numbers, samples x columns")
     })?;
     Ok(arrays)
 }
@@ -43,7 +43,7 @@ pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Erro
             Code::LOG_FORMAT,
             format!("the zip archive can't be read: {why}"),
         );
-        let help = "copy the file once more, or write it anew with `numpy.savez`";
+        let help = "copy the file once more, or write it again with `numpy.savez`";
         problem.file(file.as_str()).help(help).into()
     };
     let members = archive::members(&bytes).map_err(broken)?;
@@ -69,7 +69,7 @@ pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Erro
     }
     if arrays.columns() == 0 {
         let message = format!("no array of the file can be read: {}", left_out.join("; "));
-        let help = "write it anew with `numpy.savez`, arrays of numbers, samples x columns";
+        let help = "write it again with `numpy.savez`, arrays of numbers, samples x columns";
         return Err(Problem::new(Code::LOG_FORMAT, message)
             .file(file)
             .help(help)
@@ -83,10 +83,10 @@ pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Erro
 /// # Errors
 /// A description of the defect, to follow `but`.
 fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
-    let broken = || String::from("it is cut off");
+    let broken = || String::from("it is truncated");
     let version = *file.get(6).ok_or_else(broken)?;
     let (start, size) = match (file.starts_with(MAGIC), version) {
-        (false, _) => return Err(String::from("it does not start as an array does")),
+        (false, _) => return Err(String::from("it does not start like an array")),
         (true, 1) => {
             let size = file.get(8..10).ok_or_else(broken)?;
             (10, usize::from(u16::from_le_bytes([size[0], size[1]])))
@@ -157,16 +157,12 @@ impl Header {
         let kind = value("'descr'").ok_or_else(broken)?;
         if kind.starts_with('[') {
             return Err(String::from(
-                "its elements are records of several fields; save each field as an array of its own",
+                "its elements are records of several fields; save each field as a separate array",
             ));
         }
         let kind = kind.split(['\'', '"']).next().ok_or_else(broken)?;
-        let number = Number::of(kind).ok_or_else(|| {
-            format!(
-                "its elements are no numbers that are read (`{}`)",
-                shown(kind)
-            )
-        })?;
+        let number = Number::of(kind)
+            .ok_or_else(|| format!("its elements are not supported numbers (`{}`)", shown(kind)))?;
         let shape = value("'shape'").and_then(|text| text.strip_prefix('('));
         let shape = shape
             .and_then(|text| text.split_once(')'))

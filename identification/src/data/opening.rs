@@ -113,15 +113,16 @@ impl Files {
             };
             let own = 1.0 / step.unwrap_or(f64::NAN);
             let message = format!(
-                "{name} is to be resampled at {} Hz, which is {what} its {} Hz",
+                "{name} can't be resampled at {} Hz, which is {what} its {} Hz",
                 round(rate),
                 round(own)
             );
             let problem = Problem::new(Code::LOG_TIME, message)
                 .file(self.name.as_str())
                 .column("resample");
-            problems
-                .push(problem.help("take a rate near that of the samples, `resample` in [data]"));
+            problems.push(
+                problem.help("choose a rate close to that of the samples, `resample` in [data]"),
+            );
             break;
         }
         if self.resample.is_some() && !self.clocks.is_empty() {
@@ -170,10 +171,7 @@ impl Files {
         };
         let passed = |rate: f64, is_lower: bool| {
             if is_lower {
-                format!(
-                    ", after a low-pass that keeps what lies below {} Hz",
-                    round(0.4 * rate)
-                )
+                format!(", after a low-pass filter at {} Hz", round(0.4 * rate))
             } else {
                 String::new()
             }
@@ -197,7 +195,7 @@ impl Files {
         let left = match left_out {
             0 => String::new(),
             _ => format!(
-                "; {left_out} of its {} samples, outside of the others' times, are left out",
+                "; {left_out} of its {} samples, outside the times of the others, are skipped",
                 samples + left_out
             ),
         };
@@ -222,13 +220,10 @@ fn twice(files: &[(String, Medium)]) -> Option<Problem> {
         .collect();
     let mut all = places.iter().enumerate();
     let (number, _) = all.find(|(number, own)| own.is_some() && places[..*number].contains(own))?;
-    let message =
-        "the file is given twice in one run, so that its columns would stand for two things";
+    let message = "the file is given twice in one run, so its columns are ambiguous";
     let problem = Problem::new(Code::LOG_FILES, message).file(files[number].0.as_str());
     Some(
-        problem.help(
-            "give the file once, or the other one that is meant: `positions.csv+torques.csv`",
-        ),
+        problem.help("give the file once, or the intended second one: `positions.csv+torques.csv`"),
     )
 }
 

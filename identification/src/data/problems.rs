@@ -120,7 +120,7 @@ fn not_found(file: &str) -> String {
             pieces.join("+")
         );
     }
-    String::from("check the path; it is taken from the folder in which the program was started")
+    String::from("check the path, which is relative to the folder in which the program was started")
 }
 
 /// A list of quoted names.
@@ -156,9 +156,8 @@ pub(super) fn only<'a>(
             let problem = Problem::new(Code::SAME_COLUMN, message)
                 .file(file)
                 .column(name);
-            Err(problem.help(
-                "give each column a name of its own, or call it by its number, `$1` the first one",
-            ))
+            Err(problem
+                .help("give each column a unique name, or use its number, `$1` for the first one"))
         }
     }
 }
@@ -191,7 +190,7 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
     );
     if *columns > 0 && missing.iter().any(|name| name.starts_with('$')) {
         problem.help(format!(
-            "the columns that can be called by number are `$1` to `${columns}`; where the others stand in another file of this run, give both as one, `a.csv+b.csv`"
+            "columns have the numbers `$1` to `${columns}`; if others are in another file of this run, join both files, `a.csv+b.csv`"
         ))
     } else if let Some(guesses) = guesses(missing, names) {
         problem.help(guesses)

@@ -352,13 +352,13 @@ impl<'a> Rows<'a> {
         let problem = Problem::new(
             Code::NOT_A_NUMBER,
             if value.is_finite() {
-                format!("sample {sample}: `{text}` is {value:e}, which nothing measures")
+                format!("sample {sample}: `{text}` is {value:e}, which is not plausible")
             } else {
                 format!("sample {sample}: `{text}` is not a finite number")
             },
         );
         let problem = if value.is_finite() {
-            problem.help("cut the run there, or look at how the log was written")
+            problem.help("cut the run there, or check how the log was written")
         } else {
             problem
         };

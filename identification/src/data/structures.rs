@@ -49,7 +49,7 @@ pub(super) fn arrays(
     budget: &mut Budget,
     take: &mut dyn FnMut(OneArray<'_>) -> Result<(), String>,
 ) -> Result<(), String> {
-    let cut_off = || String::from("it is cut off");
+    let cut_off = || String::from("it is truncated");
     let (header, content) = file.split_at_checked(HEADER).ok_or_else(cut_off)?;
     let order = Order {
         is_little: header.ends_with(b"IM"),
@@ -117,7 +117,7 @@ pub(super) fn arrays(
 }
 
 /// Message for broken compressed bytes.
-const BROKEN: &str = "it is broken";
+const BROKEN: &str = "it is damaged";
 
 /// Content of an array.
 enum ArrayKind {
@@ -324,7 +324,10 @@ mod tests {
         assert!(unpacked(&file, &mut budget).is_ok_and(|bytes| bytes > 80_000));
         let mut budget = Budget::with(40_000);
         let refused = unpacked(&file, &mut budget).expect_err("too large");
-        assert!(refused.contains("unpacked it has more than"), "{refused}");
+        assert!(
+            refused.contains("uncompressed it has more than"),
+            "{refused}"
+        );
         // Text is not unpacked.
         let mut budget = Budget::with(0);
         assert_eq!(unpacked(&packed(TEXT, 80_000), &mut budget), Ok(0));

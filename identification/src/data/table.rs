@@ -234,7 +234,7 @@ impl Table {
 #[cfg(any(feature = "hdf5", feature = "mcap"))]
 fn on_disk<'m>(file: &str, medium: &'m Medium) -> Result<&'m std::path::Path, Error> {
     medium.path().ok_or_else(|| {
-        let message = "files of this format are read from a disk, not from memory";
+        let message = "files of this format can be read from a disk only";
         Problem::new(overact::Code::LOG_FORMAT, message)
             .file(file)
             .help("export CSV")

@@ -47,7 +47,7 @@ impl PayloadUse {
     pub(crate) fn of(info: &Info<'_>, runs: &[Log]) -> Result<Self, Error> {
         if runs.is_empty() {
             return Err(
-                Problem::new(Code::NOTHING_DETERMINED, "there is no run to identify from")
+                Problem::new(Code::NOTHING_DETERMINED, "there is no training run")
                     .help("give at least one log with --data, or runs in [[experiment.run]]")
                     .into(),
             );
@@ -57,9 +57,9 @@ impl PayloadUse {
         let named = loaded().find_map(Log::payload_name);
         if let (Some(unnamed), Some(named)) = (unnamed, named) {
             let message = format!(
-                "the run carries a payload without a name, another one the payload `{named}`: they can't be told from each other"
+                "the run carries a payload without a name, another one the payload `{named}`: they can't be distinguished"
             );
-            let help = "say of each run which payload it carries";
+            let help = "name the payload of each run";
             return Err(Problem::new(Code::LOG_PAYLOAD, message)
                 .file(unnamed.name())
                 .help(help)

@@ -189,7 +189,7 @@ pub(crate) fn fit_with(
                 "{equations} equations do not determine {unknowns} parameters{}",
                 match decimation {
                     0 | 1 => String::new(),
-                    kept => format!(": `decimation` makes one equation of {kept} samples"),
+                    kept => format!(": `decimation` keeps one equation per {kept} samples"),
                 }
             ),
         )

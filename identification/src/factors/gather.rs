@@ -55,7 +55,7 @@ pub fn gather(files: &[PathBuf], like: Option<&str>, skip_bad: bool) -> Result<G
             continue;
         }
         if let Some(other) = seen.get(&run.content) {
-            let message = format!("it is the same run as {other}, and counts once");
+            let message = format!("it is the same run as {other} and counts once");
             let reason = Reason::Twice;
             left_out.push(LeftOut {
                 file,
@@ -116,8 +116,7 @@ fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
             other.summary.sampling_frequency
         ),
         _ => format!(
-            "it is of a robot `{}`, but the text of the description differs somewhere, and a comment is enough, or \
-             other actuators were kept",
+            "it is of a robot `{}`, but the text of the description differs (a comment suffices), or other actuators were kept",
             run.robot
         ),
     };

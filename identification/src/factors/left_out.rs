@@ -25,7 +25,7 @@ pub struct LeftOut {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Reason {
-    /// The file is cut off, or contains no factors.
+    /// The file is truncated, or contains no factors.
     Unreadable,
     /// The file is of another version of the format.
     OtherVersion,
@@ -47,13 +47,13 @@ impl LeftOut {
             None => self.message.clone(),
         };
         let help = match self.reason {
-            Reason::Unreadable => "copy or write the file again; `--skip-bad` goes on without it",
+            Reason::Unreadable => "copy or write the file again; `--skip-bad` skips it",
             Reason::OtherVersion => {
-                "use the program that wrote it, or factor the logs again; `--skip-bad` goes on without it"
+                "use the program that wrote it, or factor the logs again; `--skip-bad` skips it"
             }
-            Reason::Damaged => "factor the log again; `--skip-bad` goes on without the run",
+            Reason::Damaged => "factor the log again; `--skip-bad` skips the run",
             _ => {
-                "factor its log again with the description of the other runs, as it is now; `--skip-bad` goes on without the run"
+                "factor its log again with the current description of the other runs; `--skip-bad` skips the run"
             }
         };
         Problem::new(Code::FACTORS, message)

@@ -128,7 +128,7 @@ fn check_columns(reader: &SerializedFileReader<File>) -> Result<(), Damaged> {
         return Ok(());
     }
     let message = format!(
-        "the file holds no factors: there is no column `{}`",
+        "the file has no factors: there is no column `{}`",
         missing[0]
     );
     Err(Damaged::file(Reason::Unreadable, message))
@@ -184,7 +184,7 @@ fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
     if content(&run) == run.content {
         Ok(run)
     } else {
-        let message = "its numbers are not those that were written: their hash is another one";
+        let message = "its numbers were changed: their hash does not match";
         Err(Damaged::run(&first.run, message))
     }
 }
@@ -195,7 +195,7 @@ fn of_model(rows: &[Row], columns: usize) -> Result<ModelFactors, Damaged> {
     let damaged = |message: &str| Damaged::run(&first.run, message);
     let kinds = [ModelKind::Platform, ModelKind::Actuators, ModelKind::Joints];
     let kind = kinds.into_iter().find(|kind| kind.name() == first.model);
-    let model = kind.ok_or_else(|| damaged("it has a model that is not known"))?;
+    let model = kind.ok_or_else(|| damaged("it has an unknown model"))?;
     let (mut parts, mut stretches, mut missing) = (Vec::new(), Vec::new(), None);
     let groups = rows.chunk_by(|a, b| (&a.kind, a.part) == (&b.kind, b.part));
     for own in groups {
@@ -245,7 +245,7 @@ fn of_model(rows: &[Row], columns: usize) -> Result<ModelFactors, Damaged> {
 }
 
 /// Message for bytes that are no factor.
-const NOT_NUMBERS: &str = "a factor of it has numbers that are not finite, or too few or too many";
+const NOT_NUMBERS: &str = "a factor has numbers that are not finite, or too few or too many";
 
 /// The factor of a row, whose record must belong to this run.
 fn of_factor(row: &Row, columns: usize) -> Option<Factor> {

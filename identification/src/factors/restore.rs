@@ -91,8 +91,8 @@ fn payload_use(runs: &[RunFactors]) -> Result<PayloadUse, Error> {
     let loaded = || runs.iter().filter(|run| run.summary.payload);
     let unnamed = loaded().find(|run| run.summary.payload_name.is_none());
     if let (Some(unnamed), false) = (unnamed, names(runs).is_empty()) {
-        let message = "the run carries a payload without a name, others one with a name: they can't be told from each other";
-        let help = "factor the logs anew with the name of each payload";
+        let message = "the run carries a payload without a name, others one with a name: they can't be distinguished";
+        let help = "factor the logs again with the name of each payload";
         return Err(Problem::new(Code::FACTORS, message)
             .file(unnamed.title())
             .help(help)
@@ -153,7 +153,7 @@ fn places(
             });
             if found.is_none() && (carried || !loads.contains(column)) {
                 let message = format!("the factors have no column `{}`", wanted.name);
-                let help = "factor the log anew with this program";
+                let help = "factor the log again with this program";
                 problems.push(
                     Problem::new(Code::FACTORS, message)
                         .file(run.title())

@@ -22,7 +22,8 @@ use crate::{
 const NAMES: usize = 5;
 
 /// Help that suits any robot.
-const WEIGHED: &str = "weigh a payload, give its mass in [identification.known] and record runs with it and without it";
+const WEIGHED: &str =
+    "weigh a payload, give its mass in [identification.known], and record runs with and without it";
 
 /// Columns of a model, split into those of known and of unknown parameters.
 #[derive(Debug)]
@@ -42,7 +43,7 @@ impl Split {
     pub(super) fn new(model: &dyn Model, runs: &[Log], settings: &Settings) -> Result<Self, Error> {
         let info = model.info();
         if settings.known.is_empty() {
-            let message = "gains are not determined: no parameter is known, so that gains and parameters have a factor in common";
+            let message = "gains are not determined: without a known parameter, gains and parameters have a common factor";
             return Err(Problem::new(Code::GAINS, message).help(WEIGHED).into());
         }
         let payload = PayloadUse::of(&info, runs)?;
@@ -94,7 +95,7 @@ fn found(
                 Problem::new(Code::GAINS, format!(
                     "gains are not determined: `{name}` is known, but no run carries the payload"
                 ))
-                .help("record runs with the payload, too, and say which they are (--payload-data)"),
+                .help("also record runs with the payload, and mark them with --payload-data"),
             );
         } else {
             let problem = Problem::new(Code::GAINS, format!("the robot has no parameter `{name}`"));
@@ -125,7 +126,10 @@ fn scaleless(
     let problem =
         |why: String| Problem::new(Code::GAINS, format!("gains are not determined: {why}"));
     if value == 0.0 {
-        return problem(format!("{own} is known to be zero, which fixes no scale")).help(WEIGHED);
+        return problem(format!(
+            "{own} is known to be zero, which does not determine the scale"
+        ))
+        .help(WEIGHED);
     }
     if others.is_empty() {
         return problem(format!("{own} has no effect on the torques")).help(WEIGHED);
@@ -141,8 +145,8 @@ fn scaleless(
     let is_load = columns.indices(true).contains(&column);
     match payload {
         PayloadUse::Regrouped if is_load => {
-            problem(why).help("all runs carry the payload: record some without it, too")
+            problem(why).help("all runs carry the payload: also record some without it")
         }
-        _ => problem(why).help(format!("{WEIGHED}, or give the values of these, too")),
+        _ => problem(why).help(format!("{WEIGHED}, or also give the values of these")),
     }
 }

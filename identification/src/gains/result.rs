@@ -84,14 +84,14 @@ impl Gains {
         let wrong: Vec<&DriveGain> = self.drives.iter().filter(|one| one.is_wrong()).collect();
         if let Some(factor) = self.common_factor() {
             return vec![format!(
-                "all drives give {factor:.4} times the torque that the description says: either all `torque_gain`s are wrong by one factor, or what is known in `[identification.known]` is: a mass that is {factor:.4} times as large as the true one does the same"
+                "all drives give {factor:.4} times the described torque: either all `torque_gain`s are wrong by one factor, or the known values in `[identification.known]` are: a mass that is {factor:.4} times the true one has the same effect"
             )];
         }
         wrong
             .into_iter()
             .map(|one| {
                 format!(
-                    "the drive of `{}` gives {:.4} times the torque that the description says, with a standard deviation of {:.4}: check its `torque_gain`",
+                    "the drive of `{}` gives {:.4} times the described torque, with a standard deviation of {:.4}: check its `torque_gain`",
                     one.actuator, one.factor, one.deviation
                 )
             })

@@ -67,7 +67,7 @@ pub(super) fn size(line: &Factor) -> f64 {
 /// The problem of gains that the data do not determine, and why.
 pub(super) fn undetermined(actuators: &[String], why: &str) -> Error {
     let message = format!(
-        "gains are not determined: the data do not tell {} of {}{why}",
+        "gains are not determined: the data do not determine {} of {}{why}",
         if actuators.len() == 1 {
             "that"
         } else {
@@ -76,6 +76,6 @@ pub(super) fn undetermined(actuators: &[String], why: &str) -> Error {
         actuators.join(", ")
     );
     Problem::new(Code::GAINS, message)
-        .help("let all drives move and accelerate what is known, with the payload and without it, or give more that is known, such as the first moments of the payload")
+        .help("let all drives accelerate the known bodies, with and without the payload, or give more known values, such as the first moments of the payload")
         .into()
 }

@@ -103,7 +103,7 @@ pub(super) fn solve(equations: &Equations, selection: &Selection) -> Result<Solu
 fn not_converged() -> Error {
     Problem::new(
         Code::GAINS,
-        "gains are not determined: noise outweighs what the data tell of them",
+        "gains are not determined: their effect is below the noise",
     )
     .help("record longer runs with larger accelerations, and carry a heavier payload")
     .into()

@@ -80,7 +80,8 @@ pub fn gravity_direction(
     let described = Vector3::from(fields.described);
     let Some(frame) = Frame::new(described) else {
         let message = "the direction of gravity is not determined: there is no gravity";
-        let help = "give the acceleration of gravity in the description, about where it points";
+        let help =
+            "give the acceleration of gravity and its approximate direction in the description";
         return Err(Problem::new(Code::GRAVITY_DIRECTION, message)
             .help(help)
             .into());
@@ -89,9 +90,9 @@ pub fn gravity_direction(
     let turns = free_turns(&extended, &frame, settings.seed);
     if turns.is_empty() {
         return Err(Problem::new(Code::GRAVITY_DIRECTION,
-            "the direction of gravity is not determined: wherever it points, parameters of the robot explain the same torques",
+            "the direction of gravity is not determined: for any direction, some parameters of the robot explain the torques",
         )
-        .help("leave out `gravity_direction`; offsets and moments take in what a tilt does")
+        .help("leave out `gravity_direction`; offsets and moments absorb a tilt")
         .into());
     }
     let frame = frame.confined(&turns);

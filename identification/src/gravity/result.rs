@@ -109,7 +109,7 @@ impl GravityDirection {
         let mut warnings = Vec::new();
         if self.significant {
             warnings.push(format!(
-                "gravity points {:.2} deg away from where the description has it, with a standard deviation of {:.2} deg: everything is identified with gravity = [{x}, {y}, {z}], which belongs into the description",
+                "gravity deviates by {:.2} deg from the description, with a standard deviation of {:.2} deg: all results use gravity = [{x}, {y}, {z}]; write it into the description",
                 self.tilt.to_degrees(),
                 self.tilt_deviation.to_degrees()
             ));
@@ -117,7 +117,7 @@ impl GravityDirection {
         if let Some(axis) = self.undetermined_about {
             let [x, y, z] = axis.map(|one| (one * 1e4).round() / 1e4);
             warnings.push(format!(
-                "the direction of gravity is determined in one direction only: turning it about [{x}, {y}, {z}] changes nothing that parameters do not explain",
+                "the direction of gravity is only partly determined: parameters explain a rotation about [{x}, {y}, {z}] equally well",
             ));
         }
         warnings

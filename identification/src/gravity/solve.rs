@@ -92,7 +92,8 @@ pub(super) fn solve(
         }
     }
     if change.is_nan() || change > CONVERGED {
-        let message = "the direction of gravity is not determined: steps towards it do not end";
+        let message =
+            "the direction of gravity is not determined: the estimation does not converge";
         let help =
             "check the geometry, signs and units of the log first, without `gravity_direction`";
         return Err(Problem::new(Code::GRAVITY_DIRECTION, message)

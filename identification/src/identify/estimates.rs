@@ -440,7 +440,7 @@ fn nothing_moves(prepared: &Prepared, system: &System) -> Problem {
         .help("record runs in which the robot moves");
     }
     problem(format!(
-        "the data determine no parameter: `standstill_velocity` leaves out {still} of {} equations",
+        "the data determine no parameter: `standstill_velocity` skips {still} of {} equations",
         still + left
     ))
     .help("lower `standstill_velocity` of [identification], or check the unit of the positions, `position_scale` of [data]")
@@ -455,7 +455,7 @@ fn quality_warnings(system: &System, base: &Estimation) -> Vec<String> {
         && matches!(system.projection, Projection::Actuators(_))
     {
         warnings.push(format!(
-            "{label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or trust case 1",
+            "{label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or use case 1",
             partition.largest, partition.run, partition.time
         ));
     }

@@ -46,7 +46,7 @@ impl Companions {
         let mut found = Self::default();
         for log in runs {
             let own = log.instruments().ok_or_else(|| {
-                Problem::new(Code::INSTRUMENTS, "there is no simulated motion beside the run")
+                Problem::new(Code::INSTRUMENTS, "there is no simulated motion of the run")
                     .file(log.name())
                     .help("describe the robot's controller, or set `instruments` to \"periods\" or \"none\"")
             })?;

@@ -315,7 +315,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
         warnings.push(String::from(
             match prepared.columns.loads().len() {
                 0 | 1 => "the payload's parameters are not identifiable without unloaded runs: they are regrouped into the platform's",
-                _ => "no run is without payload: the parameters of one payload are regrouped into the robot's, those of the others are told less its own",
+                _ => "no run is without payload: the parameters of one payload are regrouped into the robot's, and those of the others are differences from it",
             },
         ));
     }
@@ -326,7 +326,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
             && !prepared.columns.has_load(name)
         {
             warnings.push(format!(
-                "{}: no run identified from carries the payload `{name}` of this cross-validation run: it is predicted without",
+                "{}: no training run carries the payload `{name}` of this validation run: it is predicted without",
                 other.name()
             ));
             continue;
@@ -338,7 +338,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
         };
         if !known {
             warnings.push(format!(
-                "{}: the cross-validation run {} the payload, unlike the runs identified from",
+                "{}: the validation run {} the payload, unlike the training runs",
                 other.name(),
                 if other.payload() {
                     "carries"
@@ -358,7 +358,7 @@ fn mostly_still(prepared: &Prepared) -> Option<String> {
     let left: usize = system.lines.iter().map(Factor::equations).sum();
     (still > left).then(|| {
         format!(
-            "{still} of {} equations are left out at standstill: check the unit of the positions, `position_scale` of [data], and `standstill_velocity` of [identification]",
+            "{still} of {} equations are skipped at standstill: check the unit of the positions, `position_scale` of [data], and `standstill_velocity` of [identification]",
             still + left
         )
     })

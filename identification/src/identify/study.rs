@@ -271,7 +271,7 @@ fn warning(row: &RankedProjection, platform: &RankedProjection) -> Option<String
         )
     };
     if row.relative_error_percent < platform.relative_error_percent {
-        text.push_str("; its relative error, lower than that of case 1, does not speak for it");
+        text.push_str("; its relative error below that of case 1 is no reason to use it");
     }
     Some(text)
 }

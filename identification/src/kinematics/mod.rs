@@ -278,7 +278,7 @@ fn short_help(log: &Log) -> String {
     if seconds < SHORT_RUN {
         let seconds = significant(seconds, 2);
         format!(
-            "{longer}; the run lasts {seconds} s: is the time in minutes? It has to be in seconds"
+            "{longer}; the run lasts {seconds} s: is the time in minutes? It must be in seconds"
         )
     } else {
         longer.to_owned()

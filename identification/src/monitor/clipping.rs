@@ -13,7 +13,7 @@ pub(super) fn clipping(actuator: &str, part: f64, usual: f64, levels: &[String])
         unit: "%",
         threshold: 100.0 * usual,
         message: format!(
-            "the torque is clipped at {} for {:.1} % of the time: the drive or its measurement saturates, and parameters come out too small; move less fast, or leave the run out",
+            "the torque is clipped at {} for {:.1} % of the time: the drive or its measurement saturates, and parameters are underestimated; move more slowly, or leave the run out",
             levels.join(" and "),
             100.0 * part
         ),

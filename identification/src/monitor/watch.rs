@@ -214,7 +214,7 @@ impl Monitor {
                 unit: "N or N m",
                 threshold: 0.0,
                 message: String::from(
-                    "the torque is zero throughout: it was not recorded, or stands in another column",
+                    "the torque is zero throughout: it was not recorded, or is in another column",
                 ),
             })
             .collect()
@@ -231,7 +231,7 @@ impl Monitor {
                 unit: "",
                 threshold: 0.0,
                 message: format!(
-                    "the {what} is that of `{}`, sample by sample, but for a factor and its zero: one column was taken twice; check the names of the columns in the table [data]",
+                    "the {what} equals that of `{}` in each sample up to scale and offset: one column was used twice; check the names of the columns in the table [data]",
                     name(i)
                 ),
             };
@@ -270,7 +270,7 @@ impl Monitor {
                 unit: "steps",
                 threshold: STILL_STEPS,
                 message: String::from(
-                    "the robot stands still: the positions change by no more than their noise, so the run tells nothing about inertia; leave it out",
+                    "the robot stands still: the positions change by no more than their noise, so the run does not determine inertia; leave it out",
                 ),
             });
             return suspicions;
@@ -370,7 +370,7 @@ impl Monitor {
                 _ => None,
             },
             message: format!(
-                "positions jump between samples, first at t = {:.4} s (sample {first}): samples are lost or repeated; record the run anew, or cut it there",
+                "positions jump between samples, first at t = {:.4} s (sample {first}): samples are lost or repeated; record the run again, or cut it there",
                 first as f64 / self.frequency
             ),
         })

@@ -292,7 +292,7 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
         }
         if found[column].is_none() {
             let message = format!(
-                "no combination of joints moves as the friction `{}` asks for",
+                "no combination of joints has the motion that the friction `{}` needs",
                 parameter.name
             );
             let help =

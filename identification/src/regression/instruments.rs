@@ -95,7 +95,7 @@ impl<'a> Companion<'a> {
         let own = own.ok_or_else(|| {
             Problem::new(
                 Code::INSTRUMENTS,
-                "the instruments are not in step with the run",
+                "the instruments are not synchronous with the run",
             )
         })?;
         Ok(own)

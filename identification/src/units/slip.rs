@@ -145,7 +145,7 @@ impl Slip {
         let unit = self.unit;
         match self.signal {
             Signal::Time => format!(
-                "is the time in {unit}? It has to be in seconds: {} the column by {}",
+                "is the time in {unit}? It must be in seconds: {} the column by {}",
                 if self.factor > 1.0 {
                     "divide"
                 } else {

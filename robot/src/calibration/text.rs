@@ -81,9 +81,7 @@ fn heading(calibration: &Calibration) -> String {
         )
     };
     let lines: String = calibration.estimated.iter().map(line).collect();
-    format!(
-        "# Calibrated from the closure of the loops; added to what was described before:\n{lines}\n"
-    )
+    format!("# Calibrated from the closure of the loops; added to the described values:\n{lines}\n")
 }
 
 fn signed(one: &CalibratedParameter) -> String {

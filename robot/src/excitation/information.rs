@@ -76,8 +76,7 @@ impl Question {
         let sizes = bench.info.sizes;
         if sizes.actuators < sizes.dof {
             let message = "the robot has fewer actuators than coordinates";
-            let help =
-                "exciting runs are searched for robots whose actuators drive all coordinates";
+            let help = "the search for exciting runs requires that actuators drive all coordinates";
             return Err(Problem::new(Code::EXCITATION, message).help(help).into());
         }
         let projections = if sizes.actuators == sizes.dof {

@@ -106,7 +106,7 @@ pub(super) fn unlimited_speeds(
         .map(|(name, (peak, unit))| format!("`{name}` {} {unit}", significant(*peak, 3)))
         .collect();
     Some(format!(
-        "nothing limits the speeds (`velocity` of [excitation] does): the runs that were found reach {}",
+        "speeds have no limit (`velocity` of [excitation] sets one): the computed runs reach {}",
         all.join(", ")
     ))
 }

@@ -177,7 +177,8 @@ impl<'a> Task<'a> {
             .true_values()
             .filter(|all| all.values().any(|value| *value != 0.0));
         if truth.is_none() {
-            let words = "without [experiment.parameters] torques are not predicted, and deviations are not told";
+            let words =
+                "without [experiment.parameters] torques and standard deviations are not predicted";
             assumed.push(words.to_owned());
         }
         let bench = bench(robot, truth.as_ref())?;
@@ -306,7 +307,7 @@ impl<'a> Task<'a> {
             .map(|limit| format!("{} ({})", limit.kind.name(), limit.origin.words()))
             .collect();
         let message = format!(
-            "no motion about home keeps all limits: {}",
+            "no motion around home satisfies all limits: {}",
             limits.join(", ")
         );
         let help = "give wider limits in the table [excitation], a smaller `position` or a slower `fundamental`";
@@ -326,7 +327,7 @@ impl<'a> Task<'a> {
         let mut assumed = self.assumed.clone();
         let count = chains.hundred.len();
         if chains.hurried && count < RANDOM {
-            let words = format!("the time was enough for {count} random series, not {RANDOM}");
+            let words = format!("the time sufficed for only {count} random series, not {RANDOM}");
             assumed.push(words);
         }
         let hundred = chains.hundred.iter();
@@ -339,7 +340,7 @@ impl<'a> Task<'a> {
         let judged = |runs: &[(Frame, Trajectory)]| self.judged(runs, whole / duration(runs));
         let described = judged(&self.described);
         if described.is_none() && !self.described.is_empty() {
-            assumed.push("the robot does not reach the runs of the description".to_owned());
+            assumed.push("the robot can't reach the runs of the description".to_owned());
         }
         let names_in = frame::coordinates(robot.description()).into_iter();
         let coordinates = self.bench.info.coordinates.iter().zip(names_in);
@@ -438,11 +439,11 @@ fn noise(robot: &Robot, info: &Info<'_>, assumed: &mut Vec<String>) -> Vec<f64> 
     let limits = experiment.and_then(|e| e.torque_limit.as_ref());
     match limits.filter(|all| all.iter().all(|one| *one > 0.0)) {
         Some(limits) => {
-            assumed.push("the torque noise is taken for 1 % of `torque_limit`".to_owned());
+            assumed.push("the torque noise is assumed as 1 % of `torque_limit`".to_owned());
             limits.iter().map(|limit| NOISE_SHARE * limit).collect()
         }
         None => {
-            assumed.push("the torque noise is taken for 1 N m or 1 N".to_owned());
+            assumed.push("the torque noise is assumed as 1 N m or 1 N".to_owned());
             vec![1.0; info.sizes.actuators]
         }
     }

@@ -9,8 +9,7 @@ use std::fmt::Write;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
 /// Heading of the runs.
-const COMMENT: &str =
-    "\n# Found by `overact excite`: they determine the base parameters best inside the limits.\n";
+const COMMENT: &str = "\n# Computed by `overact excite`: they determine the base parameters best within the limits.\n";
 
 /// Formats runs as `[[experiment.run]]` tables.
 ///
@@ -81,7 +80,7 @@ pub(super) fn description(robot: &Robot, tables: &str) -> Result<String, Error> 
         document.map_err(|error| problem(format!("the runs can't be written: {}", error.message())))
     };
     let (mut document, found) = (read(&source.text)?, read(tables)?);
-    let place = || problem("the runs of the description are no tables of their own".to_owned());
+    let place = || problem("the runs of the description are not separate tables".to_owned());
     let mut implied = Table::new();
     implied.set_implicit(true);
     let experiment = document.entry("experiment").or_insert(Item::Table(implied));

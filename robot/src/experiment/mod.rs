@@ -175,9 +175,9 @@ impl VirtualExperiment<'_> {
         }
         let problem = Problem::new(
             Code::NO_EXPERIMENT,
-            "all runs of the experiment are held out, and none is left to identify from",
+            "all runs of the experiment are validation runs, so there are no training data",
         );
-        let help = "hold out fewer of them";
+        let help = "use fewer of them for validation";
         Err(Error::Problems(vec![
             problem.file(self.robot.file()).help(help),
         ]))

@@ -55,7 +55,7 @@ fn a_dualv_tells_an_encoder_offset_and_a_long_link() {
         found
             .remarks
             .iter()
-            .any(|remark| remark.contains("no scale"))
+            .any(|remark| remark.contains("the scale"))
     );
     // The calibrated description keeps the author's text and needs no further calibration.
     let right = described.calibrated(&found).expect("a description");
@@ -223,7 +223,8 @@ fn encoder_offsets_of_robots_without_a_platform_are_calibrated() {
             names.iter().all(|name| name.starts_with("offset_")),
             "{names:?}"
         );
-        let is_told = |remark: &String| remark.contains("robots with a platform only");
+        let is_told =
+            |remark: &String| remark.contains("calibration of lengths requires a platform");
         assert!(found.remarks.iter().any(is_told), "{:?}", found.remarks);
         if scope == CalibrationScope::Smallest {
             check(&found, &[("offset_output", offset)]);

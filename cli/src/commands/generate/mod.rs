@@ -142,7 +142,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let inputs = arguments.files.iter().chain(&arguments.parameters);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
-    // C files are named after the robots, which are not read yet.
+    // C files are named after the robots, which are not supported yet.
     if !arguments.check && arguments.lang == Language::Rust {
         let mut outputs = inputs
             .iter()

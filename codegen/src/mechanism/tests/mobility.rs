@@ -96,7 +96,7 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
         ],
     );
     let twice = said(&with_independent("\"z\", \"z\""));
-    assert!(twice.contains("`z` is there twice"), "{twice}");
+    assert!(twice.contains("`z` occurs twice"), "{twice}");
     let all = said(&with_independent(
         "\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"",
     ));

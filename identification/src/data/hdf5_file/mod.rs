@@ -49,7 +49,7 @@ impl Hdf5 {
     /// Opens a file and lists its datasets.
     ///
     /// # Errors
-    /// A file that cannot be read, is cut off or broken.
+    /// A file that cannot be read, is truncated or broken.
     pub(super) fn open(file: String, path: &Path) -> Result<Self, Error> {
         let bytes = std::fs::metadata(path)
             .map_err(|error| unreadable(&file, &error))?

@@ -20,22 +20,20 @@ pub(super) fn is_number(kind: &Datatype) -> std::result::Result<(), &'static str
         Datatype::FixedPoint { size: 1..=8, .. } => Ok(()),
         Datatype::FloatingPoint { size: 4 | 8, .. } => Ok(()),
         Datatype::FixedPoint { .. } => {
-            Err("holds whole numbers of more than 64 bits, which are not read")
+            Err("has integers of more than 64 bits, which are not supported")
         }
-        Datatype::FloatingPoint { .. } => {
-            Err("holds floating numbers of other sizes than 32 and 64 bits, which are not read")
-        }
+        Datatype::FloatingPoint { .. } => Err(
+            "has floating-point numbers of other sizes than 32 and 64 bits, which are not supported",
+        ),
         Datatype::Enum { base, .. } => is_number(base),
         Datatype::String { .. } | Datatype::VarLen { .. } => {
-            Err("holds texts or lists of any length, not numbers")
+            Err("has texts or lists of variable length, not numbers")
         }
         Datatype::Compound { .. } => {
-            Err("holds structures (a table, or complex numbers), not single numbers")
+            Err("has structures (a table, or complex numbers), not single numbers")
         }
-        Datatype::Reference { .. } => {
-            Err("holds references to others (a cell array?), not numbers")
-        }
-        _ => Err("holds no single numbers"),
+        Datatype::Reference { .. } => Err("has references (a cell array?), not numbers"),
+        _ => Err("has no single numbers"),
     }
 }
 
@@ -45,7 +43,7 @@ impl H5Type for Number {
     }
 
     fn from_bytes(bytes: &[u8], kind: &Datatype) -> Result<Self> {
-        let bad = || Error::InvalidData(String::from("an element is no number"));
+        let bad = || Error::InvalidData(String::from("an element is not a number"));
         let found = match kind {
             Datatype::FixedPoint {
                 size,

@@ -155,7 +155,7 @@ impl Block {
         if self.values.len() as u64 == count {
             Ok(())
         } else {
-            let message = String::from("it has fewer numbers than it says");
+            let message = String::from("it has fewer numbers than declared");
             Err(hdf5_reader::error::Error::InvalidData(message))
         }
     }

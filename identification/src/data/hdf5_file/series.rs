@@ -99,7 +99,7 @@ impl Series {
 /// The problem of a file that cannot be opened.
 pub(super) fn broken(file: &str, why: &str) -> Problem {
     let message = format!("the HDF5 file can't be read: {}", legible(why));
-    Problem::new(Code::LOG_FORMAT, message)
-        .file(file)
-        .help("if it was copied or its writer was stopped, copy or write it again; else export CSV")
+    Problem::new(Code::LOG_FORMAT, message).file(file).help(
+        "if it was copied or its writer was stopped, copy or write it again; otherwise export CSV",
+    )
 }

@@ -79,7 +79,11 @@ impl Chunk {
                     unpacking.map_err(|error| format!("it can't be unpacked: {error}"))?;
                 Unpacking::Zstandard(Box::new(unpacking))
             }
-            other => return Err(format!("it is packed by `{other}`, which is not read")),
+            other => {
+                return Err(format!(
+                    "it is compressed by `{other}`, which is not supported"
+                ));
+            }
         };
         Ok(Self {
             input,
@@ -102,7 +106,7 @@ impl Chunk {
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> Result<(), String> {
         let count = bytes.len() as u64;
         if count > self.left() {
-            return Err(String::from("a record ends behind its end"));
+            return Err(String::from("a record ends after its end"));
         }
         let read = match &mut self.input {
             Unpacking::None(input) => input.read_exact(bytes),
@@ -110,7 +114,7 @@ impl Chunk {
             Unpacking::Zstandard(input) => input.read_exact(bytes),
         };
         read.map_err(|error| match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => String::from("it has fewer bytes than it says"),
+            std::io::ErrorKind::UnexpectedEof => String::from("it has fewer bytes than declared"),
             _ => format!("it can't be unpacked: {error}"),
         })?;
         self.position += count;
@@ -141,7 +145,7 @@ impl Chunk {
     pub(super) fn check(&self) -> Result<(), String> {
         match self.said.sum {
             Some(sum) if sum != self.sum.clone().finalize() => Err(String::from(
-                "its checksum is another one: some bytes were changed",
+                "its checksum does not match: some bytes were changed",
             )),
             _ => Ok(()),
         }

@@ -48,13 +48,13 @@ impl<'a> JointState<'a> {
     pub(super) fn read(message: &'a [u8]) -> Result<Self, String> {
         let (start, rest) = message
             .split_at_checked(4)
-            .ok_or("is cut off in its first four bytes")?;
+            .ok_or("is truncated in its first four bytes")?;
         let order = match start {
             [0, 0, ..] => Order::Highest,
             [0, 1, ..] => Order::Lowest,
             _ => {
                 return Err(format!(
-                    "is in the representation {:#04x} {:#04x}, and not in plain CDR",
+                    "has the representation {:#04x} {:#04x} instead of plain CDR",
                     start[0], start[1]
                 ));
             }
@@ -64,7 +64,7 @@ impl<'a> JointState<'a> {
             place: 0,
             order,
         };
-        let cut_off = || String::from("is cut off, or no JointState");
+        let cut_off = || String::from("is truncated, or not a JointState");
         let stamp = (
             fields.word().ok_or_else(cut_off)?.cast_signed(),
             fields.word().ok_or_else(cut_off)?,
@@ -115,7 +115,7 @@ impl<'a> Fields<'a> {
     /// A text, whose length includes the terminating zero byte.
     fn text(&mut self) -> Result<&'a str, String> {
         let bytes = self.word().and_then(|count| self.take(1, count as usize));
-        let bytes = bytes.ok_or("is cut off, or no JointState")?;
+        let bytes = bytes.ok_or("is truncated, or not a JointState")?;
         let bytes = bytes.strip_suffix(b"\0").unwrap_or(bytes);
         std::str::from_utf8(bytes).map_err(|_| String::from("has a name that is not UTF-8"))
     }
@@ -174,7 +174,7 @@ mod tests {
         let told = JointState::read(&other).expect_err("another representation");
         assert_eq!(
             told,
-            "is in the representation 0x00 0x07, and not in plain CDR"
+            "has the representation 0x00 0x07 instead of plain CDR"
         );
     }
 }

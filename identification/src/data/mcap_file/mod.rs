@@ -150,7 +150,7 @@ fn without_joints(file: &str, topics: &Topics) -> Problem {
         "the MCAP file has no messages of the type sensor_msgs/msg/JointState in CDR; it has {}",
         listed.join(", ")
     );
-    let help = "record the topic on which the drives tell their positions and efforts, as ROS 2 does it; else export CSV";
+    let help = "record the topic with positions and efforts of the drives, as in ROS 2; otherwise export CSV";
     Problem::new(Code::LOG_COLUMNS, message)
         .file(file)
         .help(help)

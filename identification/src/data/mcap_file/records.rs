@@ -125,7 +125,7 @@ impl Records {
         let (kind, length) = kind_and_length(header);
         if length > self.end - self.position {
             return Err(format!(
-                "the record at byte {place} ends behind the end of the file"
+                "the record at byte {place} ends after the end of the file"
             ));
         }
         match kind {
@@ -149,7 +149,7 @@ impl Records {
                 }
                 return Ok(Outside::Record(Record::Message(channel, time)));
             }
-            MESSAGE => return Err(format!("the message at byte {place} is cut off")),
+            MESSAGE => return Err(format!("the message at byte {place} is truncated")),
             CHUNK => {
                 let chunk = self.begin(place, length);
                 self.chunk = Some(
@@ -164,7 +164,7 @@ impl Records {
 
     /// Starts a chunk of `length` bytes, and skips it in the file.
     fn begin(&mut self, place: u64, length: u64) -> Result<Chunk, String> {
-        let cut_off = || String::from("it is cut off");
+        let cut_off = || String::from("it is truncated");
         let end = self.position + length;
         let mut beginning = [0; chunk::BEGINNING];
         let mut word = [0; 4];
@@ -199,7 +199,7 @@ impl Records {
 
     fn read(&mut self, bytes: &mut [u8]) -> Result<(), String> {
         let read = self.input.read_exact(bytes);
-        read.map_err(|_| format!("the record at byte {} is cut off", self.position))?;
+        read.map_err(|_| format!("the record at byte {} is truncated", self.position))?;
         self.position += bytes.len() as u64;
         Ok(())
     }
@@ -237,7 +237,7 @@ fn inside(
     chunk.read(&mut header)?;
     let (kind, length) = kind_and_length(header);
     if length > chunk.left() {
-        return Err(String::from("a record ends behind its end"));
+        return Err(String::from("a record ends after its end"));
     }
     let mut keep = |chunk: &mut Chunk, length: u64| {
         content.resize(kept(length)?, 0);
@@ -257,7 +257,7 @@ fn inside(
             }
             Ok(Some(Record::Message(channel, time)))
         }
-        MESSAGE => Err(String::from("a message is cut off")),
+        MESSAGE => Err(String::from("a message is truncated")),
         _ => chunk.skip(length).map(|()| None),
     }
 }

@@ -88,7 +88,7 @@ impl<'a> Rows<'a> {
         for (wanted, value) in self.wanted.iter().zip(values) {
             *value = match wanted.source {
                 Source::Stamp if self.samples > 0 && state.stamp == (0, 0) => {
-                    let help = "take the time of the recorder, `time = \"log_time\"`";
+                    let help = "use the time of the recorder, `time = \"log_time\"`";
                     problems.push(problem(String::from("has no stamp: it is zero")).help(help));
                     continue;
                 }
@@ -127,9 +127,9 @@ impl<'a> Rows<'a> {
                 && *value <= before
             {
                 let what = format!(
-                    "has the time {value} s, which is not behind that of the message before, {before} s"
+                    "has the time {value} s, which is not later than the previous message, {before} s"
                 );
-                let help = "its clock stood or was set back, or messages came in another order: cut the log there, or take the other one of `time` and `log_time`";
+                let help = "its clock stopped or was reset, or messages are out of order: cut the log there, or use the other one of `time` and `log_time`";
                 problems.push(problem(what).column(wanted.name).help(help));
             }
         }
@@ -186,5 +186,5 @@ fn other_joints(problem: impl Fn(String) -> Problem, first: &[String], own: &[&s
         names(&mut own.iter().copied()),
     );
     let message = format!("{what}: {}, and not {}", legible(&own), legible(&first));
-    problem(message).help("several publishers share this topic, it seems: record each on a topic of its own, or export CSV")
+    problem(message).help("several publishers seem to share this topic: record each on a separate topic, or export CSV")
 }

@@ -108,10 +108,10 @@ impl Topic {
 /// The problem of a file that cannot be read.
 pub(super) fn broken(file: &str, why: &str) -> Problem {
     let message = format!(
-        "the file starts as MCAP does, but can't be read: {}",
+        "the file starts like MCAP, but can't be read: {}",
         legible(why)
     );
     Problem::new(Code::LOG_FORMAT, message).file(file).help(
-        "if its writer was stopped, `mcap recover FILE -o NEW.mcap` saves what there is; if it was copied, copy it again",
+        "if its writer was stopped, use `mcap recover FILE -o NEW.mcap`; if it was copied, copy it again",
     )
 }

@@ -148,7 +148,7 @@ impl Topics {
 /// # Errors
 /// A file with an invalid end.
 fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
-    let cut_off = || String::from("it is cut off: its end is missing");
+    let cut_off = || String::from("it is truncated: its end is missing");
     let start = length.checked_sub(END).ok_or_else(cut_off)?;
     let mut end = [0; END as usize];
     let mut input = &**file;
@@ -162,15 +162,13 @@ fn summary(file: &Arc<File>, length: u64) -> Result<Option<u64>, String> {
     let (kind, rest) = (end[0], &end[1..]);
     let mut fields = Fields(rest);
     if kind != FOOTER || fields.long() != Some(20) {
-        return Err(String::from(
-            "its last record is not the one that ends a file",
-        ));
+        return Err(String::from("its last record is not a footer"));
     }
     match fields.long() {
         None | Some(0) => Ok(None),
         Some(place) if place < start => Ok(Some(place)),
         Some(place) => Err(format!(
-            "its summary is said to start at byte {place}, behind its end"
+            "its summary should start at byte {place}, after its end"
         )),
     }
 }

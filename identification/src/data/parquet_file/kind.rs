@@ -32,15 +32,15 @@ impl Kind {
             Type::INT32 | Type::INT64 => Self::whole(column),
             // Nanoseconds after conversion; the type has no other use.
             Type::INT96 => Ok(Self::Instant(1_000_000_000)),
-            Type::BYTE_ARRAY => Err(String::from("holds texts or bytes, not numbers")),
+            Type::BYTE_ARRAY => Err(String::from("has texts or bytes, not numbers")),
             Type::FIXED_LEN_BYTE_ARRAY => Err(match column.logical_type_ref() {
                 Some(LogicalType::Float16) => {
-                    String::from("holds numbers of 16 bits, which are not read")
+                    String::from("has 16-bit numbers, which are not supported")
                 }
                 Some(LogicalType::Decimal(_)) => {
-                    String::from("holds long decimals, which are not read")
+                    String::from("has long decimals, which are not supported")
                 }
-                _ => String::from("holds bytes, not numbers"),
+                _ => String::from("has bytes, not numbers"),
             }),
         }
     }
@@ -52,13 +52,13 @@ impl Kind {
             let parts = scale.and_then(|scale| 10_i64.checked_pow(scale));
             parts
                 .map(Self::Parts)
-                .ok_or_else(|| String::from("holds decimals of too many places"))
+                .ok_or_else(|| String::from("has decimals with too many places"))
         };
         match column.logical_type_ref() {
             Some(LogicalType::Timestamp(time)) => return Ok(Self::Instant(per_second(&time.unit))),
             Some(LogicalType::Time(time)) => return Ok(Self::Parts(per_second(&time.unit))),
             Some(LogicalType::Decimal(decimals)) => return decimal(decimals.scale),
-            Some(LogicalType::Date) => return Err(String::from("holds days, not numbers")),
+            Some(LogicalType::Date) => return Err(String::from("has days, not numbers")),
             Some(LogicalType::Integer(kind)) if !kind.is_signed => return Ok(Self::Unsigned),
             _ => {}
         }
@@ -69,7 +69,7 @@ impl Kind {
             ConvertedType::TIME_MILLIS => Ok(Self::Parts(1000)),
             ConvertedType::TIME_MICROS => Ok(Self::Parts(1_000_000)),
             ConvertedType::DECIMAL => decimal(column.type_scale()),
-            ConvertedType::DATE => Err(String::from("holds days, not numbers")),
+            ConvertedType::DATE => Err(String::from("has days, not numbers")),
             ConvertedType::UINT_8
             | ConvertedType::UINT_16
             | ConvertedType::UINT_32

@@ -59,7 +59,7 @@ impl Parquet {
     /// Opens a file.
     ///
     /// # Errors
-    /// A file that cannot be read, is cut off or broken.
+    /// A file that cannot be read, is truncated or broken.
     pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
         let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let metadata = ParquetMetaDataReader::new().parse_and_finish(&input);
@@ -193,10 +193,10 @@ fn columns(metadata: &FileMetaData) -> Vec<Column> {
 /// The problem of a file that cannot be opened.
 fn broken(file: &str, why: &str) -> Problem {
     let message = format!(
-        "the file starts as Parquet does, but can't be read: {}",
+        "the file starts like Parquet, but can't be read: {}",
         legible(why)
     );
-    Problem::new(Code::LOG_FORMAT, message)
-        .file(file)
-        .help("if it was copied or its writer was stopped, copy or write it again; else export CSV")
+    Problem::new(Code::LOG_FORMAT, message).file(file).help(
+        "if it was copied or its writer was stopped, copy or write it again; otherwise export CSV",
+    )
 }

@@ -69,7 +69,7 @@ impl Packing {
         // Pages of version 2 never compress their levels, which mark missing values.
         let split = bytes.split_at_checked(levels as usize);
         let unpacked = split
-            .ok_or_else(|| String::from("a page is cut off"))
+            .ok_or_else(|| String::from("a page is truncated"))
             .and_then(|(levels, packed)| self.unpacked(levels, packed));
         *bytes = unpacked.map_err(ParquetError::General)?.into();
         Ok(())
@@ -108,7 +108,7 @@ fn zstandard(packed: &mut &[u8], most: u64, page: &mut Vec<u8>) -> Result<(), St
     let frame = frame.into_frame_decoder();
     let told = frame.get_checksum_from_data();
     if told.is_some() && told != frame.get_calculated_checksum() {
-        return Err(broken("its checksum is another one"));
+        return Err(broken("its checksum does not match"));
     }
     Ok(())
 }
@@ -173,7 +173,7 @@ mod tests {
             assert_eq!(plain.buffer().as_ref(), packed);
             let told = packing.unpack(&mut page(vec![1], 2, true));
             let told = told.expect_err("no levels").to_string();
-            assert!(told.ends_with("a page is cut off"), "{told}");
+            assert!(told.ends_with("a page is truncated"), "{told}");
         }
     }
 
@@ -197,7 +197,7 @@ mod tests {
             assert!(packing.unpacked(b"", &packed).is_ok());
             for length in 1..packed.len() {
                 let told = packing.unpacked(b"", &packed[..length]);
-                let told = told.expect_err("cut off");
+                let told = told.expect_err("truncated");
                 assert!(told.starts_with("a page can't be unpacked: "), "{told}");
             }
             // Bytes from the end to the checksum; in gzip, the length follows it.

@@ -123,7 +123,7 @@ impl<'a> Rows<'a> {
     /// The problem of a file that cannot be read further.
     fn broken(&self, column: Option<usize>, why: &str) -> Problem {
         let from = format!("from sample {} on: {}", self.samples, legible(why));
-        let help = "if the file was copied or its writer was stopped, copy or write it again; else export CSV";
+        let help = "if the file was copied or its writer was stopped, copy or write it again; otherwise export CSV";
         let Some(column) = column else {
             let message = format!("the Parquet file can't be read {from}");
             return Problem::new(Code::LOG_FORMAT, message)
@@ -193,7 +193,7 @@ impl StoredRows for Rows<'_> {
 }
 
 /// Description of an unsupported compression.
-const NOT_READ: &str = "which is not read";
+const NOT_READ: &str = "which is not supported";
 
 /// Opens a column of a row group.
 fn open(
@@ -202,8 +202,8 @@ fn open(
     rows: usize,
 ) -> Result<ColumnReader, String> {
     match chunk.compression() {
-        Compression::BROTLI(_) => return Err(format!("it is packed by Brotli, {NOT_READ}")),
-        Compression::LZO => return Err(format!("it is packed by LZO, {NOT_READ}")),
+        Compression::BROTLI(_) => return Err(format!("it is compressed by Brotli, {NOT_READ}")),
+        Compression::LZO => return Err(format!("it is compressed by LZO, {NOT_READ}")),
         _ => {}
     }
     // The library assumes valid positions of chunks.
@@ -213,7 +213,7 @@ fn open(
     let end = start.ok().zip(size.ok());
     let end = end.and_then(|(start, size)| start.checked_add(size));
     if end.is_none_or(|end| end > input.len()) {
-        return Err(String::from("it ends behind the end of the file"));
+        return Err(String::from("it ends after the end of the file"));
     }
     let pages = Pages::new(input, chunk, rows);
     let pages = pages.map_err(|error| error.to_string())?;

@@ -67,23 +67,20 @@ pub(crate) fn periods(log: &Log, period: Option<f64>) -> Result<Periods, Error> 
     let samples = match period {
         Some(period) => together(log, period)?,
         None => find::period(log)?.ok_or_else(|| {
-            Problem::new(
-                Code::PERIODS,
-                "no period is found after which the motion repeats itself",
-            )
-            .file(log.name())
-            .help("record at least two periods, or give `period` if the motion is periodic")
+            Problem::new(Code::PERIODS, "no period of the motion was found")
+                .file(log.name())
+                .help("record at least two periods, or give `period` if the motion is periodic")
         })?,
     };
     let periods = gathered(log, samples)?;
     if periods.difference > LARGEST_DIFFERENCE {
         return Err(Problem::new(Code::PERIODS, format!(
-            "the motion does not repeat itself after {:.6} s: the periods differ by {:.1} % of the motion",
+            "the motion does not repeat after {:.6} s: the periods differ by {:.1} % of the motion",
             samples as f64 / log.sampling_frequency(),
             100.0 * periods.difference.sqrt()
         ))
         .file(log.name())
-        .help("correct `period`, or cut the run so that it begins when the motion has settled")
+        .help("correct `period`, or start the run when the motion has settled")
         .into());
     }
     Ok(periods)
@@ -119,14 +116,14 @@ fn together(log: &Log, period: f64) -> Result<usize, Error> {
     });
     if let Some(samples) = whole.filter(|samples| samples * log.actuators() > LARGEST_PERIOD) {
         return problem(
-            format!("a period of {period} s has {samples} samples: too many to be kept in memory"),
+            format!("a period of {period} s has {samples} samples: too many for the memory"),
             "log it at a lower frequency, or choose another source of `instruments`",
         );
     }
     whole.map_or_else(
         || {
             problem(
-                format!("a period of {period} s is {one:.4} samples: no number of periods up to {MOST_TOGETHER} has a whole number of samples and is in the run twice"),
+                format!("a period of {period} s is {one:.4} samples: no number of periods up to {MOST_TOGETHER} is a whole number of samples and occurs in the run twice"),
                 "choose a period that is a multiple of the sampling interval, or record longer",
             )
         },

@@ -71,7 +71,7 @@ fn what_does_not_repeat_itself_is_no_period() {
     };
     assert!(said(2000.0, None).contains("no period"));
     assert!(said(2000.0, Some(2.0)).contains("fewer than two periods"));
-    assert!(said(1000.0, Some(0.9)).contains("does not repeat itself after 0.9"));
+    assert!(said(1000.0, Some(0.9)).contains("does not repeat after 0.9"));
     assert!(said(1000.0, Some(f64::NAN)).contains("not possible"));
     assert!(said(1000.0, Some(0.98765)).contains("whole number of samples"));
 }

@@ -74,6 +74,6 @@ pub(in crate::data) fn apart(
         )
     };
     Problem::new(Code::LOG_FILES, message).file(file).help(
-        "files are joined by time: check that they are of one run and that their clocks count from the same start",
+        "files are joined by time: check that they are of one run and that their clocks have the same origin",
     )
 }

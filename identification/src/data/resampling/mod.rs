@@ -249,8 +249,7 @@ impl Resampled {
             self.has_ended = true;
             let message = format!("the time steps from {before} s to {time} s");
             let problem = Problem::new(Code::LOG_TIME, message).file(self.file.as_str());
-            let help =
-                "numbers are interpolated between times that grow without gaps: cut the run there";
+            let help = "interpolation needs increasing times without gaps: cut the run there";
             return Err(problem.help(help).into());
         }
         if time - last >= SHORTEST_STEP * self.step {

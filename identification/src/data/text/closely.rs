@@ -66,9 +66,9 @@ impl Told {
         } else if let Some(first) = problems.first_mut()
             && !std::mem::replace(&mut self.is_helped, true)
         {
-            *first = first.clone().help(
-                "cut the log before or after this line, or fill the gap; overact invents no samples",
-            );
+            *first = first
+                .clone()
+                .help("cut the log before or after this line, or fill the gap");
         }
         Error::check(problems)?;
         Ok(true)
@@ -115,7 +115,7 @@ impl Row<'_> {
         let problem = self.problem(match (is_header, is_first) {
             (true, _) => format!("the line repeats the names of the columns: {words}"),
             (false, true) => format!("the line below the names looks like units: {words}"),
-            (false, false) => format!("the line has words where numbers are to be: {words}"),
+            (false, false) => format!("the line has words instead of numbers: {words}"),
         });
         let comment = char::from(dialect.comment);
         Some(problem.help(format!(

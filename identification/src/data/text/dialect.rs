@@ -91,7 +91,7 @@ impl Dialect {
         let problem = Problem::new(Code::LOG_SHAPE, message).file(file).line(line);
         problem.help(match (self.separator, self.has_header) {
             (b',', _) => {
-                "if decimals stand behind commas, separate the columns by semicolons or tabs; else name every column"
+                "if commas are decimal marks, separate the columns by semicolons or tabs; otherwise name every column"
             }
             (_, false) => "give every line the same columns",
             (b' ', true) => {
@@ -225,9 +225,9 @@ fn decimal_comma(
                 .file(file)
                 .line(line as usize);
             let help = if separator == b',' {
-                "write all decimals behind points, and without quotation marks"
+                "use decimal points, and no quotation marks"
             } else {
-                "write all decimals behind points, or all behind commas, and no mark between thousands"
+                "use decimal points or decimal commas throughout, and no mark between thousands"
             };
             Err(problem.help(help).into())
         }

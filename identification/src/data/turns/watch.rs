@@ -46,7 +46,7 @@ impl Wrap {
     pub(in crate::data) fn problem(&self, file: &str) -> Option<Problem> {
         let (sample, turns) = self.ambiguous?;
         let message = format!(
-            "sample {sample}: `{}` was logged within one turn of {} and turns by {:.2} of it between two samples, so that its direction is not known",
+            "sample {sample}: `{}` was logged within one turn of {} and moves by {:.2} of it between two samples, so its direction is unknown",
             self.name,
             significant(self.period, 6),
             turns.abs()
