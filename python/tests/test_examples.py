@@ -11,7 +11,7 @@ EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
 def test_dualv(capsys):
     found = runpy.run_path(str(EXAMPLES / "dualv.py"), run_name="__main__")
     said = capsys.readouterr().out
-    assert "<Robot DualV: r = 3, n = 4" in said and "DualV: identified from" in said
+    assert "<Robot DualV: r = 3, n = 4" in said and "DualV: 2 training runs" in said
     result, robot = found["result"], found["robot"]
     # The true parameters of the robot are known.
     truth = robot.true_values

@@ -76,8 +76,8 @@ def test_results_go_where_they_are_wanted(dualv):
     [
         (np.zeros((2, 3, 64), dtype=np.float32), TypeError, "float32"),
         (np.zeros((3, 64)), ValueError, r"\(3, 64\).*\(2, 3, 64\)"),
-        (np.zeros((2, 64, 3)).transpose(0, 2, 1), ValueError, "row after row"),
-        (np.zeros((4, 3, 64))[::2], ValueError, "row after row"),
+        (np.zeros((2, 64, 3)).transpose(0, 2, 1), ValueError, "contiguous"),
+        (np.zeros((4, 3, 64))[::2], ValueError, "contiguous"),
         ([[0.0]], TypeError, "a list"),
     ],
 )
