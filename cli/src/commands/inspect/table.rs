@@ -106,7 +106,11 @@ fn base_parameters(all: &[inspection::Base]) -> String {
     }
     let mut text = definitions(&rows, " = ");
     if !alone.is_empty() {
-        paragraph(&mut text, "", &format!("alone: {}", alone.join(", ")));
+        paragraph(
+            &mut text,
+            "",
+            &format!("not regrouped: {}", alone.join(", ")),
+        );
     }
     text
 }
@@ -154,7 +158,7 @@ fn functions(document: &Inspection) -> String {
         rows.push(row);
     }
     columns(&rows, &[true])
-        + "op: + - * and /, products with a sign included; called functions are counted.\n"
+        + "op: additions, multiplications (also by signs) and divisions, with those of called functions.\nsign: signs of velocities. guard: checks before divisions and roots. neg: negations.\nvalues: intermediate numbers.\n"
         + &side_by_side(document)
 }
 
@@ -170,11 +174,11 @@ fn side_by_side(document: &Inspection) -> String {
         return String::new();
     }
     let head = [
-        "in Rust, side by side",
+        "in Rust, in SIMD lanes",
         "legs",
         "op once",
-        "op a leg",
-        "with vectors of",
+        "op per leg",
+        "lanes",
     ];
     let head = vec![head.map(str::to_owned).to_vec()];
     format!("\n{}", columns(&[head, told].concat(), &[true]))
