@@ -284,8 +284,7 @@ fn from_csv(text: &str) -> Result<Vec<State>, Problem> {
         {
             let (found, named) = (record.len(), header.len());
             let message = format!("{found} cells in a line, but {named} names in the header");
-            let help =
-                "name every column, or leave out what has no name; numbers take a decimal point";
+            let help = "name every column, or remove columns without a name; use decimal points";
             return Err(Problem::new(Code::STATES, message).line(line).help(help));
         }
         let mut cells: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();

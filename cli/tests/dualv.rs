@@ -98,9 +98,9 @@ fn logs_give_the_nine_parameters_of_table_2_and_the_papers_tables() {
 /// Tables 2 to 4, each with a number of the paper in its line.
 fn assert_tables(text: &str) {
     let titles = [
-        "Parameters, beside",
-        "Torque errors in percent of the torques, beside",
-        "Largest tracking errors in 1e-3 m or rad, beside",
+        "Parameters, compared with",
+        "Torque errors in percent of the torques, compared with",
+        "Largest tracking errors in 1e-3 m or rad, compared with",
     ];
     for title in titles {
         assert!(text.contains(title), "{title} is not in\n{text}");

@@ -354,5 +354,5 @@ fn members_of_an_archive_are_limited_together() {
 #[test]
 fn devices_are_no_logs() {
     let error = read(Path::new("/dev/zero"), &mapping("q", "tau"), false).expect_err("no file");
-    assert!(error.to_string().contains("no regular file"), "{error}");
+    assert!(error.to_string().contains("not a regular file"), "{error}");
 }

@@ -307,7 +307,7 @@ fn only_regular_files_are_included() {
             &format!("<mujoco>\n<include file='{device}'/></mujoco>"),
         );
         assert!(
-            said.starts_with("2: ") && said.contains("no regular file"),
+            said.starts_with("2: ") && said.contains("not a regular file"),
             "{said}"
         );
     }

@@ -18,7 +18,7 @@ use super::{
 pub fn beside(identification: &Identification, published: Option<&Published>) -> String {
     let mut text = String::new();
     let source = published.map_or_else(String::new, |all| {
-        format!(", beside {}", all.source.trim_end_matches('.'))
+        format!(", compared with {}", all.source.trim_end_matches('.'))
     });
     if let Some(published) = published {
         text += &section(

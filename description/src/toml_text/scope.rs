@@ -184,7 +184,8 @@ impl Item<'_, '_> {
                 "`{}` is constant and cannot hold a joint variable",
                 self.key.value
             );
-            let help = "joint variables stand in theta of a revolute or r of a prismatic joint";
+            let help =
+                "joint variables are allowed in theta of a revolute or r of a prismatic joint";
             self.context
                 .report_once(self.error(Code::JOINT_POSITION, message).help(help));
             return None;

@@ -108,7 +108,7 @@ pub(super) fn recognise(file: &str, medium: &Medium) -> Result<Format, Error> {
         && path.metadata().is_ok_and(|found| !found.is_file())
     {
         // A log is read several times, which pipes and endless devices do not allow.
-        let message = "the log is no regular file";
+        let message = "the log is not a regular file";
         let problem = Problem::new(Code::UNREADABLE_LOG, message).file(file);
         return Err(problem.help("write it to a file first").into());
     }

@@ -456,10 +456,10 @@ mod tests {
     fn a_title_that_leaves_no_room_for_the_unit_has_a_line_of_its_own() {
         let mut chart = chart(vec![(0.0, 1.0), (1.0, 10.0)]);
         assert!(chart.svg().contains("viewBox=\"0 0 400 230\""));
-        chart.title = String::from("Residual of the held-out run beside others");
+        chart.title = String::from("Residual of the validation run and of others");
         let svg = chart.svg();
         assert!(svg.contains("viewBox=\"0 -15 400 245\""), "{svg}");
-        assert!(svg.contains("y=\"0\">Residual of the held-out run beside others</text>"));
+        assert!(svg.contains("y=\"0\">Residual of the validation run and of others</text>"));
     }
 
     #[test]

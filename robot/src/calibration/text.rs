@@ -63,7 +63,7 @@ pub(super) fn calibrated(
     }
     if calibration.offsets().iter().any(|offset| *offset != 0.0) {
         offsets(&mut document, robot, calibration)
-            .ok_or_else(|| problem("`[data]` is no table"))?;
+            .ok_or_else(|| problem("`[data]` is not a table"))?;
     }
     Ok(heading(calibration) + &document.to_string())
 }
