@@ -31,9 +31,9 @@ struct Arguments {
 enum Command {
     /// Answer a query over the tables `factors`, `factor_rows` and `logs`
     Sql(Sql),
-    /// Write the page of a fleet: drifts and outliers first, each robot with its plots
+    /// Write the report of a fleet: drifts and outliers first, then plots of each robot
     Report(Report),
-    /// Tell which drifts of virtual robots would be found when
+    /// Simulate when drifts of virtual robots are detected
     Power(Power),
     /// Run the scheduler of a cluster
     #[cfg(feature = "distributed")]
@@ -52,13 +52,13 @@ struct Data {
     /// Folder or URL of logs, `serial=…/day=…/….parquet`
     #[arg(long, value_name = "FOLDER|URL")]
     logs: Option<Place>,
-    /// Description of robots in the logs (again for others)
+    /// Description of robots in the logs (repeat for others)
     #[arg(long = "robot", value_name = "TOML")]
     robots: Vec<PathBuf>,
     /// Scheduler of a cluster, `df://host:50050` [default: this machine]
     #[arg(long, value_name = "URL")]
     scheduler: Option<String>,
-    /// Partitions that are worked on at once [default: one for each core]
+    /// Partitions to process in parallel [default: one for each core]
     #[arg(long, default_value_t = 0, hide_default_value = true)]
     partitions: usize,
     /// Megabytes that a query on this machine may take [default: any]
@@ -81,7 +81,7 @@ struct Sql {
     query: String,
     #[command(flatten)]
     data: Data,
-    /// Write CSV in place of a table
+    /// Write CSV instead of a table
     #[arg(long)]
     csv: bool,
 }
@@ -90,13 +90,13 @@ struct Sql {
 struct Report {
     #[command(flatten)]
     data: Data,
-    /// Parameters that are watched, with commas [default: all]
+    /// Parameters to monitor, separated by commas [default: all]
     #[arg(long, value_delimiter = ',')]
     watch: Vec<String>,
     /// Probability of an alarm of a robot without drift
     #[arg(long, default_value_t = 0.01)]
     false_alarms: f64,
-    /// Address of a robot's own report, `{serial}` in it
+    /// Address of the report of a single robot, with `{serial}`
     #[arg(long, value_name = "URL")]
     link: Option<String>,
     /// The page
@@ -112,25 +112,25 @@ struct Power {
     /// Robots with each drift
     #[arg(long, default_value_t = 200)]
     robots: usize,
-    /// Robots without drift, of which false alarms are counted
+    /// Robots without drift, to count false alarms
     #[arg(long, default_value_t = 1000)]
     healthy: usize,
-    /// Days, of which each robot makes a run
+    /// Days, with one run of each robot
     #[arg(long, default_value_t = 30)]
     days: usize,
-    /// Drifts of a first moment of mass, with commas
+    /// Drifts of a first moment of mass, separated by commas
     #[arg(long, value_name = "PERCENT", value_delimiter = ',', default_values_t = [0.25, 0.5, 1.0, 2.0, 4.0])]
     moments: Vec<f64>,
-    /// Drifts of viscous friction, with commas
+    /// Drifts of viscous friction, separated by commas
     #[arg(long, value_name = "PERCENT", value_delimiter = ',', default_values_t = [2.5, 5.0, 10.0, 20.0])]
     frictions: Vec<f64>,
-    /// Parameters that are watched, with commas [default: all]
+    /// Parameters to monitor, separated by commas [default: all]
     #[arg(long, value_delimiter = ',')]
     watch: Vec<String>,
     /// Probability of an alarm of a robot without drift
     #[arg(long, default_value_t = 0.01)]
     false_alarms: f64,
-    /// Seed of everything
+    /// Seed of all random numbers
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
@@ -138,13 +138,13 @@ struct Power {
 #[cfg(feature = "distributed")]
 #[derive(Debug, Args)]
 struct Scheduler {
-    /// Where it listens
+    /// Address to listen on
     #[arg(long, default_value = "127.0.0.1:50050")]
     bind: std::net::SocketAddr,
-    /// Description of robots in the logs (again for others)
+    /// Description of robots in the logs (repeat for others)
     #[arg(long = "robot", value_name = "TOML")]
     robots: Vec<PathBuf>,
-    /// What is told on stderr: `off`, `error`, `warn`, `info`, `debug`
+    /// Level of messages on stderr: `off`, `error`, `warn`, `info`, `debug`
     #[arg(long, value_name = "LEVEL", default_value = "warn")]
     log: log::LevelFilter,
 }
@@ -152,7 +152,7 @@ struct Scheduler {
 #[cfg(feature = "distributed")]
 #[derive(Debug, Args)]
 struct Executor {
-    /// Where it listens for data; for orders at the next port
+    /// Address to listen on for data; for orders at the next port
     #[arg(long, default_value = "127.0.0.1:50060")]
     bind: std::net::SocketAddr,
     /// Host of the scheduler
@@ -161,19 +161,19 @@ struct Executor {
     /// Its port
     #[arg(long, default_value_t = 50050)]
     scheduler_port: u16,
-    /// Tasks at once
+    /// Parallel tasks
     #[arg(long, default_value_t = 1)]
     tasks: usize,
-    /// Where it puts what other executors fetch
+    /// Folder for data that other executors fetch
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
-    /// Megabytes that its tasks may take together
+    /// Megabytes for all its tasks
     #[arg(long)]
     memory: Option<u64>,
-    /// Description of robots in the logs (again for others)
+    /// Description of robots in the logs (repeat for others)
     #[arg(long = "robot", value_name = "TOML")]
     robots: Vec<PathBuf>,
-    /// What is told on stderr: `off`, `error`, `warn`, `info`, `debug`
+    /// Level of messages on stderr: `off`, `error`, `warn`, `info`, `debug`
     #[arg(long, value_name = "LEVEL", default_value = "warn")]
     log: log::LevelFilter,
 }
