@@ -270,7 +270,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
             &["--lang", "c", "--crate", "my::facade", "-o", "c"][..],
             "C uses no crate",
         ),
-        (&["--crate", "my facade"], "no path of the crate"),
+        (&["--crate", "my facade"], "not a path of the crate"),
     ] {
         let outcome = bench.run(&quick(options));
         assert!(matches!(outcome.code, Some(1 | 2)), "{}", outcome.err);

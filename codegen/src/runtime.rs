@@ -58,8 +58,7 @@ impl fmt::Display for NotAPath {
         let path = &self.0;
         write!(
             f,
-            "`{path}` is no path of the crate that generated code calls, which is one like \
-             `::overact` or `crate::vendor::overact`"
+            "`{path}` is not a path of the crate that generated code calls, such as `::overact` or `crate::vendor::overact`"
         )
     }
 }

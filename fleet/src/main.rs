@@ -152,13 +152,13 @@ struct Scheduler {
 #[cfg(feature = "distributed")]
 #[derive(Debug, Args)]
 struct Executor {
-    /// Address to listen on for data; for orders at the next port
+    /// Address to listen on for data; orders use the next port
     #[arg(long, default_value = "127.0.0.1:50060")]
     bind: std::net::SocketAddr,
     /// Host of the scheduler
     #[arg(long, default_value = "127.0.0.1")]
     scheduler_host: String,
-    /// Its port
+    /// Port of the scheduler
     #[arg(long, default_value_t = 50050)]
     scheduler_port: u16,
     /// Parallel tasks

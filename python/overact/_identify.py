@@ -77,8 +77,8 @@ def identify(
     ]
     if others and not own:
         raise ValueError(
-            "there are runs for validation and none to identify from; of a virtual experiment name those "
-            "that are held out, held_out=[...]"
+            "there are validation runs but no training runs; name validation runs of a virtual experiment "
+            "with held_out=[...]"
         )
     if own and (seed is not None or held_out is not None):
         raise ValueError("seed and held_out are for the virtual experiment, but there is data")

@@ -71,10 +71,9 @@ fn text(found: &FactorEstimation) -> String {
     text.push_str(match found.deviations {
         Deviations::Equations => "Intervals are those of the logs: the files contain the equations.\n",
         Deviations::Parts => {
-            "Intervals are from the sums of parts of the runs, not from single equations: wider or narrower than\n\
-             those of the logs, and the recommended parameters, which they choose, may be others;\n\
-             deviations of smaller models are those of white residuals. Factor the logs with\n\
-             --equations for those of one pass.\n"
+            "Intervals follow from sums over parts of the runs, not from single equations. They can be wider or\n\
+             narrower than those of the logs, and other parameters can be recommended. Standard deviations of\n\
+             smaller models assume white residuals. Factor the logs with --equations for the intervals of logs.\n"
         }
     });
     text.push_str("The checks of raw data and residuals need logs and were not made.\n");

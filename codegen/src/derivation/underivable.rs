@@ -62,14 +62,14 @@ impl Underivable {
                 let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
                 Diagnostic::new(
                     Code::NO_CLOSED_SOLUTION,
-                    format!("no rule solves the inverse kinematics of leg `{leg}`"),
+                    format!("the inverse kinematics of leg `{leg}` has no closed form"),
                     span,
                 )
                 .help("the robot's functions then start from Newton's method")
             }
             Self::ForwardKinematics => Diagnostic::new(
                 Code::NO_CLOSED_SOLUTION,
-                "no rule gives the robot's pose from its actuators",
+                "the robot's pose has no closed form in its actuators",
                 description.name.span.clone(),
             ),
             Self::SingularLeg { leg } => {
@@ -105,7 +105,7 @@ impl Underivable {
                 float,
             } => Diagnostic::new(
                 Code::OUT_OF_RANGE,
-                format!("`{function}` has the number {value} in it, which is no `{float}`"),
+                format!("`{function}` contains the number {value}, which is not a valid `{float}`"),
                 description.name.span.clone(),
             )
             .help(

@@ -62,7 +62,7 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
     if !identification.motors.is_empty() {
         line(
             &mut motors,
-            "--all has the parameters of the drives on the motor side, too.",
+            "--all also prints the parameters of the drives on the motor side.",
         );
     }
     let room = room.saturating_sub(motors.lines().count());
