@@ -174,7 +174,7 @@ impl FailedChecks<'_> {
         (!self.named_only.is_empty()).then(|| {
             format!(
                 "failed checks that this may explain: {}",
-                self.beside.join(", ")
+                self.named_only.join(", ")
             )
         })
     }

@@ -104,7 +104,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         ("the motion is", "the torques")
     };
     let words = format!(
-        "{what} smoother than {beside}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log on one of the two, or for interpolated samples: log both without them",
+        "{what} smoother than {reference}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log on one of the two, or for interpolated samples: log both without them",
         time(wald.size()),
         harm.words()
     );

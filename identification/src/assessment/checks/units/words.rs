@@ -47,9 +47,9 @@ fn sentence(found: &Finding) -> String {
         .take(NAMED)
         .map(quantity)
         .collect();
-    let advice = found.slip.map_or_else(
+    let advice = found.unit_error.map_or_else(
         || String::from("check the units of time, positions and torques: they must be SI units"),
-        Slip::advice,
+        UnitError::advice,
     );
     format!("implausible: {}; {advice}", told.join(", "))
 }
