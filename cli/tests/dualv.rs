@@ -183,7 +183,7 @@ fn a_crossed_singularity_of_the_kept_actuators_is_told() {
         worst(0),
         worst(1)
     );
-    assert!(reasons.contains("does not speak for it"), "{reasons}");
+    assert!(reasons.contains("outweigh all others"), "{reasons}");
     let told = |before: &str| -> f64 {
         let (_, rest) = reasons.split_once(before).expect(before);
         let (percent, _) = rest.split_once(" %").expect("percent");

@@ -159,7 +159,7 @@ fn partitions_are_ranked() {
     assert!(ratios.is_sorted() && ratios[0] > 0.0, "{ratios:?}");
     assert_eq!(document["platform"]["deviation_ratio"], 1.0);
     let text = serial().bad(&["partitions", "my.toml"]);
-    assert!(text.contains("nothing to choose"), "{text}");
+    assert!(text.contains("so there is no choice"), "{text}");
 }
 
 #[test]

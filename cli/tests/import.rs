@@ -30,7 +30,7 @@ fn moments_that_no_body_has_are_no_prior() {
     let (_, text) = imported("arm.par", &table, &lengths);
     assert!(text.contains("LEFT OUT"), "{text}");
     assert!(
-        text.contains("of `j1_skeleton`, `j3_link3`: no body"),
+        text.contains("of `j1_skeleton`, `j3_link3`, which are not"),
         "{text}"
     );
     let (robot, prior) = text.split_once("[prior.values]").expect("a prior");

@@ -110,7 +110,7 @@ fn columns_of_joined_files_are_called_by_their_file() {
     assert!(text.starts_with("none.csv: the file is empty\n"), "{text}");
     let text = told(&[POSITIONS, TORQUES], "file2.c Nm");
     assert!(
-        text.contains("`file2.c Nm`: behind the column `file2.c` stands `Nm`"),
+        text.contains("`file2.c Nm`: `file2.c` is followed by `Nm`"),
         "{text}"
     );
     let text = told(&[POSITIONS, TORQUES], "deg2rad(file2.c)");

@@ -178,7 +178,7 @@ fn friction_near_standstill_rises_or_falls() {
     );
     assert!(falls.contains("That is not Stribeck's friction"), "{falls}");
     assert!(
-        falls.contains("Equations below `standstill_velocity`, 0.004 m/s, are left out"),
+        falls.contains("Equations below `standstill_velocity`, 0.004 m/s, are skipped"),
         "{falls}"
     );
 }

@@ -225,7 +225,7 @@ impl Element {
         match numbers(text).map(<[f64; N]>::try_from) {
             Some(Ok(values)) => Some(values),
             _ => {
-                let message = format!("`{name}` of `{}` must be {N} finite numbers", self.name);
+                let message = format!("`{name}` of `{}` must be {}", self.name, expected(N));
                 files.report(place, message, "write numbers with blanks between them");
                 None
             }
@@ -237,7 +237,10 @@ impl Element {
         let (text, place) = self.attribute(name)?;
         let found = numbers(text);
         if found.is_none() {
-            let message = format!("`{name}` of `{}` must be finite numbers", self.name);
+            let message = format!(
+                "`{name}` of `{}` must be a list of finite numbers",
+                self.name
+            );
             files.report(place, message, "write numbers with blanks between them");
         }
         found
@@ -251,6 +254,14 @@ impl Element {
             files.report(&self.place, message, format!("write {name}=\"…\""));
         }
         found
+    }
+}
+
+/// Words for an expected number of numbers, as in "must be 3 finite numbers".
+pub(crate) fn expected(numbers: usize) -> String {
+    match numbers {
+        1 => String::from("a finite number"),
+        _ => format!("{numbers} finite numbers"),
     }
 }
 

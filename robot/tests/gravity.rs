@@ -126,7 +126,10 @@ fn robots_with_loops_are_refused() {
         let runs = runs.runs(&[], &|_, _| {}).expect("runs");
         let found = Identifier::new(&robot).data(&runs).gravity_direction(true);
         let error = found.run().expect_err("loops").render(false);
-        assert!(error.contains("robots without loops only"), "{error}");
+        assert!(
+            error.contains("not supported for robots with loops"),
+            "{error}"
+        );
     }
 }
 

@@ -175,7 +175,7 @@ fn a_skeleton_carries_no_payload() {
     let errors = listed(&text);
     assert!(
         errors[0].contains("payloads have names, but the robot has no payload")
-            && errors[0].contains("of robots with a platform, or without loops"),
+            && errors[0].contains("supported on robots with a platform, or without loops"),
         "{errors:?}"
     );
 }

@@ -91,7 +91,7 @@ amplitude = 1
         "7:10 `travel`: expected an angle (rad), found a length (1 m)",
         "8:12 `velocity`: expected an angular speed (rad/s), found a speed (3 m/s)",
         "9:16 `acceleration`: a limit of 0 leaves no motion; leave the key out if there is no limit",
-        "10:13 a condition number of 0.5 can't be; it is at least 1; 10 is far from singular",
+        "10:13 a condition number can't be 0.5; it is at least 1; 10 is far from singular",
         "11:1 unknown key `amplitude`; known keys: position, condition, fundamental, harmonics, runs, travel, velocity, acceleration",
     ];
     let mut found = errors(tables);

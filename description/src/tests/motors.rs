@@ -96,7 +96,7 @@ fn logs_of_motors_need_motors_that_determine_the_joints() {
     let help =
         "; describe each motor as [[leg.NAME.motor]] with turns = \"q1\" and its gear's ratio";
     let expected = format!(
-        "15:15 a log of motors needs as many motors as actuated joints, 2, but 1 are described{help}"
+        "15:15 a log of motors needs as many motors as actuated joints, 2, but the description has 1{help}"
     );
     assert_eq!(listed(&arm(one)), [expected]);
     let twice = format!("{one}\n{one}\nratio = 3");

@@ -4,7 +4,7 @@ use crate::{
     files::{Files, Place},
     geometry::exact,
     model::Pose,
-    xml::{Element, numbers},
+    xml::{Element, expected, numbers},
 };
 use nalgebra::{Rotation3, Translation3};
 
@@ -31,7 +31,7 @@ pub(super) fn several<const N: usize>(files: &Files, element: &Element) -> Optio
             None
         }
         _ => {
-            let message = format!("<{}> must be {N} finite numbers", element.name);
+            let message = format!("<{}> must be {}", element.name, expected(N));
             files.report(place, message, "write numbers with blanks between them");
             None
         }
