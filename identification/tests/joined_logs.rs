@@ -119,7 +119,7 @@ fn columns_of_joined_files_are_called_by_their_file() {
         "{text}"
     );
     assert!(
-        text.contains("write `* pi/180` behind the column"),
+        text.contains("write `* pi/180` after the column"),
         "{text}"
     );
     // One file instead of two.
