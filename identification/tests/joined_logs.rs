@@ -118,10 +118,7 @@ fn columns_of_joined_files_are_called_by_their_file() {
         text.contains("there is no function `deg2rad`; there are sin, cos"),
         "{text}"
     );
-    assert!(
-        text.contains("write `* pi/180` after the column"),
-        "{text}"
-    );
+    assert!(text.contains("write `* pi/180` after the column"), "{text}");
     // One file instead of two.
     let text = told(&[POSITIONS, POSITIONS], "file2.b");
     assert!(

@@ -155,3 +155,18 @@ fn swapped_positions_are_told_and_not_refused() {
     let words = found(&result, CheckKind::SwappedColumns).join("\n");
     assert!(words.contains("look swapped"), "{words}");
 }
+
+#[test]
+fn a_decimation_too_small_for_the_sampling_frequency_is_told_with_a_larger_one() {
+    // At 2 kHz and with a decimation by 2, torques keep 500 Hz; positions are filtered at 100 Hz.
+    let text = with(FIVE_BAR, "decimation = 12", "decimation = 2");
+    let text = with(&text, "duration = \"10 s\"", "duration = \"4 s\"");
+    let result = identified_from(1, &text, |_, _, _| ());
+    let filters = found(&result, CheckKind::Filters);
+    assert!(
+        filters
+            .iter()
+            .any(|words| words.contains("up to 500 Hz") && words.contains("`decimation = 10`")),
+        "{filters:?}"
+    );
+}

@@ -171,6 +171,8 @@ pub enum CheckKind {
     DuplicateColumns,
     /// A torque is zero throughout.
     ZeroTorque,
+    /// A torque does not change while its actuator moves.
+    FrozenTorque,
     /// The positions violate the loop closure.
     Closure,
     /// Two columns are swapped, according to the closure or the torques.
@@ -232,6 +234,7 @@ impl CheckKind {
             Self::RepeatedSamples => "repeated samples",
             Self::DuplicateColumns => "duplicate columns",
             Self::ZeroTorque => "zero torque",
+            Self::FrozenTorque => "frozen torque",
             Self::Closure => "closure",
             Self::SwappedColumns => "swapped columns",
             Self::WrongSign => "wrong sign",
@@ -266,6 +269,7 @@ impl CheckKind {
             self,
             Self::DuplicateColumns
                 | Self::ZeroTorque
+                | Self::FrozenTorque
                 | Self::WrongSign
                 | Self::SwappedColumns
                 | Self::Degrees

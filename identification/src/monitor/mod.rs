@@ -7,6 +7,7 @@
 //! - `clipping`: their description;
 //! - `roughness`: noise of signals, and equal signals;
 //! - `suspicion`: implausible data;
+//! - `torque_rest`: torques that do not change;
 //! - `statistics`: statistics of a stream of numbers.
 
 mod clipping;
@@ -19,6 +20,7 @@ mod statistics;
 mod suspicion;
 #[cfg(test)]
 mod tests;
+mod torque_rest;
 
 pub(crate) use run_monitor::Monitor;
 pub(crate) use suspicion::{Suspicion, Trouble};

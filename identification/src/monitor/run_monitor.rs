@@ -1,6 +1,6 @@
 //! Monitors the raw numbers of a run while it is read.
 //!
-//! It finds clipped torques, stuck encoders, lost samples and standstill.
+//! It finds clipped and frozen torques, stuck encoders, lost samples and standstill.
 
 use super::{
     clipping::clipping,
@@ -10,6 +10,7 @@ use super::{
     roughness::Roughness,
     statistics::{Extreme, Means},
     suspicion::{Suspicion, Trouble},
+    torque_rest::{TorqueRest, TorqueRests},
 };
 use crate::{data::Samples, significant};
 
@@ -51,6 +52,7 @@ pub(crate) struct Monitor {
     samples: usize,
     positions: Vec<Position>,
     torques: Vec<[Extreme; 2]>,
+    torque_rests: Vec<TorqueRests>,
     /// Means of the torques over a few samples, at the start of the run.
     means: Means,
     /// Noise of positions and of torques.
@@ -69,6 +71,7 @@ impl Monitor {
             samples: 0,
             positions: vec![Position::default(); actuators],
             torques: vec![[Extreme::default(); 2]; actuators],
+            torque_rests: vec![TorqueRests::default(); actuators],
             means: Means::new(actuators, frequency),
             roughness: [Roughness::new(actuators), Roughness::new(actuators)],
             recent: Vec::new(),
@@ -109,6 +112,12 @@ impl Monitor {
                 low.take(-torque);
             }
         }
+        for (rests, actuator) in self.torque_rests.iter_mut().zip(0..) {
+            let of = |rows: &[f64]| rows[actuator];
+            for (sample, (torques, positions)) in torques().zip(rows()).enumerate() {
+                rests.take(self.samples + sample, of(torques), of(positions));
+            }
+        }
         self.samples += all - known;
     }
 
@@ -121,6 +130,9 @@ impl Monitor {
     fn finish(&mut self) {
         for position in &mut self.positions {
             position.end_rest(self.samples);
+        }
+        for rests in &mut self.torque_rests {
+            rests.end(self.samples);
         }
     }
 
@@ -220,6 +232,43 @@ impl Monitor {
             .collect()
     }
 
+    /// Torques that do not change while their actuator moves, except for those of `known`.
+    fn frozen_torques(&self, names: &[&str], known: &[Suspicion]) -> Vec<Suspicion> {
+        let is_known = |name: &str| {
+            known
+                .iter()
+                .any(|one| one.actuator.as_deref() == Some(name))
+        };
+        let rest = |actuator: usize| -> Option<(f64, TorqueRest)> {
+            let position = self.positions.get(actuator)?;
+            let rest = self.torque_rests.get(actuator)?.unusual()?;
+            let seconds = rest.samples as f64 / self.frequency;
+            let moves = rest.moved > CLEAR_MOTION * (position.high - position.low);
+            (moves && seconds >= REST_SECONDS).then_some((seconds, rest))
+        };
+        let found = |(actuator, name): (usize, &&str)| {
+            let (seconds, rest) = rest(actuator).filter(|_| !is_known(name))?;
+            let torque = significant(rest.torque, 4);
+            let time = if rest.samples == self.samples {
+                String::from("throughout")
+            } else {
+                let first = rest.first as f64 / self.frequency;
+                format!("from t = {first:.3} s on for {seconds:.3} s")
+            };
+            Some(Suspicion {
+                trouble: Trouble::FrozenTorque,
+                actuator: Some((*name).to_owned()),
+                statistic: seconds,
+                unit: "s",
+                threshold: REST_SECONDS,
+                message: format!(
+                    "the torque stays at {torque} {time}, while the actuator moves: its signal is frozen, or another quantity is in its column; record the run again, or cut that time out"
+                ),
+            })
+        };
+        names.iter().enumerate().filter_map(found).collect()
+    }
+
     /// Equal columns. Loops may move two actuators in proportion; then they must be equal.
     fn duplicates(&self, names: &[&str], coupled: bool) -> Vec<Suspicion> {
         let of = |what: &str, roughness: &Roughness| -> Vec<Suspicion> {
@@ -275,6 +324,7 @@ impl Monitor {
             });
             return suspicions;
         }
+        suspicions.extend(self.frozen_torques(names, &suspicions));
         suspicions.extend(self.duplicates(names, coupled));
         let stuck: Vec<Option<(f64, String)>> = (0..names.len())
             .map(|actuator| self.stuck(actuator, coupled))

@@ -30,4 +30,6 @@ pub(crate) enum Trouble {
     Duplicate,
     /// A torque is zero throughout.
     Zero,
+    /// A torque does not change while its actuator moves.
+    FrozenTorque,
 }

@@ -1,4 +1,4 @@
-//! Tests of clipped torques.
+//! Tests of clipped and frozen torques.
 
 use super::{Monitor, Suspicion, Trouble};
 use crate::data::Samples;
@@ -81,4 +81,52 @@ fn of_several_rests_the_one_in_which_others_move_most_is_told() {
     assert_eq!(stuck.actuator.as_deref(), Some("first"));
     let told = "from t = 2.100 s on for 0.300 s, while other actuators move";
     assert!(stuck.message.contains(told), "{}", stuck.message);
+}
+
+#[test]
+fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
+    let frozen = |time: f64| {
+        if (2.0..3.0).contains(&time) {
+            swing(2.0)
+        } else {
+            swing(time)
+        }
+    };
+    let quantised = |time: f64| (frozen(time) / 0.02).round() * 0.02;
+    for torque in [&frozen as &dyn Fn(f64) -> f64, &quantised] {
+        let found = suspicions(5000, torque);
+        let [one] = &found[..] else {
+            panic!("one suspicion, not {found:?}");
+        };
+        assert_eq!(one.trouble, Trouble::FrozenTorque);
+        let told = " from t = 1.99";
+        assert!(
+            one.message.contains(told) || one.message.contains(" from t = 2.00"),
+            "{}",
+            one.message
+        );
+    }
+    let constant = suspicions(5000, |_| 1.5);
+    let [one] = &constant[..] else {
+        panic!("one suspicion, not {constant:?}");
+    };
+    assert_eq!(one.trouble, Trouble::FrozenTorque);
+    assert!(
+        one.message.contains("stays at 1.5 throughout"),
+        "{}",
+        one.message
+    );
+}
+
+#[test]
+fn torques_that_are_held_between_samples_are_not_frozen() {
+    // A log at 500 Hz of a torque that changes every 50 ms, or by large quanta.
+    let held = |time: f64| swing((time * 20.0).floor() / 20.0);
+    assert_eq!(suspicions(5000, held), []);
+    let coarse = |time: f64| (swing(time) / 0.3).round() * 0.3;
+    let found = suspicions(5000, coarse);
+    assert!(
+        found.iter().all(|one| one.trouble != Trouble::FrozenTorque),
+        "{found:?}"
+    );
 }

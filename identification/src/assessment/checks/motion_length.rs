@@ -32,6 +32,9 @@ const FEWEST_PERIODS: f64 = 2.0;
 /// ratio 22 does not.
 const LEAST_CUTOFF: f64 = 12.0;
 
+/// Largest ratio of the torques' band to the cutoff of the position filters.
+const WIDEST_BAND: f64 = 2.0;
+
 /// Runs these checks.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
@@ -136,12 +139,43 @@ fn cutoff(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
     })
 }
 
-/// Checks that regressor and torques pass the same filter.
+/// Checks that regressor and torques pass the same filters.
 fn unlike_filters(context: &Context<'_>) -> Option<Check> {
+    let band = torque_band(context)?;
+    let words = format!(
+        "positions are filtered at {} Hz, but torques keep frequencies up to {} Hz: the columns are smoother than the torques, which biases friction. {}",
+        significant(context.settings.filter_cutoff_hz, 3),
+        significant(band, 3),
+        equal_bands(context, band)
+    );
+    Some(Check::new(CheckKind::Filters, About::Data, words).found())
+}
+
+/// Largest frequency of the torques in the equations (Hz), if far above the position filter's.
+///
+/// Torques pass the filter of the decimation only, unless `filter_equations` is set.
+pub(super) fn torque_band(context: &Context<'_>) -> Option<f64> {
     let settings = context.settings;
-    let are_torques_unfiltered = settings.decimation <= 1 && !settings.filter_equations;
-    are_torques_unfiltered.then(|| {
-        let words = "positions are filtered and torques are not: without `decimation`, whose filter both pass, the columns are smoother than the torques, which biases friction. Set `decimation` to more than one, or `filter_equations = true`";
-        Check::new(CheckKind::Filters, About::Data, words).found()
-    })
+    if settings.filter_equations {
+        return None;
+    }
+    let runs = context.dataset.runs.iter();
+    let fastest = runs.map(|run| run.sampling_frequency()).fold(0.0, f64::max);
+    let band = 0.5 * fastest / settings.decimation.max(1) as f64;
+    let is_wide = band > WIDEST_BAND * settings.filter_cutoff_hz;
+    (settings.decimation <= 1 || is_wide).then_some(band)
+}
+
+/// Settings that give positions and torques of this band the same one.
+pub(super) fn equal_bands(context: &Context<'_>, band: f64) -> String {
+    let settings = context.settings;
+    let factor = settings.decimation.max(1) as f64 * band / settings.filter_cutoff_hz;
+    if factor.is_finite() && factor >= 2.0 {
+        format!(
+            "Set `decimation = {}`, or `filter_equations = true`",
+            factor.ceil()
+        )
+    } else {
+        String::from("Set `decimation` to more than one, or `filter_equations = true`")
+    }
 }

@@ -1,4 +1,4 @@
-//! Implausible raw numbers: clipped torques, stuck encoders, lost samples, standstill, degrees.
+//! Implausible raw numbers: clipped and frozen torques, stuck encoders, lost samples, standstill, degrees.
 
 use overact::{Model, StandardParameter};
 
@@ -45,7 +45,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         checks.push(Check::new(
             CheckKind::DroppedSamples,
             About::Data,
-            "no torque is clipped, no encoder is stuck, and no sample is lost",
+            "no torque is clipped or frozen, no encoder is stuck, and no sample is lost",
         ));
     }
     Ok(checks)
@@ -106,6 +106,11 @@ fn told(run: &str, suspicion: Suspicion) -> Check {
             CheckKind::ZeroTorque,
             Grade::DoNotUse,
             "a measured torque is never zero throughout",
+        ),
+        Trouble::FrozenTorque => (
+            CheckKind::FrozenTorque,
+            Grade::DoNotUse,
+            "twenty times the usual length of equal torques",
         ),
         Trouble::Standstill => (
             CheckKind::Standstill,

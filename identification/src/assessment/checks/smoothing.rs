@@ -14,6 +14,7 @@ use super::{
     fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
     half_band::confirms,
     level::{level, origin},
+    motion_length::{equal_bands, torque_band},
 };
 use crate::{
     assessment::{
@@ -98,13 +99,18 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     harm.explained = wald.explained;
     // The test omits reversals, but the filter rounds them, too.
     harm.spoil(dry_friction(context));
-    let (what, reference) = if wald.size() > 0.0 {
-        ("the torques are", "the motion")
-    } else {
-        ("the motion is", "the torques")
+    let band = torque_band(context);
+    let what = match band {
+        Some(_) => "torques and motion pass different filters",
+        None if wald.size() > 0.0 => "the torques are smoother than the motion",
+        None => "the motion is smoother than the torques",
     };
+    let remedy = band.map_or_else(
+        || String::from("Look for a filter of the drive or of the log on one of the two, or for interpolated samples: log both without them"),
+        |band| equal_bands(context, band),
+    );
     let words = format!(
-        "{what} smoother than {reference}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the drive or of the log on one of the two, or for interpolated samples: log both without them",
+        "{what}, as by a mean over {} ms; {}, and rounds off dry friction at reversals. {remedy}",
         time(wald.size()),
         harm.words()
     );
