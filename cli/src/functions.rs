@@ -1,7 +1,7 @@
 //! Options `--functions`, `--from` and `--columns`, which select the generated functions.
 
 use crate::failure::{Failure, Problem};
-use crate::forms::{ColumnsOf, Source};
+use crate::function_options::{ColumnsOf, Source};
 use overact_codegen::Choice;
 use overact_codegen::diagnostic::Code;
 

@@ -20,7 +20,7 @@
 mod commands;
 mod effort;
 pub mod failure;
-mod forms;
+mod function_options;
 mod functions;
 mod guarded;
 mod input;

@@ -206,7 +206,7 @@ impl RobotModel {
         total
     }
 
-    /// One iteration of `aside::displace`: all six components displace the start, and the dependent
+    /// One iteration of `parasitic_motion::displace`: all six components displace the start, and the dependent
     /// ones are corrected.
     fn displacement_with_correction(&self) -> TotalCost {
         let mut turn = TotalCost::from(displacement(6, true));

@@ -125,7 +125,7 @@ impl Function {
         match self {
             Self::PoseInClosedForm => Entry {
                 name: "pose_in_closed_form",
-                summary: "The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used. Legs may be in other working modes there than at home.",
+                summary: "The pose from the actuators in closed form, in the assembly mode of the home configuration. It uses only as many actuators as there are degrees of freedom. Working modes of legs may differ from those at home.",
                 inputs: &[Actuators],
                 rows: Extent::Pose,
                 columns: None,
@@ -149,7 +149,7 @@ impl Function {
             },
             Self::PoseStep => Entry {
                 name: "pose_step",
-                summary: "The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero; `forward::displace`, of free platforms `forward::displace_quaternion`, moves a pose by it. Where the elimination would lose digits it is an error, though J_p^inv be regular; `pose_from_actuators` goes on by normal equations then.",
+                summary: "One Gauss-Newton step v δt from a pose x towards the pose of given actuator positions q: J_p^inv+ (q - q(x)), eq. (21), with differences of angles wrapped to ±π. `forward::displace` applies it to a pose, `forward::displace_quaternion` if the pose has a quaternion. It fails if the elimination would lose digits, even if J_p^inv is regular; `pose_from_actuators` then uses normal equations.",
                 inputs: &[Pose, Actuators],
                 rows: Extent::Dof,
                 columns: None,
@@ -205,7 +205,7 @@ impl Function {
             },
             Self::ClosureError => Entry {
                 name: "closure_error",
-                summary: "By how much the legs' ends miss the platform, eq. (7): velocity components of J_k, integrated (m, rad).",
+                summary: "Closure errors, eq. (7): distances between the legs' ends and the platform in the directions of the rows of J_k (m, rad).",
                 inputs: &[Pose, Joints],
                 rows: Extent::Joints,
                 columns: None,
@@ -213,7 +213,7 @@ impl Function {
             },
             Self::PlatformJacobian => Entry {
                 name: "platform_jacobian",
-                summary: "D of t = D v, eq. (14), which the legs' closures give: velocity of the platform's origin and angular velocity, both in the base frame, per independent coordinate.",
+                summary: "D of t = D v, eq. (14), from the legs' closures: velocity of the platform's origin and its angular velocity, both in the base frame, per independent coordinate.",
                 inputs: &[Pose],
                 rows: Extent::Free,
                 columns: Some(Extent::Dof),
@@ -221,7 +221,7 @@ impl Function {
             },
             Self::BlockedError => Entry {
                 name: "blocked_error",
-                summary: "By how much a pose misses what the legs allow, in the directions that no joint gives (m, rad); a pose for which it is not zero is none of the robot's.",
+                summary: "Closure errors of a pose in the directions that the legs block (m, rad). They are zero for reachable poses.",
                 inputs: &[Pose],
                 rows: Extent::Blocked,
                 columns: None,
@@ -253,7 +253,7 @@ impl Function {
             },
             Self::TwistFromActuators => Entry {
                 name: "twist_from_actuators",
-                summary: "The twist v that fits the actuator velocities in the sense of least squares, eq. (21).",
+                summary: "The twist v from the actuator velocities, by least squares, eq. (21).",
                 inputs: &[Pose, ActuatorVelocities],
                 rows: Extent::Dof,
                 columns: None,
@@ -261,7 +261,7 @@ impl Function {
             },
             Self::AccelerationFromActuators => Entry {
                 name: "acceleration_from_actuators",
-                summary: "The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.",
+                summary: "The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.",
                 inputs: &[Pose, Twist, ActuatorAccelerations],
                 rows: Extent::Dof,
                 columns: None,
@@ -269,7 +269,7 @@ impl Function {
             },
             Self::IdmRedPlatform(columns) => Entry {
                 name: "idm_red_platform",
-                summary: "IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).",
+                summary: "IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).",
                 inputs: &[Pose, Twist, Acceleration],
                 rows: Extent::Dof,
                 columns: Some(columns.extent()),
@@ -277,7 +277,7 @@ impl Function {
             },
             Self::IdmRedActuators(columns) => Entry {
                 name: "idm_red_actuators",
-                summary: "IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).",
+                summary: "IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).",
                 inputs: &[Pose, Twist, Acceleration],
                 rows: Extent::Dof,
                 columns: Some(columns.extent()),
@@ -285,7 +285,7 @@ impl Function {
             },
             Self::IdmRedPayload => Entry {
                 name: "idm_red_payload",
-                summary: "The payload's columns of case 1, eq. (38).",
+                summary: "The payload's columns of the platform projection (case 1), eq. (38).",
                 inputs: &[Pose, Twist, Acceleration],
                 rows: Extent::Dof,
                 columns: Some(Extent::PayloadParameters),
@@ -293,7 +293,7 @@ impl Function {
             },
             Self::IdmRedPayloadActuators => Entry {
                 name: "idm_red_payload_actuators",
-                summary: "The payload's columns of case 2, eq. (38).",
+                summary: "The payload's columns of the actuator projection (case 2), eq. (38).",
                 inputs: &[Pose, Twist, Acceleration],
                 rows: Extent::Dof,
                 columns: Some(Extent::PayloadParameters),
@@ -317,7 +317,7 @@ impl Function {
             },
             Self::InverseDynamics(columns) => Entry {
                 name: "inverse_dynamics",
-                summary: "Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).",
+                summary: "Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).",
                 inputs: match columns {
                     Columns::Standard => &[Pose, Twist, Acceleration, Parameters],
                     Columns::Base => &[Pose, Twist, Acceleration, BaseParameters],
@@ -361,7 +361,7 @@ impl Function {
             },
             Self::InverseDynamicsPreloaded => Entry {
                 name: "inverse_dynamics_preloaded",
-                summary: "Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.",
+                summary: "Actuator torques of least norm plus N `preload`, where N is the basis from `null_space`.",
                 inputs: &[Pose, Twist, Acceleration, Parameters, Preload],
                 rows: Extent::Actuators,
                 columns: None,
@@ -377,7 +377,7 @@ impl Function {
             },
             Self::NullSpace => Entry {
                 name: "null_space",
-                summary: "N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.",
+                summary: "N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive at the k-th projected actuator of case 2.",
                 inputs: &[Pose],
                 rows: Extent::Actuators,
                 columns: Some(Extent::Redundancy),

@@ -1000,7 +1000,7 @@ impl DualV {
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         ::overact::guard::within(&[("pose", pose, 1e6)])?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p
@@ -1505,7 +1505,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p
@@ -1699,7 +1699,7 @@ impl DualV {
         ::overact::guard::within(
             &[("pose", pose, 1e6), ("actuator_velocities", actuator_velocities, 1e9)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p
@@ -1854,7 +1854,7 @@ impl DualV {
                 ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p
@@ -2089,7 +2089,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
             pose,
             twist,
             acceleration,
@@ -2118,10 +2118,10 @@ impl DualV {
             acceleration: &'a [::core::primitive::f64; 3],
             output: &'a mut [[::core::primitive::f64; 64]; 3],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<(), ::overact::Error>;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, output } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -2169,22 +2169,22 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -2192,18 +2192,18 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let minus_g2_vx_leg = l1_x_leg / det_leg;
                     let minus_gq2_vx_leg = d_x_leg / det_leg;
                     let g1_vx_leg = minus_gq2_vx_leg - minus_g2_vx_leg;
@@ -2254,229 +2254,229 @@ impl DualV {
                     let gq2_wz_leg = minus_g1_wz_leg + g2_wz_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let gq3_wz_leg = 1.0 - g2_wz_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(&mut output[0], [0, 15], at, zz_1_leg_on_vx);
-                    ::overact::lanes::put(&mut output[0], [1, 15], at, zz_1_leg_on_vx);
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(&mut output[0], [0, 15], at, zz_1_leg_on_vx);
+                    ::overact::simd::put(&mut output[0], [1, 15], at, zz_1_leg_on_vx);
+                    ::overact::simd::put(
                         &mut output[0],
                         [2, 15],
                         at,
                         g1_vx_leg * rate_1_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [3, 15],
                         at,
-                        ::overact::lanes::signed(g1_vx_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[0], [4, 15], at, g1_vx_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[0], [4, 15], at, g1_vx_leg);
+                    ::overact::simd::put(
                         &mut output[0],
                         [5, 15],
                         at,
                         minus_g2_vx_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [6, 15],
                         at,
                         -(g1_vx_leg * t2_leg + minus_g2_vx_leg * a2_y_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [7, 15],
                         at,
                         g1_vx_leg * inv_l_ab_a_on_f2_leg + minus_g2_vx_leg * a2_x_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [8, 15],
                         at,
                         L_AB_SQUARED * zz_1_leg_on_vx,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [9, 15],
                         at,
                         minus_qd_2_leg * minus_gq2_vx_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [10, 15],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [11, 15],
                         at,
                         -minus_gq2_vx_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [12, 15],
                         at,
                         minus_g2_vx_leg * qd_3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [13, 15],
                         at,
-                        ::overact::lanes::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[0], [14, 15], at, minus_g2_vx_leg);
-                    ::overact::lanes::put(&mut output[1], [0, 15], at, zz_1_leg_on_vy);
-                    ::overact::lanes::put(&mut output[1], [1, 15], at, zz_1_leg_on_vy);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[0], [14, 15], at, minus_g2_vx_leg);
+                    ::overact::simd::put(&mut output[1], [0, 15], at, zz_1_leg_on_vy);
+                    ::overact::simd::put(&mut output[1], [1, 15], at, zz_1_leg_on_vy);
+                    ::overact::simd::put(
                         &mut output[1],
                         [2, 15],
                         at,
                         g1_vy_leg * rate_1_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [3, 15],
                         at,
-                        ::overact::lanes::signed(g1_vy_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[1], [4, 15], at, g1_vy_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[1], [4, 15], at, g1_vy_leg);
+                    ::overact::simd::put(
                         &mut output[1],
                         [5, 15],
                         at,
                         minus_g2_vy_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [6, 15],
                         at,
                         -(g1_vy_leg * t2_leg + minus_g2_vy_leg * a2_y_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [7, 15],
                         at,
                         g1_vy_leg * inv_l_ab_a_on_f2_leg + minus_g2_vy_leg * a2_x_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [8, 15],
                         at,
                         L_AB_SQUARED * zz_1_leg_on_vy,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [9, 15],
                         at,
                         minus_qd_2_leg * minus_gq2_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [10, 15],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [11, 15],
                         at,
                         -minus_gq2_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [12, 15],
                         at,
                         minus_g2_vy_leg * qd_3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [13, 15],
                         at,
-                        ::overact::lanes::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[1], [14, 15], at, minus_g2_vy_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[1], [14, 15], at, minus_g2_vy_leg);
+                    ::overact::simd::put(
                         &mut output[2],
                         [0, 15],
                         at,
                         -minus_zz_1_leg_on_wz,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [1, 15],
                         at,
                         -minus_zz_1_leg_on_wz,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [2, 15],
                         at,
                         -(minus_g1_wz_leg * rate_1_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [3, 15],
                         at,
-                        -::overact::lanes::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[2], [4, 15], at, -minus_g1_wz_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[2], [4, 15], at, -minus_g1_wz_leg);
+                    ::overact::simd::put(
                         &mut output[2],
                         [5, 15],
                         at,
                         -(g2_wz_leg * minus_rate_dot_2_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [6, 15],
                         at,
                         minus_g1_wz_leg * t2_leg + g2_wz_leg * a2_y_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [7, 15],
                         at,
                         -(minus_g1_wz_leg * inv_l_ab_a_on_f2_leg + g2_wz_leg * a2_x_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [8, 15],
                         at,
                         -(L_AB_SQUARED * minus_zz_1_leg_on_wz),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [9, 15],
                         at,
                         -(minus_qd_2_leg * gq2_wz_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [10, 15],
                         at,
-                        -::overact::lanes::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[2], [11, 15], at, gq2_wz_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[2], [11, 15], at, gq2_wz_leg);
+                    ::overact::simd::put(
                         &mut output[2],
                         [12, 15],
                         at,
                         qd_3_leg * gq3_wz_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [13, 15],
                         at,
-                        ::overact::lanes::signed(gq3_wz_leg, qd_3_leg, at),
+                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[2], [14, 15], at, gq3_wz_leg);
+                    ::overact::simd::put(&mut output[2], [14, 15], at, gq3_wz_leg);
                 }
                 *place = output;
                 ::core::result::Result::Ok(())
             }
         }
-        if ::overact::lanes::four() {
-            return ::overact::lanes::few(Legs {
+        if ::overact::simd::four() {
+            return ::overact::simd::few(Legs {
                 pose,
                 twist,
                 acceleration,
@@ -2974,7 +2974,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
             pose,
             joints,
             twist,
@@ -2999,7 +2999,7 @@ impl DualV {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -3518,7 +3518,7 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -3544,7 +3544,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -4228,7 +4228,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_into(
             pose,
             twist,
             acceleration,
@@ -4250,7 +4250,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -4824,7 +4824,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
             pose,
             joints,
             twist,
@@ -4849,7 +4849,7 @@ impl DualV {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -5376,7 +5376,7 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -5402,7 +5402,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -6095,7 +6095,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             pose,
             twist,
             acceleration,
@@ -6124,10 +6124,10 @@ impl DualV {
             acceleration: &'a [::core::primitive::f64; 3],
             output: &'a mut [[::core::primitive::f64; 49]; 3],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<(), ::overact::Error>;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, output } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -6177,21 +6177,21 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -6199,19 +6199,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let a_arm_x_leg = my_platform_on_vx * of_leg[0];
@@ -6253,200 +6253,200 @@ impl DualV {
                     let gq2_wz_leg = minus_g1_wz_leg + g2_wz_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let gq3_wz_leg = 1.0 - g2_wz_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut output[0],
                         [4, 1],
                         at,
                         g1_vx_leg * rate_dot_1_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [8, 1],
                         at,
                         g1_vx_leg * rate_1_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [12, 1],
                         at,
-                        ::overact::lanes::signed(g1_vx_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[0], [16, 1], at, g1_vx_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[0], [16, 1], at, g1_vx_leg);
+                    ::overact::simd::put(
                         &mut output[0],
                         [20, 1],
                         at,
                         minus_g2_vx_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [24, 1],
                         at,
                         g1_vx_leg * inv_l_ab_a_on_f2_leg + minus_g2_vx_leg * a2_x_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [28, 1],
                         at,
                         minus_qd_2_leg * minus_gq2_vx_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [32, 1],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [36, 1],
                         at,
                         -minus_gq2_vx_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [40, 1],
                         at,
                         minus_g2_vx_leg * qd_3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[0],
                         [44, 1],
                         at,
-                        ::overact::lanes::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
-                    ::overact::lanes::put_of_first(
+                    ::overact::simd::put_of_first(
                         &mut output[0],
                         [48, 0],
                         1,
                         at,
                         minus_g2_vx_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [4, 1],
                         at,
                         g1_vy_leg * rate_dot_1_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [8, 1],
                         at,
                         g1_vy_leg * rate_1_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [12, 1],
                         at,
-                        ::overact::lanes::signed(g1_vy_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[1], [16, 1], at, g1_vy_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[1], [16, 1], at, g1_vy_leg);
+                    ::overact::simd::put(
                         &mut output[1],
                         [20, 1],
                         at,
                         minus_g2_vy_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [24, 1],
                         at,
                         g1_vy_leg * inv_l_ab_a_on_f2_leg + minus_g2_vy_leg * a2_x_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [28, 1],
                         at,
                         minus_qd_2_leg * minus_gq2_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [32, 1],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [36, 1],
                         at,
                         -minus_gq2_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [40, 1],
                         at,
                         minus_g2_vy_leg * qd_3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[1],
                         [44, 1],
                         at,
-                        ::overact::lanes::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
-                    ::overact::lanes::put_of_first(
+                    ::overact::simd::put_of_first(
                         &mut output[1],
                         [48, 0],
                         1,
                         at,
                         minus_g2_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [4, 1],
                         at,
                         -(minus_g1_wz_leg * rate_dot_1_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [8, 1],
                         at,
                         -(minus_g1_wz_leg * rate_1_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [12, 1],
                         at,
-                        -::overact::lanes::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[2], [16, 1], at, -minus_g1_wz_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[2], [16, 1], at, -minus_g1_wz_leg);
+                    ::overact::simd::put(
                         &mut output[2],
                         [20, 1],
                         at,
                         -(g2_wz_leg * minus_rate_dot_2_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [24, 1],
                         at,
                         -(minus_g1_wz_leg * inv_l_ab_a_on_f2_leg + g2_wz_leg * a2_x_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [28, 1],
                         at,
                         -(minus_qd_2_leg * gq2_wz_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [32, 1],
                         at,
-                        -::overact::lanes::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::lanes::put(&mut output[2], [36, 1], at, gq2_wz_leg);
-                    ::overact::lanes::put(
+                    ::overact::simd::put(&mut output[2], [36, 1], at, gq2_wz_leg);
+                    ::overact::simd::put(
                         &mut output[2],
                         [40, 1],
                         at,
                         qd_3_leg * gq3_wz_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output[2],
                         [44, 1],
                         at,
-                        ::overact::lanes::signed(gq3_wz_leg, qd_3_leg, at),
+                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
                     );
-                    ::overact::lanes::put_of_first(
+                    ::overact::simd::put_of_first(
                         &mut output[2],
                         [48, 0],
                         1,
@@ -6457,8 +6457,8 @@ impl DualV {
                 ::core::result::Result::Ok(())
             }
         }
-        if ::overact::lanes::four() {
-            return ::overact::lanes::few(Legs {
+        if ::overact::simd::four() {
+            return ::overact::simd::few(Legs {
                 pose,
                 twist,
                 acceleration,
@@ -6864,7 +6864,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -6889,7 +6889,7 @@ impl DualV {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -7311,7 +7311,7 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -7337,7 +7337,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -7905,7 +7905,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
             pose,
             twist,
             acceleration,
@@ -7927,7 +7927,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -8429,7 +8429,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -8454,7 +8454,7 @@ impl DualV {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -8912,7 +8912,7 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -8938,7 +8938,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -9556,7 +9556,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_payload_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_into(
             pose,
             twist,
             acceleration,
@@ -9630,7 +9630,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_payload_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_from_joints_into(
             pose,
             joints,
             twist,
@@ -9708,7 +9708,7 @@ impl DualV {
         actuator_accelerations: &[::core::primitive::f64; 4],
         start: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_payload_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -9734,7 +9734,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -10020,7 +10020,7 @@ impl DualV {
         twist: &[::core::primitive::f64; 3],
         acceleration: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_payload_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_actuators_into(
             pose,
             twist,
             acceleration,
@@ -10409,13 +10409,13 @@ impl DualV {
             acceleration: &'a [::core::primitive::f64; 3],
             parameters: &'a [::core::primitive::f64; 68],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [::core::primitive::f64; 4],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, parameters } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -10472,40 +10472,40 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
-                        ::overact::lanes::scattered(parameters, [7, 15], at),
-                        ::overact::lanes::scattered(parameters, [6, 15], at),
-                        ::overact::lanes::scattered(parameters, [2, 15], at),
-                        ::overact::lanes::scattered(parameters, [3, 15], at),
-                        ::overact::lanes::scattered(parameters, [4, 15], at),
-                        ::overact::lanes::scattered(parameters, [8, 15], at),
-                        ::overact::lanes::scattered(parameters, [0, 15], at),
-                        ::overact::lanes::scattered(parameters, [1, 15], at),
-                        ::overact::lanes::scattered(parameters, [9, 15], at),
-                        ::overact::lanes::scattered(parameters, [10, 15], at),
-                        ::overact::lanes::scattered(parameters, [11, 15], at),
-                        ::overact::lanes::scattered(parameters, [5, 15], at),
-                        ::overact::lanes::scattered(parameters, [12, 15], at),
-                        ::overact::lanes::scattered(parameters, [13, 15], at),
-                        ::overact::lanes::scattered(parameters, [14, 15], at),
+                        ::overact::simd::scattered(parameters, [7, 15], at),
+                        ::overact::simd::scattered(parameters, [6, 15], at),
+                        ::overact::simd::scattered(parameters, [2, 15], at),
+                        ::overact::simd::scattered(parameters, [3, 15], at),
+                        ::overact::simd::scattered(parameters, [4, 15], at),
+                        ::overact::simd::scattered(parameters, [8, 15], at),
+                        ::overact::simd::scattered(parameters, [0, 15], at),
+                        ::overact::simd::scattered(parameters, [1, 15], at),
+                        ::overact::simd::scattered(parameters, [9, 15], at),
+                        ::overact::simd::scattered(parameters, [10, 15], at),
+                        ::overact::simd::scattered(parameters, [11, 15], at),
+                        ::overact::simd::scattered(parameters, [5, 15], at),
+                        ::overact::simd::scattered(parameters, [12, 15], at),
+                        ::overact::simd::scattered(parameters, [13, 15], at),
+                        ::overact::simd::scattered(parameters, [14, 15], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -10513,19 +10513,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
@@ -10570,14 +10570,14 @@ impl DualV {
                     let t4_leg = own_parameters[4]
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[2] * rate_1_leg
-                        + ::overact::lanes::signed(own_parameters[3], rate_1_leg, at)
+                        + ::overact::simd::signed(own_parameters[3], rate_1_leg, at)
                         + rate_dot_1_leg
                             * (own_parameters[6] + L_AB_SQUARED * own_parameters[5]
                                 + own_parameters[7]);
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[10]
                         - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_parameters[9],
                                 minus_qd_2_leg,
                                 at,
@@ -10591,79 +10591,79 @@ impl DualV {
                         - own_parameters[11] * minus_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::lanes::signed(own_parameters[13], qd_3_leg, at)
+                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
                         + own_parameters[14];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
                         g1_vx_leg * g1_vx_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * g1_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         -(g1_vx_leg * minus_g1_wz_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * g1_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         -(g1_vy_leg * minus_g1_wz_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         minus_g1_wz_leg * minus_g1_wz_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
                         g2_wz_leg * force_on_u2_leg - minus_g1_wz_leg * force_on_u1_leg
                             + tau_3_leg,
                     );
-                    ::overact::lanes::put(&mut own[0], [0, 1], at, g1_vx_leg);
-                    ::overact::lanes::put(&mut own[1], [0, 1], at, g1_vy_leg);
-                    ::overact::lanes::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
+                    ::overact::simd::put(&mut own[0], [0, 1], at, g1_vx_leg);
+                    ::overact::simd::put(&mut own[1], [0, 1], at, g1_vy_leg);
+                    ::overact::simd::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    ::overact::lanes::sum(&added[0]), ::overact::lanes::sum(&added[1]),
-                    ::overact::lanes::sum(&added[2]), ::overact::lanes::sum(&added[3]),
-                    ::overact::lanes::sum(&added[4]), ::overact::lanes::sum(&added[5]),
-                    force_x_platform + ::overact::lanes::sum(&added[6]),
-                    force_y_platform + ::overact::lanes::sum(&added[7]),
-                    moment_z_platform + ::overact::lanes::sum(&added[8]),
+                    ::overact::simd::sum(&added[0]), ::overact::simd::sum(&added[1]),
+                    ::overact::simd::sum(&added[2]), ::overact::simd::sum(&added[3]),
+                    ::overact::simd::sum(&added[4]), ::overact::simd::sum(&added[5]),
+                    force_x_platform + ::overact::simd::sum(&added[6]),
+                    force_y_platform + ::overact::simd::sum(&added[7]),
+                    moment_z_platform + ::overact::simd::sum(&added[8]),
                 ];
                 let solution = {
                     ::overact::guard::platform(
@@ -10697,12 +10697,12 @@ impl DualV {
                     [t4, t3, t2]
                 };
                 let mut output = [0.0; 4];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     let own = [
-                        ::overact::lanes::row(&own[0], at), ::overact::lanes::row(&own[1], at),
-                        ::overact::lanes::row(&own[2], at),
+                        ::overact::simd::row(&own[0], at), ::overact::simd::row(&own[1], at),
+                        ::overact::simd::row(&own[2], at),
                     ];
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output,
                         [0, 1],
                         at,
@@ -10713,7 +10713,7 @@ impl DualV {
                 ::core::result::Result::Ok(output)
             }
         }
-        ::overact::lanes::few(Legs {
+        ::overact::simd::few(Legs {
             pose,
             twist,
             acceleration,
@@ -10748,7 +10748,7 @@ impl DualV {
                 ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -11112,7 +11112,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / l_ab²
@@ -11616,13 +11616,13 @@ impl DualV {
             acceleration: &'a [::core::primitive::f64; 3],
             base_parameters: &'a [::core::primitive::f64; 53],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [::core::primitive::f64; 4],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, base_parameters } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -11673,42 +11673,42 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
-                        ::overact::lanes::scattered(base_parameters, [4, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [24, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [8, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [12, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [16, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [28, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [32, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [36, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [20, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [40, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [44, 1], at),
-                        ::overact::lanes::scattered_of_first(
+                        ::overact::simd::scattered(base_parameters, [4, 1], at),
+                        ::overact::simd::scattered(base_parameters, [24, 1], at),
+                        ::overact::simd::scattered(base_parameters, [8, 1], at),
+                        ::overact::simd::scattered(base_parameters, [12, 1], at),
+                        ::overact::simd::scattered(base_parameters, [16, 1], at),
+                        ::overact::simd::scattered(base_parameters, [28, 1], at),
+                        ::overact::simd::scattered(base_parameters, [32, 1], at),
+                        ::overact::simd::scattered(base_parameters, [36, 1], at),
+                        ::overact::simd::scattered(base_parameters, [20, 1], at),
+                        ::overact::simd::scattered(base_parameters, [40, 1], at),
+                        ::overact::simd::scattered(base_parameters, [44, 1], at),
+                        ::overact::simd::scattered_of_first(
                             base_parameters,
                             [48, 0],
                             1,
                             at,
                         ),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -11716,19 +11716,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
@@ -11760,7 +11760,7 @@ impl DualV {
                         + L_AB_SQUARED * rate_1_squared_leg;
                     let t4_leg = own_base_parameters[1] * INV_L_AB;
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::lanes::signed(
+                        + ::overact::simd::signed(
                             own_base_parameters[3],
                             rate_1_leg,
                             at,
@@ -11768,7 +11768,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_base_parameters[6],
                                 minus_qd_2_leg,
                                 at,
@@ -11781,79 +11781,79 @@ impl DualV {
                         * minus_rate_dot_2_leg + minus_a_on_f1_leg * t4_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::lanes::signed(own_base_parameters[10], qd_3_leg, at)
+                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
                         + own_base_parameters[11];
                     let force_on_u2_leg = tau_2_leg - minus_moment2_z_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
                         g1_vx_leg * g1_vx_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * g1_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         -(g1_vx_leg * minus_g1_wz_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * g1_vy_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         -(g1_vy_leg * minus_g1_wz_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         minus_g1_wz_leg * minus_g1_wz_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
                         g2_wz_leg * force_on_u2_leg - minus_g1_wz_leg * force_on_u1_leg
                             + tau_3_leg,
                     );
-                    ::overact::lanes::put(&mut own[0], [0, 1], at, g1_vx_leg);
-                    ::overact::lanes::put(&mut own[1], [0, 1], at, g1_vy_leg);
-                    ::overact::lanes::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
+                    ::overact::simd::put(&mut own[0], [0, 1], at, g1_vx_leg);
+                    ::overact::simd::put(&mut own[1], [0, 1], at, g1_vy_leg);
+                    ::overact::simd::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    ::overact::lanes::sum(&added[0]), ::overact::lanes::sum(&added[1]),
-                    ::overact::lanes::sum(&added[2]), ::overact::lanes::sum(&added[3]),
-                    ::overact::lanes::sum(&added[4]), ::overact::lanes::sum(&added[5]),
-                    force_x_platform + ::overact::lanes::sum(&added[6]),
-                    force_y_platform + ::overact::lanes::sum(&added[7]),
-                    moment_z_platform + ::overact::lanes::sum(&added[8]),
+                    ::overact::simd::sum(&added[0]), ::overact::simd::sum(&added[1]),
+                    ::overact::simd::sum(&added[2]), ::overact::simd::sum(&added[3]),
+                    ::overact::simd::sum(&added[4]), ::overact::simd::sum(&added[5]),
+                    force_x_platform + ::overact::simd::sum(&added[6]),
+                    force_y_platform + ::overact::simd::sum(&added[7]),
+                    moment_z_platform + ::overact::simd::sum(&added[8]),
                 ];
                 let solution = {
                     ::overact::guard::platform(
@@ -11887,12 +11887,12 @@ impl DualV {
                     [t4, t3, t2]
                 };
                 let mut output = [0.0; 4];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     let own = [
-                        ::overact::lanes::row(&own[0], at), ::overact::lanes::row(&own[1], at),
-                        ::overact::lanes::row(&own[2], at),
+                        ::overact::simd::row(&own[0], at), ::overact::simd::row(&own[1], at),
+                        ::overact::simd::row(&own[2], at),
                     ];
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut output,
                         [0, 1],
                         at,
@@ -11903,7 +11903,7 @@ impl DualV {
                 ::core::result::Result::Ok(output)
             }
         }
-        ::overact::lanes::few(Legs {
+        ::overact::simd::few(Legs {
             pose,
             twist,
             acceleration,
@@ -11938,7 +11938,7 @@ impl DualV {
                 ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -12261,7 +12261,7 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / r_p
@@ -12702,13 +12702,13 @@ impl DualV {
             pose: &'a [::core::primitive::f64; 3],
             parameters: &'a [::core::primitive::f64; 68],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [[::core::primitive::f64; 3]; 3],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, parameters } = self;
                 /// 1 / l_ab²
                 const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
@@ -12747,31 +12747,31 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
-                        ::overact::lanes::scattered(parameters, [8, 15], at),
-                        ::overact::lanes::scattered(parameters, [0, 15], at),
-                        ::overact::lanes::scattered(parameters, [1, 15], at),
-                        ::overact::lanes::scattered(parameters, [6, 15], at),
-                        ::overact::lanes::scattered(parameters, [7, 15], at),
-                        ::overact::lanes::scattered(parameters, [5, 15], at),
+                        ::overact::simd::scattered(parameters, [8, 15], at),
+                        ::overact::simd::scattered(parameters, [0, 15], at),
+                        ::overact::simd::scattered(parameters, [1, 15], at),
+                        ::overact::simd::scattered(parameters, [6, 15], at),
+                        ::overact::simd::scattered(parameters, [7, 15], at),
+                        ::overact::simd::scattered(parameters, [5, 15], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -12779,19 +12779,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let g1_vx_leg = l2_x_leg / det_leg;
                     let masses_leg_1_1 = own_parameters[1]
                         + L_AB_SQUARED * own_parameters[0] + own_parameters[2];
@@ -12818,8 +12818,8 @@ impl DualV {
                         - minus_g1_wz_leg * masses_leg_1_1;
                     let t4_leg = g2_wz_leg * own_parameters[5]
                         - minus_g1_wz_leg * masses_leg_1_2;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
@@ -12830,31 +12830,31 @@ impl DualV {
                                 * (g1_vx_leg * masses_leg_1_2
                                     - minus_g2_vx_leg * own_parameters[5]),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t1_leg - minus_g2_vx_leg * t2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * t1_leg - minus_g2_vy_leg * t2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
@@ -12863,14 +12863,14 @@ impl DualV {
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    mass_platform + ::overact::lanes::sum(&added[0]),
-                    ::overact::lanes::sum(&added[1]),
+                    mass_platform + ::overact::simd::sum(&added[0]),
+                    ::overact::simd::sum(&added[1]),
                     -(s_phi * first_x_platform + c_phi * first_y_platform)
-                        + ::overact::lanes::sum(&added[2]),
-                    mass_platform + ::overact::lanes::sum(&added[3]),
+                        + ::overact::simd::sum(&added[2]),
+                    mass_platform + ::overact::simd::sum(&added[3]),
                     c_phi * first_x_platform - s_phi * first_y_platform
-                        + ::overact::lanes::sum(&added[4]),
-                    inertia_zz_platform + ::overact::lanes::sum(&added[5]),
+                        + ::overact::simd::sum(&added[4]),
+                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
                 ];
                 let output = [
                     [sums[0], sums[1], sums[2]], [sums[1], sums[3], sums[4]],
@@ -12879,8 +12879,8 @@ impl DualV {
                 ::core::result::Result::Ok(output)
             }
         }
-        if ::overact::lanes::four() {
-            return ::overact::lanes::few(Legs { pose, parameters });
+        if ::overact::simd::four() {
+            return ::overact::simd::few(Legs { pose, parameters });
         }
         /// 1 / l_ab²
         const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
@@ -13118,13 +13118,13 @@ impl DualV {
             pose: &'a [::core::primitive::f64; 3],
             base_parameters: &'a [::core::primitive::f64; 53],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [[::core::primitive::f64; 3]; 3],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, base_parameters } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -13165,28 +13165,28 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
-                        ::overact::lanes::scattered(base_parameters, [4, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [24, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [20, 1], at),
+                        ::overact::simd::scattered(base_parameters, [4, 1], at),
+                        ::overact::simd::scattered(base_parameters, [24, 1], at),
+                        ::overact::simd::scattered(base_parameters, [20, 1], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -13194,19 +13194,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
@@ -13240,33 +13240,33 @@ impl DualV {
                         + g2_wz_leg * minus_masses_leg_1_2;
                     let t5_leg = minus_g1_wz_leg * minus_masses_leg_1_2
                         + g2_wz_leg * own_base_parameters[2];
-                    failed.told()?;
-                    ::overact::lanes::put(&mut added[0], [0, 1], at, t1_leg);
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(&mut added[0], [0, 1], at, t1_leg);
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t2_leg + minus_g2_vx_leg * t3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         -(g1_vx_leg * t4_leg + minus_g2_vx_leg * t5_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * t2_leg + minus_g2_vy_leg * t3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         -(g1_vy_leg * t4_leg + minus_g2_vy_leg * t5_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
@@ -13275,14 +13275,14 @@ impl DualV {
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    mass_platform + ::overact::lanes::sum(&added[0]),
-                    ::overact::lanes::sum(&added[1]),
+                    mass_platform + ::overact::simd::sum(&added[0]),
+                    ::overact::simd::sum(&added[1]),
                     -(s_phi * first_x_platform + c_phi * first_y_platform)
-                        + ::overact::lanes::sum(&added[2]),
-                    mass_platform + ::overact::lanes::sum(&added[3]),
+                        + ::overact::simd::sum(&added[2]),
+                    mass_platform + ::overact::simd::sum(&added[3]),
                     c_phi * first_x_platform - s_phi * first_y_platform
-                        + ::overact::lanes::sum(&added[4]),
-                    inertia_zz_platform + ::overact::lanes::sum(&added[5]),
+                        + ::overact::simd::sum(&added[4]),
+                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
                 ];
                 let output = [
                     [sums[0], sums[1], sums[2]], [sums[1], sums[3], sums[4]],
@@ -13291,8 +13291,8 @@ impl DualV {
                 ::core::result::Result::Ok(output)
             }
         }
-        if ::overact::lanes::four() {
-            return ::overact::lanes::few(Legs { pose, base_parameters });
+        if ::overact::simd::four() {
+            return ::overact::simd::few(Legs { pose, base_parameters });
         }
         /// 1 / l_ab²
         const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
@@ -13537,13 +13537,13 @@ impl DualV {
             twist: &'a [::core::primitive::f64; 3],
             parameters: &'a [::core::primitive::f64; 68],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [::core::primitive::f64; 3],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, parameters } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -13590,40 +13590,40 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
-                        ::overact::lanes::scattered(parameters, [3, 15], at),
-                        ::overact::lanes::scattered(parameters, [7, 15], at),
-                        ::overact::lanes::scattered(parameters, [6, 15], at),
-                        ::overact::lanes::scattered(parameters, [2, 15], at),
-                        ::overact::lanes::scattered(parameters, [4, 15], at),
-                        ::overact::lanes::scattered(parameters, [8, 15], at),
-                        ::overact::lanes::scattered(parameters, [0, 15], at),
-                        ::overact::lanes::scattered(parameters, [1, 15], at),
-                        ::overact::lanes::scattered(parameters, [9, 15], at),
-                        ::overact::lanes::scattered(parameters, [10, 15], at),
-                        ::overact::lanes::scattered(parameters, [11, 15], at),
-                        ::overact::lanes::scattered(parameters, [5, 15], at),
-                        ::overact::lanes::scattered(parameters, [12, 15], at),
-                        ::overact::lanes::scattered(parameters, [13, 15], at),
-                        ::overact::lanes::scattered(parameters, [14, 15], at),
+                        ::overact::simd::scattered(parameters, [3, 15], at),
+                        ::overact::simd::scattered(parameters, [7, 15], at),
+                        ::overact::simd::scattered(parameters, [6, 15], at),
+                        ::overact::simd::scattered(parameters, [2, 15], at),
+                        ::overact::simd::scattered(parameters, [4, 15], at),
+                        ::overact::simd::scattered(parameters, [8, 15], at),
+                        ::overact::simd::scattered(parameters, [0, 15], at),
+                        ::overact::simd::scattered(parameters, [1, 15], at),
+                        ::overact::simd::scattered(parameters, [9, 15], at),
+                        ::overact::simd::scattered(parameters, [10, 15], at),
+                        ::overact::simd::scattered(parameters, [11, 15], at),
+                        ::overact::simd::scattered(parameters, [5, 15], at),
+                        ::overact::simd::scattered(parameters, [12, 15], at),
+                        ::overact::simd::scattered(parameters, [13, 15], at),
+                        ::overact::simd::scattered(parameters, [14, 15], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -13631,19 +13631,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_v_arm_x_leg = p_y_leg * twist[2];
@@ -13684,7 +13684,7 @@ impl DualV {
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - l_ab_squared_rate_1_squared_leg * c2_leg);
                     let t2_leg = own_parameters[4]
-                        + ::overact::lanes::signed(own_parameters[0], rate_1_leg, at)
+                        + ::overact::simd::signed(own_parameters[0], rate_1_leg, at)
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[3] * rate_1_leg
                         - minus_bias_rate_dot_1_leg
@@ -13693,7 +13693,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[10]
                         - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_parameters[9],
                                 minus_qd_2_leg,
                                 at,
@@ -13707,27 +13707,27 @@ impl DualV {
                         - own_parameters[11] * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::lanes::signed(own_parameters[13], qd_3_leg, at)
+                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
                         + own_parameters[14];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
@@ -13737,15 +13737,15 @@ impl DualV {
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    force_x_platform + ::overact::lanes::sum(&added[0]),
-                    -minus_force_y_platform + ::overact::lanes::sum(&added[1]),
-                    ::overact::lanes::sum(&added[2]),
+                    force_x_platform + ::overact::simd::sum(&added[0]),
+                    -minus_force_y_platform + ::overact::simd::sum(&added[1]),
+                    ::overact::simd::sum(&added[2]),
                 ];
                 let output = [sums[0], sums[1], sums[2]];
                 ::core::result::Result::Ok(output)
             }
         }
-        ::overact::lanes::few(Legs { pose, twist, parameters })
+        ::overact::simd::few(Legs { pose, twist, parameters })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -13779,13 +13779,13 @@ impl DualV {
             twist: &'a [::core::primitive::f64; 3],
             base_parameters: &'a [::core::primitive::f64; 53],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [::core::primitive::f64; 3],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, base_parameters } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -13826,42 +13826,42 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
-                        ::overact::lanes::scattered(base_parameters, [24, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [4, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [8, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [12, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [16, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [28, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [32, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [36, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [20, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [40, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [44, 1], at),
-                        ::overact::lanes::scattered_of_first(
+                        ::overact::simd::scattered(base_parameters, [24, 1], at),
+                        ::overact::simd::scattered(base_parameters, [4, 1], at),
+                        ::overact::simd::scattered(base_parameters, [8, 1], at),
+                        ::overact::simd::scattered(base_parameters, [12, 1], at),
+                        ::overact::simd::scattered(base_parameters, [16, 1], at),
+                        ::overact::simd::scattered(base_parameters, [28, 1], at),
+                        ::overact::simd::scattered(base_parameters, [32, 1], at),
+                        ::overact::simd::scattered(base_parameters, [36, 1], at),
+                        ::overact::simd::scattered(base_parameters, [20, 1], at),
+                        ::overact::simd::scattered(base_parameters, [40, 1], at),
+                        ::overact::simd::scattered(base_parameters, [44, 1], at),
+                        ::overact::simd::scattered_of_first(
                             base_parameters,
                             [48, 0],
                             1,
                             at,
                         ),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -13869,19 +13869,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
@@ -13911,7 +13911,7 @@ impl DualV {
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::lanes::signed(
+                        + ::overact::simd::signed(
                             own_base_parameters[3],
                             rate_1_leg,
                             at,
@@ -13919,7 +13919,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_base_parameters[6],
                                 minus_qd_2_leg,
                                 at,
@@ -13933,27 +13933,27 @@ impl DualV {
                         - own_base_parameters[8] * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::lanes::signed(own_base_parameters[10], qd_3_leg, at)
+                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
                         + own_base_parameters[11];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
@@ -13963,15 +13963,15 @@ impl DualV {
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    force_x_platform + ::overact::lanes::sum(&added[0]),
-                    -minus_force_y_platform + ::overact::lanes::sum(&added[1]),
-                    ::overact::lanes::sum(&added[2]),
+                    force_x_platform + ::overact::simd::sum(&added[0]),
+                    -minus_force_y_platform + ::overact::simd::sum(&added[1]),
+                    ::overact::simd::sum(&added[2]),
                 ];
                 let output = [sums[0], sums[1], sums[2]];
                 ::core::result::Result::Ok(output)
             }
         }
-        ::overact::lanes::few(Legs {
+        ::overact::simd::few(Legs {
             pose,
             twist,
             base_parameters,
@@ -14012,13 +14012,13 @@ impl DualV {
             torques: &'a [::core::primitive::f64; 4],
             parameters: &'a [::core::primitive::f64; 68],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [::core::primitive::f64; 3],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, torques, parameters } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -14066,42 +14066,42 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- the legs' own
-                    let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
+                    let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
-                        ::overact::lanes::scattered(parameters, [8, 15], at),
-                        ::overact::lanes::scattered(parameters, [0, 15], at),
-                        ::overact::lanes::scattered(parameters, [1, 15], at),
-                        ::overact::lanes::scattered(parameters, [6, 15], at),
-                        ::overact::lanes::scattered(parameters, [7, 15], at),
-                        ::overact::lanes::scattered(parameters, [5, 15], at),
-                        ::overact::lanes::scattered(parameters, [9, 15], at),
-                        ::overact::lanes::scattered(parameters, [10, 15], at),
-                        ::overact::lanes::scattered(parameters, [11, 15], at),
-                        ::overact::lanes::scattered(parameters, [12, 15], at),
-                        ::overact::lanes::scattered(parameters, [13, 15], at),
-                        ::overact::lanes::scattered(parameters, [14, 15], at),
-                        ::overact::lanes::scattered(parameters, [3, 15], at),
-                        ::overact::lanes::scattered(parameters, [2, 15], at),
-                        ::overact::lanes::scattered(parameters, [4, 15], at),
+                        ::overact::simd::scattered(parameters, [8, 15], at),
+                        ::overact::simd::scattered(parameters, [0, 15], at),
+                        ::overact::simd::scattered(parameters, [1, 15], at),
+                        ::overact::simd::scattered(parameters, [6, 15], at),
+                        ::overact::simd::scattered(parameters, [7, 15], at),
+                        ::overact::simd::scattered(parameters, [5, 15], at),
+                        ::overact::simd::scattered(parameters, [9, 15], at),
+                        ::overact::simd::scattered(parameters, [10, 15], at),
+                        ::overact::simd::scattered(parameters, [11, 15], at),
+                        ::overact::simd::scattered(parameters, [12, 15], at),
+                        ::overact::simd::scattered(parameters, [13, 15], at),
+                        ::overact::simd::scattered(parameters, [14, 15], at),
+                        ::overact::simd::scattered(parameters, [3, 15], at),
+                        ::overact::simd::scattered(parameters, [2, 15], at),
+                        ::overact::simd::scattered(parameters, [4, 15], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -14109,19 +14109,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let masses_leg_1_1 = own_parameters[1]
@@ -14182,14 +14182,14 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[8]
                         - (own_parameters[6] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_parameters[7],
                                 minus_qd_2_leg,
                                 at,
                             ));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[9] * qd_3_leg
-                        + ::overact::lanes::signed(own_parameters[10], qd_3_leg, at)
+                        + ::overact::simd::signed(own_parameters[10], qd_3_leg, at)
                         + own_parameters[11];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let force2_x_leg = own_parameters[4] * minus_bias_rate_dot_2_leg
@@ -14197,7 +14197,7 @@ impl DualV {
                     let minus_force2_y_leg = own_parameters[3]
                         * minus_bias_rate_dot_2_leg
                         + own_parameters[4] * rate_2_squared_leg;
-                    let t6_leg = ::overact::lanes::signed(
+                    let t6_leg = ::overact::simd::signed(
                         own_parameters[12],
                         rate_1_leg,
                         at,
@@ -14206,8 +14206,8 @@ impl DualV {
                         - masses_leg_1_1 * minus_bias_rate_dot_1_leg;
                     let force_on_u1_leg = t6_leg - tau_2_leg;
                     let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
@@ -14218,51 +14218,51 @@ impl DualV {
                                 * (g1_vx_leg * masses_leg_1_2
                                     - minus_g2_vx_leg * own_parameters[5]),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t2_leg - minus_g2_vx_leg * t3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         g1_vx_leg * t4_leg - minus_g2_vx_leg * t5_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * t2_leg - minus_g2_vy_leg * t3_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         g1_vy_leg * t4_leg - minus_g2_vy_leg * t5_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         g2_wz_leg * t5_leg - minus_g1_wz_leg * t4_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         minus_g2_vx_leg * force_on_u2_leg
                             + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         minus_g2_vy_leg * force_on_u2_leg
                             + g1_vy_leg * tau1_minus_force_on_u1_leg_leg1,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
@@ -14272,15 +14272,15 @@ impl DualV {
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    mass_platform + ::overact::lanes::sum(&added[0]),
-                    ::overact::lanes::sum(&added[1]),
-                    -t1_platform + ::overact::lanes::sum(&added[2]),
-                    mass_platform + ::overact::lanes::sum(&added[3]),
-                    t2_platform + ::overact::lanes::sum(&added[4]),
-                    inertia_zz_platform + ::overact::lanes::sum(&added[5]),
-                    minus_force_x_platform + ::overact::lanes::sum(&added[6]),
-                    minus_force_y_platform + ::overact::lanes::sum(&added[7]),
-                    ::overact::lanes::sum(&added[8]),
+                    mass_platform + ::overact::simd::sum(&added[0]),
+                    ::overact::simd::sum(&added[1]),
+                    -t1_platform + ::overact::simd::sum(&added[2]),
+                    mass_platform + ::overact::simd::sum(&added[3]),
+                    t2_platform + ::overact::simd::sum(&added[4]),
+                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
+                    minus_force_x_platform + ::overact::simd::sum(&added[6]),
+                    minus_force_y_platform + ::overact::simd::sum(&added[7]),
+                    ::overact::simd::sum(&added[8]),
                 ];
                 let output = {
                     let inv_pivot_1 = 1.0 / sums[0];
@@ -14308,7 +14308,7 @@ impl DualV {
                 ::core::result::Result::Ok(output)
             }
         }
-        ::overact::lanes::few(Legs {
+        ::overact::simd::few(Legs {
             pose,
             twist,
             torques,
@@ -14350,13 +14350,13 @@ impl DualV {
             torques: &'a [::core::primitive::f64; 4],
             base_parameters: &'a [::core::primitive::f64; 53],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [::core::primitive::f64; 3],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, torques, base_parameters } = self;
                 /// 1 / l_ab
                 const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
@@ -14402,44 +14402,44 @@ impl DualV {
                 static LEGS: [&::core::primitive::str; 4] = [
                     "leg1", "leg2", "leg3", "leg4",
                 ];
-                for at in ::overact::lanes::places::<V, 4>(lanes) {
+                for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- the legs' own
-                    let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
+                    let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
-                        ::overact::lanes::scattered(base_parameters, [4, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [24, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [20, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [28, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [32, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [36, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [40, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [44, 1], at),
-                        ::overact::lanes::scattered_of_first(
+                        ::overact::simd::scattered(base_parameters, [4, 1], at),
+                        ::overact::simd::scattered(base_parameters, [24, 1], at),
+                        ::overact::simd::scattered(base_parameters, [20, 1], at),
+                        ::overact::simd::scattered(base_parameters, [28, 1], at),
+                        ::overact::simd::scattered(base_parameters, [32, 1], at),
+                        ::overact::simd::scattered(base_parameters, [36, 1], at),
+                        ::overact::simd::scattered(base_parameters, [40, 1], at),
+                        ::overact::simd::scattered(base_parameters, [44, 1], at),
+                        ::overact::simd::scattered_of_first(
                             base_parameters,
                             [48, 0],
                             1,
                             at,
                         ),
-                        ::overact::lanes::scattered(base_parameters, [8, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [12, 1], at),
-                        ::overact::lanes::scattered(base_parameters, [16, 1], at),
+                        ::overact::simd::scattered(base_parameters, [8, 1], at),
+                        ::overact::simd::scattered(base_parameters, [12, 1], at),
+                        ::overact::simd::scattered(base_parameters, [16, 1], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1561; 4],
@@ -14447,19 +14447,19 @@ impl DualV {
                         at,
                     );
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2524; 4],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::lanes::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
@@ -14517,20 +14517,20 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[5]
                         - (own_base_parameters[3] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_base_parameters[4],
                                 minus_qd_2_leg,
                                 at,
                             ));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[6] * qd_3_leg
-                        + ::overact::lanes::signed(own_base_parameters[7], qd_3_leg, at)
+                        + ::overact::simd::signed(own_base_parameters[7], qd_3_leg, at)
                         + own_base_parameters[8];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
                     let tau_1_leg = own_base_parameters[9] * rate_1_leg
-                        + ::overact::lanes::signed(
+                        + ::overact::simd::signed(
                             own_base_parameters[10],
                             rate_1_leg,
                             at,
@@ -14539,53 +14539,53 @@ impl DualV {
                         - own_base_parameters[0] * minus_bias_rate_dot_1_leg + tau_1_leg
                         - tau_2_leg;
                     let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(&mut added[0], [0, 1], at, t3_leg);
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(&mut added[0], [0, 1], at, t3_leg);
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t4_leg + minus_g2_vx_leg * t5_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         -(g1_vx_leg * t6_leg + minus_g2_vx_leg * t7_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * t4_leg + minus_g2_vy_leg * t5_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         -(g1_vy_leg * t6_leg + minus_g2_vy_leg * t7_leg),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         minus_g1_wz_leg * t6_leg + g2_wz_leg * t7_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         minus_g2_vx_leg * force_on_u2_leg
                             + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         minus_g2_vy_leg * force_on_u2_leg
                             + g1_vy_leg * tau1_minus_force_on_u1_leg_leg1,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
@@ -14595,15 +14595,15 @@ impl DualV {
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    mass_platform + ::overact::lanes::sum(&added[0]),
-                    ::overact::lanes::sum(&added[1]),
-                    -t1_platform + ::overact::lanes::sum(&added[2]),
-                    mass_platform + ::overact::lanes::sum(&added[3]),
-                    t2_platform + ::overact::lanes::sum(&added[4]),
-                    inertia_zz_platform + ::overact::lanes::sum(&added[5]),
-                    minus_force_x_platform + ::overact::lanes::sum(&added[6]),
-                    minus_force_y_platform + ::overact::lanes::sum(&added[7]),
-                    ::overact::lanes::sum(&added[8]),
+                    mass_platform + ::overact::simd::sum(&added[0]),
+                    ::overact::simd::sum(&added[1]),
+                    -t1_platform + ::overact::simd::sum(&added[2]),
+                    mass_platform + ::overact::simd::sum(&added[3]),
+                    t2_platform + ::overact::simd::sum(&added[4]),
+                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
+                    minus_force_x_platform + ::overact::simd::sum(&added[6]),
+                    minus_force_y_platform + ::overact::simd::sum(&added[7]),
+                    ::overact::simd::sum(&added[8]),
                 ];
                 let output = {
                     let inv_pivot_1 = 1.0 / sums[0];
@@ -14631,7 +14631,7 @@ impl DualV {
                 ::core::result::Result::Ok(output)
             }
         }
-        ::overact::lanes::few(Legs {
+        ::overact::simd::few(Legs {
             pose,
             twist,
             torques,
@@ -14666,7 +14666,7 @@ impl DualV {
                 ("parameters", parameters, 1e12), ("preload", preload, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_ab
             const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
             /// 1 / l_ab²
@@ -15086,7 +15086,7 @@ impl DualV {
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p

@@ -280,7 +280,7 @@ impl Emps {
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
             joints,
             joint_velocities,
             joint_accelerations,
@@ -328,7 +328,7 @@ impl Emps {
         joint_velocities: &[::core::primitive::f64; 1],
         joint_accelerations: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 1], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             joints,
             joint_velocities,
             joint_accelerations,

@@ -1125,7 +1125,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
             pose,
             twist,
             acceleration,
@@ -1147,7 +1147,7 @@ impl FiveBar {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
@@ -1369,7 +1369,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
             pose,
             joints,
             twist,
@@ -1394,7 +1394,7 @@ impl FiveBar {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 5.0;
@@ -1594,7 +1594,7 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -1620,7 +1620,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -1872,7 +1872,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_into(
             pose,
             twist,
             acceleration,
@@ -1894,7 +1894,7 @@ impl FiveBar {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
@@ -2113,7 +2113,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
             pose,
             joints,
             twist,
@@ -2138,7 +2138,7 @@ impl FiveBar {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 5.0;
@@ -2326,7 +2326,7 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2352,7 +2352,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -2590,7 +2590,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             pose,
             twist,
             acceleration,
@@ -2612,7 +2612,7 @@ impl FiveBar {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
@@ -2788,7 +2788,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -2957,7 +2957,7 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2983,7 +2983,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -3178,7 +3178,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
             pose,
             twist,
             acceleration,
@@ -3200,7 +3200,7 @@ impl FiveBar {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
@@ -3393,7 +3393,7 @@ impl FiveBar {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -3570,7 +3570,7 @@ impl FiveBar {
         actuator_accelerations: &[::core::primitive::f64; 2],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -3596,7 +3596,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -3896,7 +3896,7 @@ impl FiveBar {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_2
@@ -4082,7 +4082,7 @@ impl FiveBar {
                 ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 5.0;
             /// 1 / l_2
@@ -4249,7 +4249,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_2
@@ -4455,7 +4455,7 @@ impl FiveBar {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_2
@@ -4771,7 +4771,7 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -5169,7 +5169,7 @@ impl FiveBar {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_2
@@ -5342,7 +5342,7 @@ impl FiveBar {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / half
@@ -5513,7 +5513,7 @@ impl FiveBar {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// 1 / l_2
@@ -5736,7 +5736,7 @@ impl FiveBar {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// half
             const HALF: ::core::primitive::f64 = 0.1;
             /// l_1

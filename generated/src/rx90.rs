@@ -490,7 +490,7 @@ impl Rx90 {
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 6], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
             joints,
             joint_velocities,
             joint_accelerations,
@@ -513,7 +513,7 @@ impl Rx90 {
                 ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, joint_velocities, joint_accelerations) = (
                 *joints,
                 *joint_velocities,
@@ -1083,7 +1083,7 @@ impl Rx90 {
         joint_velocities: &[::core::primitive::f64; 6],
         joint_accelerations: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 58]; 6], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             joints,
             joint_velocities,
             joint_accelerations,
@@ -1106,7 +1106,7 @@ impl Rx90 {
                 ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, joint_velocities, joint_accelerations) = (
                 *joints,
                 *joint_velocities,
@@ -1625,7 +1625,7 @@ impl Rx90 {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             // --- sines and cosines
@@ -1949,7 +1949,7 @@ impl Rx90 {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             // --- sines and cosines
@@ -2282,7 +2282,7 @@ impl Rx90 {
         ::overact::guard::within(
             &[("joints", joints, 1e12), ("parameters", parameters, 1e12)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             // --- sines and cosines
@@ -2490,7 +2490,7 @@ impl Rx90 {
         ::overact::guard::within(
             &[("joints", joints, 1e12), ("base_parameters", base_parameters, 1e12)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             // --- sines and cosines
@@ -2693,7 +2693,7 @@ impl Rx90 {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             /// d3²
@@ -3009,7 +3009,7 @@ impl Rx90 {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             /// 2 d3
@@ -3341,7 +3341,7 @@ impl Rx90 {
                 ("torques", torques, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             /// d3²
@@ -3896,7 +3896,7 @@ impl Rx90 {
                 ("torques", torques, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// d3 = rl4
             const D3: ::core::primitive::f64 = 0.45;
             /// 2 d3

@@ -1059,7 +1059,7 @@ impl ThreeLegPoint {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// l_1²
@@ -1310,7 +1310,7 @@ impl ThreeLegPoint {
                 ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -1466,7 +1466,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
             pose,
             twist,
             acceleration,
@@ -1488,7 +1488,7 @@ impl ThreeLegPoint {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -1755,7 +1755,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
             pose,
             joints,
             twist,
@@ -1780,7 +1780,7 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
@@ -2013,7 +2013,7 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2039,7 +2039,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -2365,7 +2365,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_into(
             pose,
             twist,
             acceleration,
@@ -2387,7 +2387,7 @@ impl ThreeLegPoint {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -2672,7 +2672,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
             pose,
             joints,
             twist,
@@ -2697,7 +2697,7 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
@@ -2929,7 +2929,7 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2955,7 +2955,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -3303,7 +3303,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             pose,
             twist,
             acceleration,
@@ -3325,7 +3325,7 @@ impl ThreeLegPoint {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -3557,7 +3557,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -3582,7 +3582,7 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
@@ -3774,7 +3774,7 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_platform_base_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -3800,7 +3800,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -4088,7 +4088,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
             pose,
             twist,
             acceleration,
@@ -4110,7 +4110,7 @@ impl ThreeLegPoint {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
@@ -4370,7 +4370,7 @@ impl ThreeLegPoint {
         twist: &[::core::primitive::f64; 2],
         acceleration: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_from_joints_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -4395,7 +4395,7 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
@@ -4598,7 +4598,7 @@ impl ThreeLegPoint {
         actuator_accelerations: &[::core::primitive::f64; 3],
         start: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::filled(|output| Self::idm_red_actuators_base_from_actuators_into(
+        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -4624,7 +4624,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::roomiest(#[inline(always)] || {
+        ::overact::with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
@@ -5129,7 +5129,7 @@ impl ThreeLegPoint {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -5382,7 +5382,7 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
@@ -5586,7 +5586,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -5875,7 +5875,7 @@ impl ThreeLegPoint {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -6116,7 +6116,7 @@ impl ThreeLegPoint {
                 ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// 1 / l_1
             const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
             /// l_1 = l_2
@@ -6312,7 +6312,7 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -6582,7 +6582,7 @@ impl ThreeLegPoint {
         ::overact::guard::within(
             &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1²
@@ -6759,7 +6759,7 @@ impl ThreeLegPoint {
         ::overact::guard::within(
             &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1²
@@ -6926,7 +6926,7 @@ impl ThreeLegPoint {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -7138,7 +7138,7 @@ impl ThreeLegPoint {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -7363,13 +7363,13 @@ impl ThreeLegPoint {
             torques: &'a [::core::primitive::f64; 3],
             parameters: &'a [::core::primitive::f64; 31],
         }
-        impl ::overact::lanes::SideBySide for Legs<'_> {
+        impl ::overact::simd::SideBySide for Legs<'_> {
             type Output = ::core::result::Result<
                 [::core::primitive::f64; 2],
                 ::overact::Error,
             >;
             #[inline(always)]
-            fn run<V: ::overact::lanes::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, torques, parameters } = self;
                 /// 1 / l_1
                 const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
@@ -7395,37 +7395,37 @@ impl ThreeLegPoint {
                 ];
                 /// Names of the legs, for errors.
                 static LEGS: [&::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
-                for at in ::overact::lanes::places::<V, 3>(lanes) {
+                for at in ::overact::simd::places::<V, 3>(lanes) {
                     // --- the legs' own
-                    let torques = ::overact::lanes::elements::<1, _, _, _>(torques, at);
+                    let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::lanes::row(&OF_LEG[0], at),
-                        ::overact::lanes::row(&OF_LEG[1], at),
-                        ::overact::lanes::row(&OF_LEG[2], at),
-                        ::overact::lanes::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at),
+                        ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at),
+                        ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
-                        ::overact::lanes::scattered(parameters, [8, 10], at),
-                        ::overact::lanes::scattered(parameters, [0, 10], at),
-                        ::overact::lanes::scattered(parameters, [1, 10], at),
-                        ::overact::lanes::scattered(parameters, [6, 10], at),
-                        ::overact::lanes::scattered(parameters, [7, 10], at),
-                        ::overact::lanes::scattered(parameters, [5, 10], at),
-                        ::overact::lanes::scattered(parameters, [9, 10], at),
-                        ::overact::lanes::scattered(parameters, [2, 10], at),
-                        ::overact::lanes::scattered(parameters, [3, 10], at),
-                        ::overact::lanes::scattered(parameters, [4, 10], at),
+                        ::overact::simd::scattered(parameters, [8, 10], at),
+                        ::overact::simd::scattered(parameters, [0, 10], at),
+                        ::overact::simd::scattered(parameters, [1, 10], at),
+                        ::overact::simd::scattered(parameters, [6, 10], at),
+                        ::overact::simd::scattered(parameters, [7, 10], at),
+                        ::overact::simd::scattered(parameters, [5, 10], at),
+                        ::overact::simd::scattered(parameters, [9, 10], at),
+                        ::overact::simd::scattered(parameters, [2, 10], at),
+                        ::overact::simd::scattered(parameters, [3, 10], at),
+                        ::overact::simd::scattered(parameters, [4, 10], at),
                     ];
-                    let mut failed = ::overact::lanes::Failed::none();
+                    let mut failed = ::overact::simd::Failed::none();
                     // --- leg
                     let t1_leg = pose[0] - of_leg[0];
                     let t2_leg = pose[1] - of_leg[2];
                     let d_x_leg = of_leg[1] * t1_leg + of_leg[3] * t2_leg;
                     let d_y_leg = of_leg[1] * t2_leg - of_leg[3] * t1_leg;
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         rho_squared_leg,
                         &[0.1225; 3],
@@ -7433,14 +7433,14 @@ impl ThreeLegPoint {
                         at,
                     );
                     let h_squared_leg = L_1_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::lanes::reach(
+                    ::overact::simd::reach(
                         &mut failed,
                         h_squared_leg,
                         &[0.2202; 3],
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let c12_leg = INV_L_1 * l2_x_leg;
@@ -7449,7 +7449,7 @@ impl ThreeLegPoint {
                     let s12_leg = INV_L_1 * l2_y_leg;
                     let minus_fk1_x_leg = of_leg[1] * c12_leg - of_leg[3] * s12_leg;
                     let det_leg = rho_squared_leg * h_leg;
-                    ::overact::lanes::leg(
+                    ::overact::simd::leg(
                         &mut failed,
                         det_leg,
                         &[0.05748; 3],
@@ -7492,7 +7492,7 @@ impl ThreeLegPoint {
                     let moment2_z_leg = L_1 * (t5_leg - t6_leg)
                         - own_parameters[5] * minus_bias_rate_dot_2_leg;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let minus_tau_2_leg = ::overact::lanes::signed(
+                    let minus_tau_2_leg = ::overact::simd::signed(
                         own_parameters[6],
                         minus_qd_2_leg,
                         at,
@@ -7506,12 +7506,12 @@ impl ThreeLegPoint {
                     let t7_leg = own_parameters[9]
                         + L_1 * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[7] * rate_1_leg
-                        + ::overact::lanes::signed(own_parameters[8], rate_1_leg, at)
+                        + ::overact::simd::signed(own_parameters[8], rate_1_leg, at)
                         + bias_rate_dot_1_leg * masses_leg_1_1;
                     let force_on_u1_leg = minus_tau_2_leg + t7_leg;
                     let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
-                    failed.told()?;
-                    ::overact::lanes::put(
+                    failed.result()?;
+                    ::overact::simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
@@ -7522,26 +7522,26 @@ impl ThreeLegPoint {
                                 * (g1_vx_leg * masses_leg_1_2
                                     - minus_g2_vx_leg * own_parameters[5]),
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         minus_g2_vx_leg * force_on_u2_leg
                             + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
                     );
-                    ::overact::lanes::put(
+                    ::overact::simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
@@ -7551,10 +7551,10 @@ impl ThreeLegPoint {
                 }
                 // --- what all share and what the legs add, added up
                 let sums = [
-                    parameters[30] + ::overact::lanes::sum(&added[0]),
-                    ::overact::lanes::sum(&added[1]),
-                    parameters[30] + ::overact::lanes::sum(&added[2]),
-                    ::overact::lanes::sum(&added[3]), ::overact::lanes::sum(&added[4]),
+                    parameters[30] + ::overact::simd::sum(&added[0]),
+                    ::overact::simd::sum(&added[1]),
+                    parameters[30] + ::overact::simd::sum(&added[2]),
+                    ::overact::simd::sum(&added[3]), ::overact::simd::sum(&added[4]),
                 ];
                 let output = {
                     let inv_pivot_1 = 1.0 / sums[0];
@@ -7570,8 +7570,8 @@ impl ThreeLegPoint {
                 ::core::result::Result::Ok(output)
             }
         }
-        if ::overact::lanes::four() {
-            return ::overact::lanes::few(Legs {
+        if ::overact::simd::four() {
+            return ::overact::simd::few(Legs {
                 pose,
                 twist,
                 torques,
@@ -7850,7 +7850,7 @@ impl ThreeLegPoint {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1
@@ -8112,7 +8112,7 @@ impl ThreeLegPoint {
                 ("parameters", parameters, 1e12), ("preload", preload, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// radius / 2
             const HALF_RADIUS: ::core::primitive::f64 = 0.175;
             /// 1 / l_1

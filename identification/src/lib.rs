@@ -9,7 +9,7 @@
 //!
 //! | folder | content |
 //! |---|---|
-//! | `error`, `significant`, `widest`, `blocks` | problems with location and remedy; numbers in sentences; vectorisation; evaluation of a model in blocks |
+//! | `error`, `significant`, `with_avx2`, `blocks` | problems with location and remedy; numbers in sentences; vectorisation; evaluation of a model in blocks |
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series for plots |
 //! | [`data`] | runs from files, with checks; mappings of columns and units |
 //! | [`filters`] | zero-phase filtering, decimation, differences |
@@ -52,7 +52,7 @@ mod significant;
 mod thresholds;
 mod units;
 mod validation;
-mod widest;
+mod with_avx;
 
 pub use assessment::{
     check::{About, Check, CheckKind, Detectable, Grade},
@@ -78,8 +78,8 @@ pub use estimation::{
 pub use gains::{DriveGain, Gains, JointParameter, drive_gains};
 pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
-    BaseParameter, Before, Identification, Outcome, Prepared, Progress, RankedProjection, Study,
-    estimate_projection,
+    BaseParameter, Identification, Prepared, PriorStage, Progress, ProjectionEstimates,
+    RankedProjection, Study, estimate_projection,
     figures::{Figures, PredictionFigures, ResidualFigures},
     identify, identify_after, prepare, study,
     tracking::TrackingError,

@@ -3,7 +3,7 @@
 use crate::{
     arrays::{Rows, common_samples, output},
     errors,
-    form::{Argument, Form},
+    function_form::{Argument, Form},
 };
 use overact::{Extent, Model, SampleError};
 use overact_codegen::{

@@ -17,7 +17,7 @@ mod arrays;
 mod arrow;
 mod command;
 mod errors;
-mod form;
+mod function_form;
 mod function;
 mod identification;
 mod logs;

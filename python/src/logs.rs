@@ -11,13 +11,13 @@ pub(crate) enum Given {
     /// A file, or several joined by `+`.
     File(PathBuf),
     /// Arrays with the column names of the description.
-    Arrays(String, Vec<Named>),
+    Arrays(String, Vec<NamedArray>),
     /// Samples of all actuators in SI units.
     Samples(Samples),
 }
 
-/// Named array in column-major order.
-pub(crate) struct Named {
+/// NamedArray array in column-major order.
+pub(crate) struct NamedArray {
     name: String,
     shape: (usize, usize),
     values: Vec<f64>,
@@ -62,10 +62,10 @@ pub(crate) fn given(item: &Bound<'_, PyTuple>) -> PyResult<(Given, bool)> {
     Ok((run, payload))
 }
 
-fn named(item: &Bound<'_, PyAny>) -> PyResult<Named> {
+fn named(item: &Bound<'_, PyAny>) -> PyResult<NamedArray> {
     let (name, rows, columns, values): (String, usize, usize, PyReadonlyArrayDyn<'_, f64>) =
         item.extract()?;
-    Ok(Named {
+    Ok(NamedArray {
         name,
         shape: (rows, columns),
         values: values.as_slice()?.to_vec(),

@@ -3,7 +3,7 @@
 use crate::{
     arrays::{Rows, common_samples, output},
     errors,
-    form::{Form, Owner, follow},
+    function_form::{Form, Owner, follow},
     function::{Function, names},
     identification::{self, Identified},
     operations,

@@ -8,6 +8,7 @@
 //! lines of plots are in the module `plot`.
 
 pub mod beside;
+mod chart_sheet;
 mod choice;
 mod intervals;
 mod judgement;
@@ -17,20 +18,19 @@ pub mod page;
 mod parameters_file;
 mod plot;
 pub mod published;
-mod sheet;
+mod report_bundle;
 pub mod summary;
 pub mod terminal;
 mod text;
 pub mod units;
-mod whole;
 
 pub use beside::beside;
+pub use chart_sheet::{Plot, chart_sheet};
 pub use numbers::numbers;
 pub use page::{Attachment, Contents, page};
 pub use parameters_file::parameters_file;
 pub use published::Published;
-pub use sheet::{Plot, sheet};
+pub use report_bundle::{About, document, document_with_figures, whole_page};
 pub use summary::{Extent, summary};
 pub use terminal::{base_parameters, coefficient, cross_validation, estimate, tables};
 pub use units::Units;
-pub use whole::{About, document, document_with_figures, whole_page};

@@ -5,7 +5,7 @@
 //! robots/dualv.toml docs/excitation_dualv.svg`.
 
 use overact::{Columns, Function, Model};
-use overact_report::{Plot, sheet};
+use overact_report::{Plot, chart_sheet};
 use overact_robot::{CaseOfRuns, Error, Excitation, ExcitationEffort, LimitKind, Robot};
 use overact_simulation::{Trajectory, sample};
 use std::process::ExitCode;
@@ -41,7 +41,7 @@ fn drawn(description: &str) -> Result<String, Error> {
     for run in &found.runs {
         plots.extend(motion(&again, &found, run));
     }
-    Ok(sheet(&plots, 3))
+    Ok(chart_sheet(&plots, 3))
 }
 
 /// Condition number, largest and median relative standard deviation in one projection, of all

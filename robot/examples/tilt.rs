@@ -10,7 +10,7 @@ use overact::Model;
 use overact_identification::{
     Identification, Log, Projection, Stage, estimate_projection, prepare,
 };
-use overact_report::{Plot, sheet};
+use overact_report::{Plot, chart_sheet};
 use overact_robot::{Identifier, Robot};
 use std::{error::Error, path::Path, process::ExitCode};
 
@@ -69,7 +69,7 @@ fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn
     }
     let names = plain.model().info().actuators.iter();
     let names: Vec<String> = names.map(|name| (*name).to_owned()).collect();
-    std::fs::write(file, sheet(&plots(&names, &tilts, &all), 3))?;
+    std::fs::write(file, chart_sheet(&plots(&names, &tilts, &all), 3))?;
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use crate::{
     compiled_file::{note, read},
     error::Error,
     experiment,
-    prior::{Named, prior},
+    prior::{NamedParameter, prior},
     robot::Robot,
     settings::settings,
 };
@@ -110,7 +110,7 @@ fn check_prior(
     let all = BodyParameter::all(mechanism).into_iter();
     let all = all.chain(BodyParameter::of_payload(mechanism));
     let names: Vec<_> = all.map(|one| (one.name(mechanism), one)).collect();
-    let named: Vec<Named<'_>> = names
+    let named: Vec<NamedParameter<'_>> = names
         .iter()
         .map(|(name, one)| (name.as_str(), one.symbol(), body(mechanism, *one)))
         .collect();

@@ -12,9 +12,9 @@ use overact::Model;
 use overact_codegen::description::{COUPLED_MOTORS, GAINS_AND_GRAVITY, KNOWN_TORQUES, Leg};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    Before, Calibration, CalibrationScope, Dataset, Estimate, Gains, GravityDirection,
-    Identification, Instruments, Log, Progress, Settings, Stage, Study, drive_gains,
-    identify_after, study,
+    Calibration, CalibrationScope, Dataset, Estimate, Gains, GravityDirection, Identification,
+    Instruments, Log, PriorStage, Progress, Settings, Stage, Study, drive_gains, identify_after,
+    study,
 };
 use std::collections::BTreeMap;
 
@@ -186,17 +186,17 @@ impl<'a> Identifier<'a> {
     /// Identification without calibration, with gains and gravity direction as requested.
     fn identified(&self) -> Result<Identification, Error> {
         if self.gravity_direction {
-            let made = self.in_gravity(|own, found| own.estimated(Before::Gravity(found)))?;
+            let made = self.in_gravity(|own, found| own.estimated(PriorStage::Gravity(found)))?;
             let (mut result, found) = made;
             result.warnings.splice(0..0, found.warnings());
             result.gravity = Some(found);
             return Ok(result);
         }
         if !self.gains {
-            return self.estimated(Before::Nothing);
+            return self.estimated(PriorStage::Nothing);
         }
         let (mut result, gains) =
-            self.with_gains(|own, gains| own.estimated(Before::Gains(gains)))?;
+            self.with_gains(|own, gains| own.estimated(PriorStage::Gains(gains)))?;
         let others = std::mem::take(&mut result.warnings);
         result.warnings = [gains.warnings(), others].concat();
         result.gains = gains.drives;
@@ -280,7 +280,7 @@ impl<'a> Identifier<'a> {
     }
 
     /// Identification in the current state, after the preceding stages.
-    fn estimated(&self, before: Before<'_>) -> Result<Identification, Error> {
+    fn estimated(&self, before: PriorStage<'_>) -> Result<Identification, Error> {
         self.robot.check_prior()?;
         let settings = self.with_defaults();
         let essential = self.essential();

@@ -15,7 +15,7 @@ const SHORTEST: f64 = 0.3;
 const SQUARE_WIDTH: f64 = 0.01;
 
 /// A standard parameter: name, symbol and body.
-pub(crate) type Named<'a> = (&'a str, StandardParameter, Body);
+pub(crate) type NamedParameter<'a> = (&'a str, StandardParameter, Body);
 
 /// Standard parameters of a robot and of its payloads.
 pub(crate) fn with_loads(

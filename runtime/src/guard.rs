@@ -8,7 +8,7 @@ use crate::float::Float;
 use crate::{ActuatorGroup, Error};
 
 /// An input with its name for errors.
-pub type Named<'a, T> = (&'static str, &'a [T]);
+pub type NamedInput<'a, T> = (&'static str, &'a [T]);
 
 /// An input with its name for errors and the largest magnitude of its numbers.
 pub type Bounded<'a, T> = (&'static str, &'a [T], T);
@@ -55,7 +55,7 @@ fn out_of_range<T: Float>(input: &'static str, values: &[T], most: T) -> Option<
 /// # Errors
 /// [`Error::NotFinite`] for the first invalid input.
 #[inline(always)]
-pub fn finite<T: Float>(inputs: &[Named<'_, T>]) -> Result<(), Error> {
+pub fn finite<T: Float>(inputs: &[NamedInput<'_, T>]) -> Result<(), Error> {
     // x - x is zero except for NaN and infinities. One comparison for all: an early exit would save
     // nothing, and without it the loops are vectorised.
     let mut bits = 0;

@@ -2,7 +2,7 @@
 //!
 //! It has the [`Model`] trait, [`Error`], a few functions of [`math`], and the macro
 //! `#[redundant_robot("robot.toml")]`. Forward kinematics is in [`forward`], numeric inverse
-//! kinematics in [`inverse`], poses of platforms with parasitic motion in [`aside`], and the
+//! kinematics in [`inverse`], poses of platforms with parasitic motion in [`parasitic_motion`], and the
 //! actuator projection for any kept actuators in [`partition`].
 //!
 //! The crate is `no_std` and allocates nothing. Its features are:
@@ -19,20 +19,19 @@ compile_error!(
     "overact needs square roots and trigonometry: enable the feature `std`, or `libm` where there is no standard library"
 );
 
-pub mod aside;
 pub mod block;
-mod filled;
 pub mod float;
 pub mod forward;
 pub mod guard;
 pub mod inverse;
-pub mod lanes;
 pub mod math;
 pub mod model;
+pub mod parasitic_motion;
 pub mod partition;
-mod widest;
+pub mod simd;
+mod with_avx;
+mod zeroed_then_fill;
 
-pub use filled::filled;
 pub use model::{BaseParameter, Body, Info, Model, Parameter};
 pub use overact_core::{
     ActuatorGroup, Actuators, Code, Columns, Condition, Error, Explanation, Extent, Function,
@@ -40,4 +39,5 @@ pub use overact_core::{
 };
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;
-pub use widest::{roomiest, widest};
+pub use with_avx::{with_avx2, with_avx512};
+pub use zeroed_then_fill::zeroed_then_fill;

@@ -48,6 +48,7 @@
 pub mod cascade;
 mod controller;
 pub mod drives;
+mod drivetrain;
 pub mod error;
 pub mod experiment;
 pub mod fleet;
@@ -56,7 +57,6 @@ mod plant;
 mod reference;
 pub mod run;
 mod sensors;
-mod train;
 pub mod trajectory;
 mod validation;
 

@@ -22,12 +22,12 @@ use overact::{Function, Model};
 
 use crate::{
     controller::{Control, Controller, Desired, effective_inertia},
+    drivetrain::Drivetrain,
     error::{Cause, Error, RunError, Stage},
     experiment::{Experiment, Run},
     plant::Plant,
     reference::{AtSample, BLOCK, Reference, follow, pose_at},
     sensors::Sensors,
-    train::Train,
 };
 
 /// Tracking error (rad or m) at which an actuator has left its trajectory.
@@ -278,7 +278,7 @@ fn controlled(
 struct Loop<'a> {
     model: &'a dyn Model,
     control: &'a mut dyn Control,
-    drives: Train<'a>,
+    drives: Drivetrain<'a>,
     plant: Plant<'a>,
     sensors: Sensors<'a>,
     record: Record,
@@ -309,7 +309,7 @@ impl<'a> Loop<'a> {
         Self {
             model,
             control,
-            drives: Train::new(experiment, info.actuator_is_revolute),
+            drives: Drivetrain::new(experiment, info.actuator_is_revolute),
             plant: Plant::new(model, truth, pose, twist),
             sensors: Sensors::new(experiment, sizes.actuators, &run.name),
             record: Record::new(experiment, run, info.actuators),

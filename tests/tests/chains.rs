@@ -8,7 +8,7 @@
 
 use overact_codegen::Source;
 use overact_tests::support::tree::{self, SKELETON};
-use overact_tests::support::{Failure, whole::against_reference};
+use overact_tests::support::{Failure, all_functions::against_reference};
 use overact_tier::{by_tier, is_full};
 
 const TOLERANCE: f64 = 1e-9;

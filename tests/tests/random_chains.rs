@@ -6,7 +6,7 @@
 
 use overact_codegen::Source;
 use overact_tests::support::random::skeleton;
-use overact_tests::support::{Failure, whole::against_reference};
+use overact_tests::support::{Failure, all_functions::against_reference};
 use overact_tier::drawn;
 
 /// Tolerances of functions of base parameters and of all others.

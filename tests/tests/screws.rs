@@ -7,12 +7,12 @@ use overact_compiled::friction::{SCREW, ScrewArm};
 use overact_tests::reference::energy::total_energy;
 use overact_tests::reference::states::frictionless;
 use overact_tests::reference::trajectory;
+use overact_tests::support::all_functions::against_reference;
 use overact_tests::support::conversion::reference;
 use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
 use overact_tests::support::sample::samples;
 use overact_tests::support::tree::{SKELETON, drive};
-use overact_tests::support::whole::against_reference;
 use overact_tests::support::{Backend, Evaluated, Failure, Sample, Served, model_with};
 use overact_tier::by_tier;
 

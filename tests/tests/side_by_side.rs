@@ -61,7 +61,7 @@ fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
     for stem in ROBOTS {
         for (side_by_side, name) in [(true, "lanes"), (false, "straight")] {
             let text = module(stem, side_by_side)?;
-            assert_eq!(text.contains("lanes::places"), side_by_side, "{stem}");
+            assert_eq!(text.contains("simd::places"), side_by_side, "{stem}");
             fs::write(folder.join(format!("src/{stem}_{name}.rs")), text)?;
         }
     }
@@ -273,6 +273,6 @@ fn main() {
     // Of the others many states are out of reach; this one reaches everywhere.
     assert!(failed.iter().all(|failed| *failed >= 200), "{failed:?}");
     compare!(spherical_4rrr_lanes, spherical_4rrr_straight, Spherical4Rrr);
-    println!("agree in {} lanes", <overact::lanes::Many as overact::lanes::Vector>::WIDTH);
+    println!("agree in {} lanes", <overact::simd::Many as overact::simd::Vector>::WIDTH);
 }
 "#;

@@ -5,18 +5,18 @@
 //! included: forward kinematics with its steps, Newton's method with the closure of the legs.
 
 mod chosen;
-mod form;
+mod function_forms;
 mod group;
 mod name;
 
 pub(crate) use chosen::Chosen;
-pub(crate) use form::Missing;
+pub(crate) use function_forms::Missing;
 pub use group::{Group, serves_model};
 pub use name::UnknownFunction;
 
 use crate::derivation::{FunctionForm, JointsBy, MotionInput};
 use crate::mechanism::Mechanism;
-use form::Forms;
+use function_forms::Forms;
 use name::{Meant, help, meant};
 use overact_core::Columns;
 

@@ -1,7 +1,7 @@
 //! Loads inputs into a block: transposes rows of samples to contiguous values.
 
-use super::lanes::{Lanes, WIDTH, store};
 use super::plan::{Load, Plan};
+use super::simd::{Lanes, WIDTH, store};
 use super::{BLOCK, Rows};
 use crate::lowering::Program;
 

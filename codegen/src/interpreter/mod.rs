@@ -12,10 +12,10 @@ mod direction;
 mod fuse;
 mod guards;
 mod inputs;
-mod lanes;
 mod passes;
 mod plan;
 mod rows;
+mod simd;
 mod single;
 #[cfg(test)]
 mod tests;
@@ -233,7 +233,7 @@ impl Memory {
         let values = Cell::from_mut(&mut self.values[self.start..]);
         let slots = values.as_slice_of_cells().as_chunks().0;
         let passes = self.plan.stages[stage].passes.clone();
-        lanes::run(&self.plan.passes[passes], slots);
+        simd::run(&self.plan.passes[passes], slots);
     }
 
     fn slots(&self) -> &[[f64; BLOCK]] {

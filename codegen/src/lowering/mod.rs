@@ -20,24 +20,24 @@
 
 mod dag;
 mod divisors;
-mod lanes;
 mod limits;
 mod magnitudes;
 mod min_live_order;
 mod passes;
 mod program;
 mod schedule;
+mod simd;
 #[cfg(test)]
 mod tests;
 mod vertex_cut;
 
 pub use dag::test_states::States;
-pub use lanes::{Column, Elements, Gathered, Lanes, LegRows, OfLegs, Pays, Sums};
-pub(crate) use lanes::{fold, scatter};
 pub use limits::SearchLimits;
 pub(crate) use magnitudes::Magnitudes;
 pub(crate) use min_live_order::schedule_min_live;
 pub use program::{Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, Step};
+pub use simd::{Column, Elements, LaneOutput, Lanes, LegRows, OfLegs, Profitable, Sums};
+pub(crate) use simd::{fold, scatter};
 
 use crate::cas::{Arena, Expr};
 use overact_description::diagnostic::InternalError;

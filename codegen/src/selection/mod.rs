@@ -9,27 +9,27 @@
 //!
 //! All choices have one criterion: the operations of the program that [`assemble`] makes of a
 //! function in the cheapest of its [`forms`], with the search extent of [`search`]. If parameters
-//! are known, [`values`] gives their numbers. Equal legs may run in SIMD lanes ([`lanes`]).
+//! are known, [`values`] gives their numbers. Equal legs may run in SIMD lanes ([`simd`]).
 
 mod assemble;
 mod base;
+mod candidate;
+mod candidates;
 mod columns;
 mod combine;
-mod form;
-mod forms;
 mod formulation;
-mod lanes;
 mod regressor;
 mod search;
+mod simd;
 mod values;
 
 pub use assemble::Assembler;
 pub use base::BaseParameter;
+pub(crate) use candidates::Forms;
 pub use columns::sample;
-pub(crate) use forms::Forms;
 pub use formulation::formulations;
-pub(crate) use lanes::beside;
 pub use search::Search;
+pub(crate) use simd::beside;
 pub(crate) use values::regrouped;
 
 use crate::cas::Arena;

@@ -4,9 +4,9 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::experiments::experiment::position;
 use crate::experiments::transmission;
 use crate::expressions::dimension::Dimension;
-use crate::robot::doubt;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::{JointKind, actuators};
+use crate::robot::warnings;
 use crate::toml_text::reader::{Item, Table};
 
 /// Mapping of measured logs to the robot.
@@ -63,7 +63,7 @@ pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         let names = item.strings()?;
         check_count(&item, names.len(), count)?;
         for element in item.list()? {
-            doubt::column(&element, element.value.as_str().unwrap_or_default());
+            warnings::column(&element, element.value.as_str().unwrap_or_default());
         }
         Some(names.into_iter().map(|name| name.value).collect::<Vec<_>>())
     };

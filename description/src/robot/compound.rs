@@ -1,8 +1,8 @@
 //! Conversion of joints with several axes to joints with one axis.
 
+use crate::robot::compound_joint_kind::{Axis, CompoundJointKind};
 use crate::robot::joint_shape::JointShape;
 use crate::robot::model::{JointKind, Spanned};
-use crate::robot::word::{Axis, Word};
 use overact_core::StandardParameter;
 
 /// Splits a joint into its axes.
@@ -10,7 +10,7 @@ use overact_core::StandardParameter;
 /// `first` is its table, with the parameters of the last body; `at` is the index of the first axis
 /// in the leg.
 pub(crate) fn split<'c, 't>(
-    word: Word,
+    word: CompoundJointKind,
     first: JointShape<'c, 't>,
     at: usize,
 ) -> Vec<JointShape<'c, 't>> {
@@ -29,7 +29,7 @@ pub(crate) fn split<'c, 't>(
         let of_joint = parameters.iter().copied().filter(|p| !p.is_inertial());
         match axis.1 {
             JointKind::Fixed => Vec::new(),
-            _ if word == Word::Helical => Vec::new(),
+            _ if word == CompoundJointKind::Helical => Vec::new(),
             _ => of_joint.collect(),
         }
     };
@@ -62,7 +62,7 @@ pub(crate) fn split<'c, 't>(
             between(axis)
         };
     }
-    if let (Word::Helical, [slide, turn]) = (word, joints.as_mut_slice()) {
+    if let (CompoundJointKind::Helical, [slide, turn]) = (word, joints.as_mut_slice()) {
         turned(slide, turn);
     }
     joints

@@ -4,12 +4,12 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::expressions::dimension::Dimension;
 use crate::expressions::scalar::Scalar;
 use crate::expressions::value::Value;
-use crate::robot::doubt;
 use crate::robot::friction;
 use crate::robot::joint_shape::JointShape;
 use crate::robot::model::{Joint, JointKind, Spanned};
 use crate::robot::shape::Shape;
 use crate::robot::spring;
+use crate::robot::warnings;
 use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_exact::{Angle, Number, Ratio};
@@ -165,7 +165,7 @@ impl Reader<'_, '_, '_> {
             item.to_angle(&value)
         });
         if let (Some(item), Some(value)) = (item, &value) {
-            doubt::angle(item, value.value);
+            warnings::angle(item, value.value);
         }
         value.unwrap_or_else(|| self.spanned(item, Angle::ZERO))
     }
@@ -176,7 +176,7 @@ impl Reader<'_, '_, '_> {
             Some(Spanned::new(value.scalar.to_number(), item.span.clone()))
         });
         if let (Some(item), Some(value)) = (item, &value) {
-            doubt::length(item, value.value);
+            warnings::length(item, value.value);
         }
         value.unwrap_or_else(|| self.spanned(item, Number::ZERO))
     }
@@ -222,8 +222,8 @@ impl Reader<'_, '_, '_> {
             return own;
         }
         match (dimension, value.scalar.to_angle()) {
-            (Dimension::LENGTH, _) => doubt::length(item, value.scalar.to_number()),
-            (_, Some(angle)) => doubt::angle(item, angle),
+            (Dimension::LENGTH, _) => warnings::length(item, value.scalar.to_number()),
+            (_, Some(angle)) => warnings::angle(item, angle),
             (_, None) => {}
         }
         (value.scalar, value.terms)
@@ -275,7 +275,7 @@ fn lead(item: Option<&Item<'_, '_>>, scope: &Scope) -> Option<Ratio> {
         Some(dimension) if value.dimension == dimension => value.scalar.to_ratio(),
         _ => {
             item.check_dimension(&value, Dimension::LENGTH)?;
-            doubt::length(item, value.scalar.to_number());
+            warnings::length(item, value.scalar.to_number());
             Scalar::Number(Number::float(value.scalar.value() / TAU)).to_ratio()
         }
     };

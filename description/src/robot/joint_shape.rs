@@ -1,8 +1,8 @@
 //! A joint's table with unevaluated expressions.
 
 use crate::diagnostic::Span;
+use crate::robot::compound_joint_kind::CompoundJointKind;
 use crate::robot::model::{JointKind, Spanned};
-use crate::robot::word::Word;
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;
 
@@ -24,7 +24,7 @@ pub(crate) struct JointShape<'c, 't> {
     /// Pitch of the slide of a helical joint, which is coupled to the rotation after it.
     pub(crate) pitch: Option<Item<'c, 't>>,
     /// The compound joint of which it is an axis, and the name of the table's joint.
-    pub(crate) word: Word,
+    pub(crate) word: CompoundJointKind,
     pub(crate) called: String,
     pub(crate) span: Span,
 }

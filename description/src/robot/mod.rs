@@ -3,7 +3,7 @@
 pub(crate) mod actuator_names;
 pub(crate) mod chain;
 pub(crate) mod compound;
-pub(crate) mod doubt;
+pub(crate) mod compound_joint_kind;
 pub(crate) mod friction;
 pub(crate) mod geometry;
 pub(crate) mod inventory;
@@ -18,4 +18,4 @@ pub(crate) mod parameters;
 pub(crate) mod platform;
 pub(crate) mod shape;
 pub(crate) mod spring;
-pub(crate) mod word;
+pub(crate) mod warnings;

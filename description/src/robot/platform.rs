@@ -10,7 +10,7 @@ use overact_exact::Number;
 
 /// Keywords of motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Word {
+enum CompoundJointKind {
     FixedAxis,
     Point,
     Planar,
@@ -20,14 +20,14 @@ enum Word {
     Spatial,
 }
 
-const WORDS: [(&str, Word); 7] = [
-    ("fixed axis", Word::FixedAxis),
-    ("point", Word::Point),
-    ("planar", Word::Planar),
-    ("translation", Word::Translation),
-    ("schoenflies", Word::Schoenflies),
-    ("spherical", Word::Spherical),
-    ("spatial", Word::Spatial),
+const WORDS: [(&str, CompoundJointKind); 7] = [
+    ("fixed axis", CompoundJointKind::FixedAxis),
+    ("point", CompoundJointKind::Point),
+    ("planar", CompoundJointKind::Planar),
+    ("translation", CompoundJointKind::Translation),
+    ("schoenflies", CompoundJointKind::Schoenflies),
+    ("spherical", CompoundJointKind::Spherical),
+    ("spatial", CompoundJointKind::Spatial),
 ];
 
 const AXES: [(&str, usize); 3] = [("x", 0), ("y", 1), ("z", 2)];
@@ -114,24 +114,30 @@ fn parasitic(motion: Motion, item: &Item<'_, '_>) -> Option<Motion> {
     is_right.then_some(Motion::Parasitic { independent })
 }
 
-fn motion(word: Word, axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Motion, [Number; 3])> {
+fn motion(
+    word: CompoundJointKind,
+    axis: Option<&Item<'_, '_>>,
+    scope: &Scope,
+) -> Option<(Motion, [Number; 3])> {
     let mut at = [Number::ZERO; 3];
     let motion = match word {
-        Word::FixedAxis => {
+        CompoundJointKind::FixedAxis => {
             let fixed = fixed_axis(axis, scope)?;
             at = fixed.1;
             fixed.0
         }
-        Word::Point => Motion::Point {
+        CompoundJointKind::Point => Motion::Point {
             axis: normal(axis)?,
         },
-        Word::Planar => Motion::Planar {
+        CompoundJointKind::Planar => Motion::Planar {
             axis: normal(axis)?,
         },
-        Word::Schoenflies => Motion::Schoenflies {
+        CompoundJointKind::Schoenflies => Motion::Schoenflies {
             axis: normal(axis)?,
         },
-        Word::Translation | Word::Spherical | Word::Spatial => {
+        CompoundJointKind::Translation
+        | CompoundJointKind::Spherical
+        | CompoundJointKind::Spatial => {
             if let Some(item) = axis {
                 let message = "`axis` has no meaning for this motion";
                 item.context.report(
@@ -140,8 +146,8 @@ fn motion(word: Word, axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Mot
                 );
             }
             match word {
-                Word::Translation => Motion::Translation,
-                Word::Spherical => Motion::Spherical,
+                CompoundJointKind::Translation => Motion::Translation,
+                CompoundJointKind::Spherical => Motion::Spherical,
                 _ => Motion::Spatial,
             }
         }

@@ -2,12 +2,12 @@
 
 use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 use crate::robot::compound::split;
-use crate::robot::doubt;
+use crate::robot::compound_joint_kind::{CompoundJointKind, WORDS};
 use crate::robot::joint_shape::{JointShape, STEPS};
 use crate::robot::model::{JointKind, Spanned};
 use crate::robot::motor::{self, MotorShape};
 use crate::robot::parameters::Owner;
-use crate::robot::word::{WORDS, Word};
+use crate::robot::warnings;
 use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::{Scope, is_word, name_problem};
 use overact_core::StandardParameter;
@@ -154,13 +154,13 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
 const PITCH: &str = "pitch = \"5 mm\" for each turn about z, or \"0.8 mm/rad\" for each radian";
 
 /// The keyword of a table's joint; a revolute joint if it is unknown.
-fn word(table: &Table<'_, '_>) -> Spanned<Word> {
+fn word(table: &Table<'_, '_>) -> Spanned<CompoundJointKind> {
     let help = "type = \"revolute\", \"prismatic\" or \"fixed\", or a joint of several axes: \"cylindrical\", \"universal\", \"spherical\", \"planar\", \"helical\"";
     let word = table
         .require("type", help)
         .and_then(|item| item.choice(&WORDS));
     word.unwrap_or(Spanned::new(
-        Word::Simple(JointKind::Revolute),
+        CompoundJointKind::Simple(JointKind::Revolute),
         table.span.clone(),
     ))
 }
@@ -266,7 +266,7 @@ fn joint<'c, 't>(
     table: &Table<'c, 't>,
     name: Spanned<String>,
     antecedent: Option<usize>,
-    word: &Spanned<Word>,
+    word: &Spanned<CompoundJointKind>,
 ) -> JointShape<'c, 't> {
     let kind = Spanned::new(word.value.first(), word.span.clone());
     let called = name.value.clone();
@@ -277,12 +277,12 @@ fn joint<'c, 't>(
         .and_then(Item::boolean)
         .unwrap_or(false);
     let driven = actuated_item.as_ref().filter(|_| actuated);
-    if word.value == Word::Simple(JointKind::Fixed) {
+    if word.value == CompoundJointKind::Simple(JointKind::Fixed) {
         if let Some(item) = driven {
             let message = "a fixed joint cannot be actuated";
             table.context.report(item.error(Code::ACTUATED, message));
         }
-        doubt::payload(table.context, &name);
+        warnings::payload(table.context, &name);
     }
     let owner = Owner::Joint(word.value.last());
     let parameters = table
@@ -306,7 +306,7 @@ fn joint<'c, 't>(
         antecedent,
         steps,
         turned: false,
-        actuated: actuated && (word.value.count() == 1 || word.value == Word::Helical),
+        actuated: actuated && (word.value.count() == 1 || word.value == CompoundJointKind::Helical),
         parameters,
         spring,
         known,
@@ -320,8 +320,8 @@ fn joint<'c, 't>(
 }
 
 /// The pitch of a helical joint; an error if it is missing, or given for another joint.
-fn pitch<'c, 't>(table: &Table<'c, 't>, word: Word) -> Option<Item<'c, 't>> {
-    if word == Word::Helical {
+fn pitch<'c, 't>(table: &Table<'c, 't>, word: CompoundJointKind) -> Option<Item<'c, 't>> {
+    if word == CompoundJointKind::Helical {
         return table.require("pitch", PITCH);
     }
     let item = table.get("pitch")?;

@@ -168,7 +168,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p

@@ -255,7 +255,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p
@@ -592,7 +592,7 @@ impl DualV {
         torques: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
-        ::overact::widest(#[inline(always)] || {
+        ::overact::with_avx2(#[inline(always)] || {
             /// l_ab²
             const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
             /// r_p

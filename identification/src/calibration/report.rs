@@ -30,7 +30,7 @@ pub(super) struct Report<'a> {
 }
 
 /// Identity of a parameter.
-struct Named {
+struct ParameterIdentity {
     name: String,
     unit: &'static str,
     kind: ParameterKind,
@@ -43,17 +43,19 @@ fn unit(revolute: bool) -> &'static str {
 }
 
 /// All parameters: encoder offsets, then lengths.
-fn named(info: &Info<'_>, geometry: &dyn Geometry) -> Vec<Named> {
+fn named(info: &Info<'_>, geometry: &dyn Geometry) -> Vec<ParameterIdentity> {
     let sensors = info.actuators.iter().zip(info.actuator_is_revolute);
-    let offsets = sensors.enumerate().map(|(index, (name, revolute))| Named {
-        name: format!("offset_{name}"),
-        unit: unit(*revolute),
-        kind: ParameterKind::EncoderOffset,
-        described: 0.0,
-        index,
-    });
+    let offsets = sensors
+        .enumerate()
+        .map(|(index, (name, revolute))| ParameterIdentity {
+            name: format!("offset_{name}"),
+            unit: unit(*revolute),
+            kind: ParameterKind::EncoderOffset,
+            described: 0.0,
+            index,
+        });
     let lengths = geometry.parameters().iter().enumerate();
-    let lengths = lengths.map(|(index, one)| Named {
+    let lengths = lengths.map(|(index, one)| ParameterIdentity {
         name: one.name.clone(),
         unit: unit(false),
         kind: one.kind,
@@ -145,43 +147,53 @@ impl Report<'_> {
         self.choice.problem.samples.count() * self.choice.redundancy
     }
 
-    fn estimated(&self, places: &[(usize, &Named)], all: &[Named]) -> Vec<CalibratedParameter> {
+    fn estimated(
+        &self,
+        places: &[(usize, &ParameterIdentity)],
+        all: &[ParameterIdentity],
+    ) -> Vec<CalibratedParameter> {
         let of_runs = &self.choice.problem.samples.of_runs;
         let deviations = Deviations::new(self.fit, of_runs, self.choice.redundancy);
         let values = self.fit.values();
         let each = places.iter().zip(values).enumerate();
-        let parameter = |(order, ((place, one), change)): (usize, (&(usize, &Named), f64))| {
-            // A parameter that the fit does not determine has infinite standard deviation.
-            let half = |misses| {
+        let parameter =
+            |(order, ((place, one), change)): (usize, (&(usize, &ParameterIdentity), f64))| {
+                // A parameter that the fit does not determine has infinite standard deviation.
+                let half = |misses| {
+                    let known = deviations.as_ref();
+                    known.map_or(f64::INFINITY, |known| known.half(order, misses))
+                };
                 let known = deviations.as_ref();
-                known.map_or(f64::INFINITY, |known| known.half(order, misses))
+                let half = half(MISSES);
+                // If all parameters are estimated together, right ones need no alternatives.
+                let others = match self.scope {
+                    CalibrationScope::Smallest => self.choice.alternatives(self.fit, *place),
+                    _ => Vec::new(),
+                };
+                CalibratedParameter {
+                    name: one.name.clone(),
+                    unit: one.unit,
+                    kind: one.kind,
+                    described: one.described,
+                    change,
+                    standard_deviation: known.map_or(f64::INFINITY, |known| known.each[order]),
+                    interval_95: [change - half, change + half],
+                    alternatives: others
+                        .iter()
+                        .map(|&other| all[other].name.clone())
+                        .collect(),
+                    index: one.index,
+                }
             };
-            let known = deviations.as_ref();
-            let half = half(MISSES);
-            // If all parameters are estimated together, right ones need no alternatives.
-            let others = match self.scope {
-                CalibrationScope::Smallest => self.choice.alternatives(self.fit, *place),
-                _ => Vec::new(),
-            };
-            CalibratedParameter {
-                name: one.name.clone(),
-                unit: one.unit,
-                kind: one.kind,
-                described: one.described,
-                change,
-                standard_deviation: known.map_or(f64::INFINITY, |known| known.each[order]),
-                interval_95: [change - half, change + half],
-                alternatives: others
-                    .iter()
-                    .map(|&other| all[other].name.clone())
-                    .collect(),
-                index: one.index,
-            }
-        };
         each.map(parameter).collect()
     }
 
-    fn held(&self, place: usize, one: &Named, all: &[Named]) -> HeldParameter {
+    fn held(
+        &self,
+        place: usize,
+        one: &ParameterIdentity,
+        all: &[ParameterIdentity],
+    ) -> HeldParameter {
         let normal = &self.fit.normal;
         let variance = variance(normal.square, self.equations(), self.fit.selected.len());
         let own = independent_part(normal, &self.fit.selected, place);
@@ -196,7 +208,7 @@ impl Report<'_> {
     }
 
     /// Why a parameter is undetermined.
-    fn reason(&self, place: usize, all: &[Named]) -> String {
+    fn reason(&self, place: usize, all: &[ParameterIdentity]) -> String {
         let (normal, selected) = (&self.fit.normal, &self.fit.selected);
         let whole = normal.matrix[(place, place)];
         let largest = normal.matrix.diagonal().max();
@@ -215,7 +227,7 @@ impl Report<'_> {
         format!("its effect equals that of changes of {}", of.join(", "))
     }
 
-    fn warnings(&self, all: &[Named]) -> Vec<String> {
+    fn warnings(&self, all: &[ParameterIdentity]) -> Vec<String> {
         let mut warnings = Vec::new();
         if !self.fit.converged {
             warnings.push(String::from(
@@ -246,7 +258,7 @@ impl Report<'_> {
     }
 
     /// Remark if a common factor of all lengths is undetermined.
-    fn scale(&self, all: &[Named]) -> Option<String> {
+    fn scale(&self, all: &[ParameterIdentity]) -> Option<String> {
         let lengths = all.iter().map(|one| one.described);
         let direction = nalgebra::DVector::from_iterator(all.len(), lengths);
         let normal = self.described;

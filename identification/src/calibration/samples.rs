@@ -96,7 +96,7 @@ impl Samples {
         differences: &mut [Vec<f64>],
     ) -> Result<(), Error> {
         let n = self.sensors;
-        let mut way = Way::new(model, log, stride);
+        let mut way = PosePath::new(model, log, stride);
         let mut reader = log.reader()?;
         let (mut number, mut taken) = (0, 0);
         while let Some(block) = reader.next()? {
@@ -119,7 +119,7 @@ impl Samples {
 }
 
 /// Poses along a run.
-struct Way<'a> {
+struct PosePath<'a> {
     model: &'a dyn Model,
     log: &'a Log,
     /// One of this number of samples is selected.
@@ -129,7 +129,7 @@ struct Way<'a> {
     pose: Vec<f64>,
 }
 
-impl<'a> Way<'a> {
+impl<'a> PosePath<'a> {
     fn new(model: &'a dyn Model, log: &'a Log, stride: usize) -> Self {
         let followed = (FOLLOWED * log.sampling_frequency()) as usize;
         Self {

@@ -13,7 +13,7 @@ use super::{
 use crate::{error::Problem, prior::Prior};
 
 /// Name and symbol of a standard parameter.
-pub(super) type Named<'a> = (&'a str, StandardParameter);
+pub(super) type NamedParameter<'a> = (&'a str, StandardParameter);
 
 impl Prior {
     /// Problems of the prior for a robot with these standard parameters.
@@ -21,7 +21,7 @@ impl Prior {
     /// They are impossible bodies and empty bounds. The problem's column is a parameter of the
     /// body.
     #[must_use]
-    pub fn problems(&self, parameters: &[Named<'_>]) -> Vec<Problem> {
+    pub fn problems(&self, parameters: &[NamedParameter<'_>]) -> Vec<Problem> {
         let values = Values::new(self, parameters);
         let impossible = values
             .given
@@ -78,7 +78,7 @@ fn impossible_bounds(
 
 impl Values {
     /// The given values, and uniform bodies of density 1.
-    pub(super) fn new(prior: &Prior, parameters: &[Named<'_>]) -> Self {
+    pub(super) fn new(prior: &Prior, parameters: &[NamedParameter<'_>]) -> Self {
         let mut values = Self {
             given: BTreeMap::new(),
             uniform: BTreeMap::new(),

@@ -3,7 +3,7 @@
 use overact::Code;
 use std::io::Read;
 
-use super::{medium::Medium, problems::unreadable};
+use super::{byte_source::ByteSource, problems::unreadable};
 use crate::error::{Error, Problem};
 
 /// Number of bytes that determine the format.
@@ -103,7 +103,7 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
 ///
 /// # Errors
 /// A file that cannot be read, or of an unsupported format.
-pub(super) fn recognise(file: &str, medium: &Medium) -> Result<Format, Error> {
+pub(super) fn recognise(file: &str, medium: &ByteSource) -> Result<Format, Error> {
     if let Some(path) = medium.path()
         && path.metadata().is_ok_and(|found| !found.is_file())
     {

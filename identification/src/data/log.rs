@@ -11,7 +11,7 @@ use super::{
     rows,
     samples::Samples,
     source::Files,
-    spill::Spill,
+    temporary_store::TemporaryStore,
 };
 use crate::error::{Error, Problem};
 
@@ -396,7 +396,7 @@ enum Rows<'a> {
     Memory([&'a [f64]; 3]),
     Files(Box<rows::Rows<'a>>),
     /// A temporary file, and the number of samples read.
-    Spilled(&'a Spill, usize),
+    Spilled(&'a TemporaryStore, usize),
     Others(Box<Reader<'a>>, periods::Others<'a>),
 }
 

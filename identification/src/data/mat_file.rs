@@ -4,14 +4,16 @@ use overact::Code;
 
 use matfile::{Array, MatFile, NumericData};
 
-use super::{arrays::Arrays, budget::Budget, medium::Medium, problems::unreadable, structures};
+use super::{
+    arrays::Arrays, budget::Budget, byte_source::ByteSource, problems::unreadable, structures,
+};
 use crate::error::{Error, Problem};
 
 /// Reads all arrays of a file.
 ///
 /// # Errors
 /// A file that cannot be read.
-pub(super) fn open(file: String, medium: &Medium) -> Result<Arrays, Error> {
+pub(super) fn open(file: String, medium: &ByteSource) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
         let message = format!("the file is not a MATLAB v5 file: {why}");

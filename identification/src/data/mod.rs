@@ -14,6 +14,7 @@
 mod archive;
 mod arrays;
 mod budget;
+mod byte_source;
 mod clock;
 mod column_plausibility;
 mod columns;
@@ -28,7 +29,6 @@ mod mapping;
 mod mat_file;
 #[cfg(feature = "mcap")]
 mod mcap_file;
-mod medium;
 mod numpy;
 mod open_files;
 mod parquet_file;
@@ -40,11 +40,11 @@ mod samples;
 mod scales;
 mod signals;
 mod source;
-mod spill;
 mod stored;
 mod structures;
 mod summary;
 mod table;
+mod temporary_store;
 mod text;
 mod transmission;
 mod unwrapping;
@@ -70,7 +70,7 @@ pub use scales::Scales;
 
 use crate::error::Error;
 use arrays::Arrays;
-use medium::Medium;
+use byte_source::ByteSource;
 use problems::display_name;
 use source::Files;
 use table::Table;
@@ -110,7 +110,7 @@ fn read_with_progress(
     payload: bool,
     advance: &dyn Fn(u64),
 ) -> Result<Log, Error> {
-    let part = |path: &Path| (display_name(path), Medium::at(path));
+    let part = |path: &Path| (display_name(path), ByteSource::at(path));
     let files: Vec<_> = parts(path).into_iter().map(part).collect();
     let files = Files::new(display_name(path), &files, mapping)?;
     first_pass(files, mapping, payload, advance)
@@ -145,7 +145,7 @@ pub fn read_bytes(
     mapping: &Mapping,
     payload: bool,
 ) -> Result<Log, Error> {
-    let files = [(name.to_owned(), Medium::Memory(Arc::clone(bytes)))];
+    let files = [(name.to_owned(), ByteSource::Memory(Arc::clone(bytes)))];
     let files = Files::new(name.to_owned(), &files, mapping)?;
     first_pass(files, mapping, payload, &|_| {})
 }

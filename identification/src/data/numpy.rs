@@ -8,7 +8,7 @@ use super::{
     archive,
     arrays::Arrays,
     budget::Budget,
-    medium::Medium,
+    byte_source::ByteSource,
     problems::{shown, unreadable},
 };
 use crate::error::{Error, Problem};
@@ -21,7 +21,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 ///
 /// # Errors
 /// A file that cannot be read or is broken, or an array without numbers.
-pub(super) fn open_array(file: String, medium: &Medium) -> Result<Arrays, Error> {
+pub(super) fn open_array(file: String, medium: &ByteSource) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let mut arrays = Arrays::new(file.clone());
     push(&mut arrays, "array", &bytes).map_err(|why| {
@@ -36,7 +36,7 @@ pub(super) fn open_array(file: String, medium: &Medium) -> Result<Arrays, Error>
 ///
 /// # Errors
 /// A file that cannot be read, is broken, or contains nothing from NumPy.
-pub(super) fn open_archive(file: String, medium: &Medium) -> Result<Arrays, Error> {
+pub(super) fn open_archive(file: String, medium: &ByteSource) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
         let problem = Problem::new(

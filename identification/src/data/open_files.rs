@@ -3,8 +3,8 @@
 use overact::Code;
 
 use super::{
-    mapping::Mapping, medium::Medium, problems::shown, resampling, rows::Joined, signals::Signals,
-    source::Files, table::Table, transmission::Transmission,
+    byte_source::ByteSource, mapping::Mapping, problems::shown, resampling, rows::Joined,
+    signals::Signals, source::Files, table::Table, transmission::Transmission,
 };
 use crate::error::{Error, Problem};
 
@@ -15,7 +15,7 @@ impl Files {
     /// An invalid mapping, files that cannot be read, missing columns.
     pub(super) fn new(
         name: String,
-        files: &[(String, Medium)],
+        files: &[(String, ByteSource)],
         mapping: &Mapping,
     ) -> Result<Self, Error> {
         mapping.check()?;
@@ -213,7 +213,7 @@ impl Files {
 }
 
 /// The problem of a file joined with itself.
-fn twice(files: &[(String, Medium)]) -> Option<Problem> {
+fn twice(files: &[(String, ByteSource)]) -> Option<Problem> {
     let places: Vec<_> = files
         .iter()
         .map(|(_, medium)| std::fs::canonicalize(medium.path()?).ok())
@@ -254,7 +254,7 @@ fn used(
 #[cfg(all(test, not(target_family = "wasm")))]
 mod tests {
     use super::Files;
-    use crate::data::{Gain, Log, Mapping, Time, medium::Medium};
+    use crate::data::{Gain, Log, Mapping, Time, byte_source::ByteSource};
     use std::fs;
 
     #[test]
@@ -275,7 +275,7 @@ mod tests {
             transmission: Vec::new(),
             rotating: Vec::new(),
         };
-        let file = (String::from("log.csv"), Medium::Disk(path.clone()));
+        let file = (String::from("log.csv"), ByteSource::Disk(path.clone()));
         let files = Files::new(String::from("run"), &[file], &mapping).expect("files");
         let log = Log::in_files(files, 10.0, 100, false);
         let (positions, torques) = log.load().expect("numbers");

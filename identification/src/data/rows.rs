@@ -324,7 +324,7 @@ impl<'a> Rows<'a> {
         let place = resampled.at(&mut |row| joined.next(row), time, &mut self.values);
         Ok(match place? {
             Place::Inside => Step::Row,
-            Place::Before => Step::Outside,
+            Place::PriorStage => Step::Outside,
             Place::Behind => Step::End,
         })
     }

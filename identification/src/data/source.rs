@@ -4,8 +4,8 @@ use super::{
     expression::Expression,
     resampling::Resampled,
     signals::Signals,
-    spill::Spill,
     table::Table,
+    temporary_store::TemporaryStore,
     transmission::Transmission,
     unwrapping::{Rotation, Wrap},
 };
@@ -41,7 +41,7 @@ pub(super) struct Files {
     /// Resampling rate, Hz, and usual step before, s.
     pub(super) resample: Option<(f64, f64)>,
     /// Cached samples of a large run whose files are slow to read.
-    pub(super) spill: Option<Spill>,
+    pub(super) spill: Option<TemporaryStore>,
 }
 
 impl Files {

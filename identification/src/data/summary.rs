@@ -7,8 +7,8 @@ use super::{
     rows::Rows,
     samples::Samples,
     source::{Files, WrapSource},
-    spill::Spill,
     table::Table,
+    temporary_store::TemporaryStore,
     unwrapping::Wrap,
 };
 use crate::error::{Error, Problem};
@@ -31,7 +31,7 @@ pub(super) struct Summary {
     /// All samples, if they fit in memory.
     pub(super) samples: Option<Samples>,
     /// All samples in a temporary file, if they do not fit and their files are slow to read.
-    pub(super) spill: Option<Spill>,
+    pub(super) spill: Option<TemporaryStore>,
     /// Samples of the first file at which a file joined by time has no values.
     pub(super) left_out: usize,
     /// Columns and positions that were logged within one turn and are not yet unwrapped.
@@ -118,9 +118,9 @@ impl Files {
     }
 
     /// A temporary file for a run that is read from text.
-    fn spilled(&self) -> Option<Spill> {
+    fn spilled(&self) -> Option<TemporaryStore> {
         let is_text = self.tables.iter().any(Table::is_text);
-        let new = || Spill::new(self.actuators(), self.has_velocities());
+        let new = || TemporaryStore::new(self.actuators(), self.has_velocities());
         is_text.then(new).flatten()
     }
 }

@@ -8,10 +8,9 @@ use super::hdf5_file;
 use super::mcap_file;
 use super::{
     arrays::{self, Arrays},
+    byte_source::ByteSource,
     format::{self, Format},
-    mat_file,
-    medium::Medium,
-    numpy,
+    mat_file, numpy,
     parquet_file::Parquet,
     problems::Existing,
     stored::{Stored, StoredRows},
@@ -51,7 +50,7 @@ impl Table {
     ///
     /// # Errors
     /// A file that cannot be read, or of an unsupported format.
-    pub(super) fn open(file: String, medium: &Medium) -> Result<Vec<Self>, Error> {
+    pub(super) fn open(file: String, medium: &ByteSource) -> Result<Vec<Self>, Error> {
         let one = match format::recognise(&file, medium)? {
             Format::Text => Self::Text(Text::open(file, medium)?),
             Format::Mat => Self::Arrays(mat_file::open(file, medium)?),
@@ -232,7 +231,7 @@ impl Table {
 
 /// Path of a file whose format can only be read from disk.
 #[cfg(any(feature = "hdf5", feature = "mcap"))]
-fn on_disk<'m>(file: &str, medium: &'m Medium) -> Result<&'m std::path::Path, Error> {
+fn on_disk<'m>(file: &str, medium: &'m ByteSource) -> Result<&'m std::path::Path, Error> {
     medium.path().ok_or_else(|| {
         let message = "files of this format can be read from a disk only";
         Problem::new(overact::Code::LOG_FORMAT, message)

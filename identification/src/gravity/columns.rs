@@ -26,7 +26,7 @@ const STATES: usize = 2;
 
 /// Selected columns of one model.
 #[derive(Debug)]
-pub(super) struct Picked {
+pub(super) struct SelectedColumns {
     pub(super) columns: ColumnSet,
     /// Their indices, in ascending order.
     pub(super) picked: Vec<usize>,
@@ -36,9 +36,9 @@ pub(super) struct Picked {
 #[derive(Debug)]
 pub(super) struct Extended {
     /// Columns of the robot in the described gravity.
-    pub(super) own: Picked,
+    pub(super) own: SelectedColumns,
     /// Columns of the fields.
-    pub(super) along: [Picked; 3],
+    pub(super) along: [SelectedColumns; 3],
     /// Names of the parameters with an effect in any gravity.
     pub(super) names: Vec<String>,
     /// B on random states.
@@ -135,7 +135,7 @@ impl Extended {
             all
         };
         let (at_described, of_fields) = (coefficients(0), [1, 2, 3].map(coefficients));
-        let picked = |set: usize, columns: ColumnSet| Picked {
+        let picked = |set: usize, columns: ColumnSet| SelectedColumns {
             picked: kept
                 .iter()
                 .filter(|place| places[**place].0 == set)

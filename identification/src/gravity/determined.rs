@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::{columns::Extended, frame::Frame};
+use super::{columns::Extended, direction::Frame};
 use crate::regression::elimination::eliminate;
 
 /// Angle between the tested and the described direction, rad.

@@ -25,7 +25,7 @@
 mod columns;
 mod determined;
 mod deviations;
-mod frame;
+mod direction;
 mod observation;
 mod result;
 mod solve;
@@ -45,7 +45,7 @@ use crate::{
 use columns::Extended;
 use determined::free_turns;
 use deviations::covariance;
-use frame::Frame;
+use direction::Frame;
 use observation::Observer;
 use solve::solve;
 use uncertainty_propagation::Turned;

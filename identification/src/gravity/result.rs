@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Vector3};
 use serde::Serialize;
 
-use super::{frame::Frame, uncertainty_propagation::Turned};
+use super::{direction::Frame, uncertainty_propagation::Turned};
 use crate::regression::uncertainty_propagation::PropagatedUncertainty;
 
 /// 95 % quantiles of chi-squared with one and with two degrees of freedom.

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use overact::Code;
 
-use super::{columns::Extended, frame::Frame, observation::combined};
+use super::{columns::Extended, direction::Frame, observation::combined};
 use crate::{
     error::{Error, Problem},
     estimation::estimate::fit,

@@ -4,7 +4,7 @@ use overact::Model;
 
 use super::{prepare::Prepared, progress::Progress};
 use crate::{
-    assessment::{self, Watched},
+    assessment::{self, RunMonitor},
     consistent::Consistent,
     data::Log,
     error::Error,
@@ -22,7 +22,7 @@ pub(super) struct ValidationRunResults {
     /// Number of the projection of each result.
     pub(super) owners: Vec<usize>,
     pub(super) motions: Vec<RunFigures>,
-    pub(super) watched: Vec<Watched>,
+    pub(super) watched: Vec<RunMonitor>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -95,7 +95,7 @@ pub(super) fn cross_validate(
             Ok(validated) => {
                 all.push((log.payload(), validated.validations));
                 results.motions.push(validated.motion);
-                results.watched.push(Watched {
+                results.watched.push(RunMonitor {
                     monitor: validated.monitor,
                     closure_residual: validated.closure_residual,
                 });

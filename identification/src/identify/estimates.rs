@@ -36,7 +36,7 @@ const LARGEST_RELATIVE_ERROR_PERCENT: f64 = 50.0;
 /// Estimates of one projection.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Outcome {
+pub struct ProjectionEstimates {
     /// Base parameters.
     pub base: Estimate,
     /// Recommended parameters.
@@ -62,7 +62,7 @@ pub fn estimate_projection(
     projection: usize,
     settings: &Settings,
     true_values: Option<&BTreeMap<String, f64>>,
-) -> Result<Outcome, Error> {
+) -> Result<ProjectionEstimates, Error> {
     let unknown = || {
         Error::from(Problem::new(
             Code::NOTHING_DETERMINED,
@@ -99,7 +99,7 @@ pub fn estimate_projection(
     };
     let (instrumental, errors_in_regressor) =
         context.with_instruments((&selected, &names), &base, settings);
-    Ok(Outcome {
+    Ok(ProjectionEstimates {
         ordinary: context.by_ordinary((&selected, &names), settings)?,
         instrumental,
         errors_in_regressor,
@@ -134,7 +134,7 @@ pub(super) fn estimate_all(
     settings: &Settings,
     true_values: Option<&BTreeMap<String, f64>>,
     progress: &dyn Fn(Progress<'_>),
-) -> Vec<Result<Outcome, Error>> {
+) -> Vec<Result<ProjectionEstimates, Error>> {
     for projection in &prepared.projections {
         let model = projection.model();
         progress(Progress::Estimation { model });

@@ -19,7 +19,7 @@ pub(crate) mod tracking;
 
 use overact::Model;
 
-pub use estimates::{Outcome, estimate_projection};
+pub use estimates::{ProjectionEstimates, estimate_projection};
 pub use identification::{BaseParameter, Identification};
 pub(crate) use prepare::LARGEST_STRETCHES;
 pub use prepare::{Prepared, prepare};
@@ -33,7 +33,7 @@ use prepare::{check_runs, prepared_warnings};
 
 use crate::{
     assessment::{
-        self, Context, Watched,
+        self, Context, RunMonitor,
         assumptions::{PreviouslyIdentified, assumptions, rests_on, unseen},
         check::{Check, Grade},
         hypotheses::{PositionRange, scores},
@@ -61,13 +61,13 @@ pub fn identify(
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
-    identify_after(model, dataset, Before::Nothing, settings, progress)
+    identify_after(model, dataset, PriorStage::Nothing, settings, progress)
 }
 
 /// Quantities identified before the parameters.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
-pub enum Before<'a> {
+pub enum PriorStage<'a> {
     /// Nothing.
     Nothing,
     /// Gains of the drives; the torques of the runs have been multiplied by them.
@@ -85,7 +85,7 @@ pub enum Before<'a> {
 pub fn identify_after(
     model: &dyn Model,
     dataset: &Dataset<'_>,
-    before: Before<'_>,
+    before: PriorStage<'_>,
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
@@ -95,15 +95,15 @@ pub fn identify_after(
     let projections = Projection::usual(&info, &settings.kept_actuators);
     let mut prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let found = PreviouslyIdentified {
-        gains: matches!(before, Before::Gains(_)),
-        gravity: matches!(before, Before::Gravity(_)),
+        gains: matches!(before, PriorStage::Gains(_)),
+        gravity: matches!(before, PriorStage::Gravity(_)),
     };
     match before {
-        Before::Nothing => {}
-        Before::Gains(gains) => {
+        PriorStage::Nothing => {}
+        PriorStage::Gains(gains) => {
             prepared = prepared.with_gains((model, dataset.runs), gains, settings)?;
         }
-        Before::Gravity(direction) => prepared = prepared.with_gravity(direction),
+        PriorStage::Gravity(direction) => prepared = prepared.with_gravity(direction),
     }
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
     let logs = dataset.runs.iter().chain(dataset.validation);
@@ -125,11 +125,11 @@ pub fn identify_after(
     )?;
     warnings.extend(held_out.warnings);
     let cross_validation = held_out.validations;
-    let identified = prepared.observations.iter().map(|observation| Watched {
+    let identified = prepared.observations.iter().map(|observation| RunMonitor {
         monitor: observation.monitor.clone(),
         closure_residual: observation.closure_residual,
     });
-    let watched: Vec<Watched> = identified.chain(held_out.watched).collect();
+    let watched: Vec<RunMonitor> = identified.chain(held_out.watched).collect();
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
     let scores_of = |(_, base): &(usize, Estimate), times: usize| {
         let columns = (&prepared.columns, prepared.base.columns.as_slice());
@@ -224,8 +224,8 @@ pub(crate) fn estimates_of(
 }
 
 /// Position ranges and speeds of the actuators in all runs.
-fn position_ranges(watched: &[Watched]) -> Vec<PositionRange> {
-    let of_run = |one: &Watched| -> Vec<PositionRange> {
+fn position_ranges(watched: &[RunMonitor]) -> Vec<PositionRange> {
+    let of_run = |one: &RunMonitor| -> Vec<PositionRange> {
         let bounds = one.monitor.bounds().into_iter();
         let speeds = one.monitor.speeds();
         bounds
@@ -241,7 +241,7 @@ fn position_ranges(watched: &[Watched]) -> Vec<PositionRange> {
 
 /// Regressor errors, and the estimates by other methods.
 fn regressor_errors(
-    outcomes: &[Result<Outcome, Error>],
+    outcomes: &[Result<ProjectionEstimates, Error>],
 ) -> (Vec<ErrorsInRegressor>, Vec<Estimate>) {
     let own = || outcomes.iter().filter_map(|outcome| outcome.as_ref().ok());
     let told = own().map(|outcome| outcome.errors_in_regressor.clone());
@@ -253,7 +253,7 @@ fn regressor_errors(
 ///
 /// A failed actuator projection is a warning; any other failure is an error.
 fn estimates(
-    outcomes: Vec<Result<Outcome, Error>>,
+    outcomes: Vec<Result<ProjectionEstimates, Error>>,
     projections: &[Projection],
     warnings: &mut Vec<String>,
 ) -> Result<Vec<(usize, Estimate)>, Error> {

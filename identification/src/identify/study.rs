@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{
     cross_validation::{Predictor, cross_validate},
-    estimates::{Outcome, estimate_all},
+    estimates::{ProjectionEstimates, estimate_all},
     prepare::{Prepared, prepare},
     progress::Progress,
 };
@@ -159,7 +159,7 @@ fn choice(
     prepared: &Prepared,
     number: usize,
     kept_actuators: Vec<String>,
-    (outcome, reference): (&Outcome, &Outcome),
+    (outcome, reference): (&ProjectionEstimates, &ProjectionEstimates),
     torques: &[&CrossValidation],
 ) -> RankedProjection {
     let (base, essential) = (&outcome.base, &outcome.essential);

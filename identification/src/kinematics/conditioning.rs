@@ -9,7 +9,7 @@ use overact::{Function, Model};
 use pulp::NullaryFnOnce;
 
 use super::dense::{LANES, Lanes, eliminated, invert, lanes, orthogonalised};
-use crate::widest::widest;
+use crate::with_avx::with_avx2;
 
 /// Inverse norms of the columns of J_p^inv at home, to scale metres and radians.
 ///
@@ -82,7 +82,7 @@ impl KeptActuators {
     pub(crate) fn conditions(&self, jacobians: &[f64], size: usize) -> Vec<Condition> {
         let samples = jacobians.len() / size;
         let mut found = vec![Condition::PERFECT; samples];
-        widest(Conditions {
+        with_avx2(Conditions {
             choice: self,
             jacobians,
             size,
@@ -95,7 +95,7 @@ impl KeptActuators {
     pub(crate) fn inverses(&self, jacobians: &[f64], size: usize) -> (Vec<f64>, Option<usize>) {
         let r = self.scales.len();
         let mut inverses = vec![0.0; jacobians.len() / size * r * r];
-        let singular = widest(Inverses {
+        let singular = with_avx2(Inverses {
             choice: self,
             jacobians,
             size,

@@ -3,7 +3,7 @@
 use pulp::NullaryFnOnce;
 
 use super::dense::{LANES, invert, lanes};
-use crate::widest::widest;
+use crate::with_avx::with_avx2;
 
 /// J (Jᵀ J)^-1 of J_p^inv (n × r, row-major), which maps Γ¹ to the least-norm torques.
 ///
@@ -26,7 +26,7 @@ pub(crate) fn least_torques<const N: usize>(
     inputs: [&[f64]; N],
 ) -> [Vec<f64>; N] {
     let mut torques = inputs.map(|inputs| vec![0.0; inputs.len() / r * n]);
-    widest(LeastTorques {
+    with_avx2(LeastTorques {
         jacobians,
         sizes: (n, r),
         inputs,

@@ -11,7 +11,7 @@ use overact::{
 use pulp::NullaryFnOnce;
 
 use super::dense::{LANES, Lanes, lanes, solved};
-use crate::widest::widest;
+use crate::with_avx::with_avx2;
 
 /// Refines poses by Gauss-Newton for all samples at once.
 ///
@@ -42,7 +42,7 @@ pub(super) fn refine_poses(model: &dyn Model, positions: &[f64], poses: &mut [f6
         for (left, _) in angles.filter(|(_, is_revolute)| **is_revolute) {
             *left = wrap_angle(*left);
         }
-        let is_regular = widest(Steps {
+        let is_regular = with_avx2(Steps {
             left: &reached,
             jacobians: &jacobians,
             sizes: (n, r),

@@ -1,13 +1,13 @@
 //! Description of a clipped torque.
 
-use super::suspicion::{Suspicion, Trouble};
+use super::suspicion::{DataFault, Suspicion};
 
 /// The suspicion of a torque that is clipped for the fraction `part` of the samples.
 ///
 /// Without clipping, the fraction is at most `usual`.
 pub(super) fn clipping(actuator: &str, part: f64, usual: f64, levels: &[String]) -> Suspicion {
     Suspicion {
-        trouble: Trouble::Clipped,
+        fault: DataFault::Clipped,
         actuator: Some(actuator.to_owned()),
         statistic: 100.0 * part,
         unit: "%",

@@ -23,4 +23,4 @@ mod tests;
 mod torque_rest;
 
 pub(crate) use run_monitor::Monitor;
-pub(crate) use suspicion::{Suspicion, Trouble};
+pub(crate) use suspicion::{DataFault, Suspicion};

@@ -9,7 +9,7 @@ use super::{
     position::{Position, Rest, SPEED_SAMPLES},
     roughness::Roughness,
     statistics::{Extreme, Means},
-    suspicion::{Suspicion, Trouble},
+    suspicion::{DataFault, Suspicion},
     torque_rest::{TorqueRest, TorqueRests},
 };
 use crate::{data::Samples, significant};
@@ -220,7 +220,7 @@ impl Monitor {
             .filter(|(one, _)| is_zero(one));
         zeros
             .map(|(_, name)| Suspicion {
-                trouble: Trouble::Zero,
+                fault: DataFault::Zero,
                 actuator: Some((*name).to_owned()),
                 statistic: 0.0,
                 unit: "N or N m",
@@ -256,7 +256,7 @@ impl Monitor {
                 format!("from t = {first:.3} s on for {seconds:.3} s")
             };
             Some(Suspicion {
-                trouble: Trouble::FrozenTorque,
+                fault: DataFault::FrozenTorque,
                 actuator: Some((*name).to_owned()),
                 statistic: seconds,
                 unit: "s",
@@ -274,7 +274,7 @@ impl Monitor {
         let of = |what: &str, roughness: &Roughness| -> Vec<Suspicion> {
             let name = |index: usize| names.get(index).copied().unwrap_or_default();
             let one = |&(i, j): &(usize, usize)| Suspicion {
-                trouble: Trouble::Duplicate,
+                fault: DataFault::Duplicate,
                 actuator: Some(name(j).to_owned()),
                 statistic: 0.0,
                 unit: "",
@@ -313,7 +313,7 @@ impl Monitor {
         suspicions.extend(self.zeros(names));
         if self.travel() <= STILL_STEPS {
             suspicions.push(Suspicion {
-                trouble: Trouble::Standstill,
+                fault: DataFault::Standstill,
                 actuator: None,
                 statistic: self.travel(),
                 unit: "steps",
@@ -331,7 +331,7 @@ impl Monitor {
             .collect();
         for (name, stuck) in names.iter().zip(&stuck) {
             suspicions.extend(stuck.iter().map(|(seconds, message)| Suspicion {
-                trouble: Trouble::Stuck,
+                fault: DataFault::Stuck,
                 actuator: Some((*name).to_owned()),
                 statistic: *seconds,
                 unit: "s",
@@ -411,7 +411,7 @@ impl Monitor {
         }
         let first = *samples.iter().min()?;
         Some(Suspicion {
-            trouble: Trouble::Dropped,
+            fault: DataFault::Dropped,
             statistic: largest,
             unit: "times the largest usual change of a step",
             threshold: 1.0,

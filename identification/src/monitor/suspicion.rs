@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Suspicion {
     /// Kind of trouble.
-    pub(crate) trouble: Trouble,
+    pub(crate) fault: DataFault,
     /// Name of the actuator, if it concerns one.
     pub(crate) actuator: Option<String>,
     /// Statistic, its unit, and the exceeded limit.
@@ -15,9 +15,9 @@ pub(crate) struct Suspicion {
     pub(crate) message: String,
 }
 
-/// Trouble that raw numbers show.
+/// Fault that raw numbers show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Trouble {
+pub(crate) enum DataFault {
     /// A torque stays at its extreme.
     Clipped,
     /// A position does not change while the robot moves.

@@ -1,6 +1,6 @@
 //! Tests of clipped and frozen torques.
 
-use super::{Monitor, Suspicion, Trouble};
+use super::{DataFault, Monitor, Suspicion};
 use crate::data::Samples;
 use std::f64::consts::TAU;
 
@@ -31,7 +31,7 @@ fn both_ends_and_the_part_of_the_time_are_told() {
     let [one] = &found[..] else {
         panic!("one suspicion, not {found:?}");
     };
-    assert_eq!(one.trouble, Trouble::Clipped);
+    assert_eq!(one.fault, DataFault::Clipped);
     let clipped = |sample: &usize| !(-1.5..=1.0).contains(&swing(*sample as f64 / FREQUENCY));
     let part = (0..5000).filter(clipped).count() as f64 / 5000.0;
     let told = format!("clipped at -1.5 and 1 for {:.1} % of", 100.0 * part);
@@ -77,7 +77,7 @@ fn of_several_rests_the_one_in_which_others_move_most_is_told() {
     let [stuck] = &found[..] else {
         panic!("one suspicion, not {found:?}");
     };
-    assert_eq!(stuck.trouble, Trouble::Stuck);
+    assert_eq!(stuck.fault, DataFault::Stuck);
     assert_eq!(stuck.actuator.as_deref(), Some("first"));
     let told = "from t = 2.100 s on for 0.300 s, while other actuators move";
     assert!(stuck.message.contains(told), "{}", stuck.message);
@@ -98,7 +98,7 @@ fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
         let [one] = &found[..] else {
             panic!("one suspicion, not {found:?}");
         };
-        assert_eq!(one.trouble, Trouble::FrozenTorque);
+        assert_eq!(one.fault, DataFault::FrozenTorque);
         let told = " from t = 1.99";
         assert!(
             one.message.contains(told) || one.message.contains(" from t = 2.00"),
@@ -110,7 +110,7 @@ fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
     let [one] = &constant[..] else {
         panic!("one suspicion, not {constant:?}");
     };
-    assert_eq!(one.trouble, Trouble::FrozenTorque);
+    assert_eq!(one.fault, DataFault::FrozenTorque);
     assert!(
         one.message.contains("stays at 1.5 throughout"),
         "{}",
@@ -126,7 +126,7 @@ fn torques_that_are_held_between_samples_are_not_frozen() {
     let coarse = |time: f64| (swing(time) / 0.3).round() * 0.3;
     let found = suspicions(5000, coarse);
     assert!(
-        found.iter().all(|one| one.trouble != Trouble::FrozenTorque),
+        found.iter().all(|one| one.fault != DataFault::FrozenTorque),
         "{found:?}"
     );
 }

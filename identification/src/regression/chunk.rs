@@ -4,7 +4,7 @@ use pulp::NullaryFnOnce;
 
 use crate::{
     kinematics::conditioning::{Condition, KeptActuators},
-    widest::widest,
+    with_avx::with_avx2,
 };
 
 /// Evaluated samples: for each projection and line, samples × (columns + 1), Y last.
@@ -38,7 +38,7 @@ pub(crate) fn projected(
     let mut lines = vec![vec![0.0; samples * width]; r];
     let (inverses, singular) = choice.inverses(jacobians, size);
     for (line, rows) in lines.iter_mut().enumerate() {
-        widest(Combined {
+        with_avx2(Combined {
             platform,
             inverses: &inverses,
             line,

@@ -8,9 +8,9 @@
 //! such skeleton exists, chains may carry branches, whose joints are coordinates as well.
 
 use super::{
-    ears::{Ear, cheapest, follows, freedoms},
     motion::{State, rank},
     network::{Network, Origin},
+    solvable_chains::{SolvableChain, cheapest, follows, freedoms},
 };
 use crate::{files::Files, model::Kind, options::Options};
 use nalgebra::{DMatrix, Vector3};
@@ -22,7 +22,7 @@ pub(crate) type Tree = Vec<(usize, usize)>;
 #[derive(Debug, Clone)]
 pub(crate) enum Piece {
     /// A chain, determined by the bodies that it connects.
-    Chain(Ear),
+    Chain(SolvableChain),
     /// A tree on a body of a chain.
     Branch(Tree),
 }

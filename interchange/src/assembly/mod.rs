@@ -1,8 +1,8 @@
 //! Derives a skeleton and chains from bodies and closures.
 
-pub(crate) mod ears;
 pub(crate) mod idle;
 pub(crate) mod layout;
 pub(crate) mod motion;
 pub(crate) mod network;
 pub(crate) mod simple;
+pub(crate) mod solvable_chains;

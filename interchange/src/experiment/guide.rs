@@ -3,10 +3,10 @@
 use super::balls::Ball;
 use crate::{
     assembly::{
-        ears::freedoms,
         layout::{Layout, skeleton_rates},
         motion::{Motion, State},
         network::{Network, Origin},
+        solvable_chains::freedoms,
     },
     model::Kind,
     plan::Plan,

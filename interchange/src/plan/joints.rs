@@ -3,8 +3,8 @@
 use super::{Joint, names::Names};
 use crate::{
     assembly::{
-        ears::{Ear, Ending},
         network::{Edge, Network, Origin},
+        solvable_chains::{Ending, SolvableChain},
     },
     files::Files,
     frames::{
@@ -371,7 +371,7 @@ pub(super) fn tip(frame: &Pose, point: &Point3<f64>, used: &mut Names) -> Option
 }
 
 /// Comment on a chain.
-pub(super) fn chain_comment(network: &Network<'_>, ear: &Ear) -> Vec<String> {
+pub(super) fn chain_comment(network: &Network<'_>, ear: &SolvableChain) -> Vec<String> {
     let names: Vec<String> = ear
         .groups
         .iter()

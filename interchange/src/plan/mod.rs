@@ -6,9 +6,9 @@ mod screws;
 
 use crate::{
     assembly::{
-        ears::{Ear, Ending},
         layout::{Layout, Piece, Tree},
         network::Network,
+        solvable_chains::{Ending, SolvableChain},
     },
     files::Files,
     frames::{leg, step::Step},
@@ -211,7 +211,7 @@ fn branch(
 fn chain(
     files: &Files,
     network: &Network<'_>,
-    ear: &Ear,
+    ear: &SolvableChain,
     bodies: &mut Bodies,
     names: &mut Names,
 ) -> Option<Leg> {

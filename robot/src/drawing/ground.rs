@@ -1,7 +1,7 @@
 //! Draws the fixed parts: plates, pivots and feet.
 
+use super::paper::{Sheet, flat, hull, n, polygon};
 use super::scene::{Part, Point, Scene};
-use super::sheet::{Sheet, flat, hull, n, polygon};
 use super::view::View;
 use overact_codegen::mechanism::Mechanism;
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Symbols of joints.
 
+use super::paper::{Sheet, flat, n};
 use super::scene::{Part, Point};
-use super::sheet::{Sheet, flat, n};
 use super::view::View;
 
 /// Symbol of a joint; `carries`: whether another joint is at the middle of a slider.

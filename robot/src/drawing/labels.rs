@@ -1,8 +1,8 @@
 //! Text of the drawing: title, names, frames and legend.
 
 use super::joints::{ball, block, disc, universal};
+use super::paper::{Sheet, WIDTH, flat, n};
 use super::scene::{Part, Scene};
-use super::sheet::{Sheet, WIDTH, flat, n};
 use super::style::COLOURS;
 use super::view::View;
 use crate::counted::counted;

@@ -15,8 +15,8 @@ mod joints;
 mod labels;
 mod layout;
 mod paint;
+mod paper;
 mod scene;
-mod sheet;
 mod sphere;
 mod style;
 mod view;
@@ -24,7 +24,7 @@ mod walk;
 
 use layout::scene;
 use overact_codegen::mechanism::Mechanism;
-use sheet::Sheet;
+use paper::Sheet;
 use view::View;
 
 /// Draws a mechanism at its home configuration; the output is deterministic.

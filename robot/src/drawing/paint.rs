@@ -3,8 +3,8 @@
 use super::ground::grounds;
 use super::joints;
 use super::labels;
+use super::paper::{Sheet, WIDTH, flat, hull, n, path, polygon};
 use super::scene::{NOTHING, Part, Point, Scene};
-use super::sheet::{Sheet, WIDTH, flat, hull, n, path, polygon};
 use super::style::{COLOURS, css};
 use super::view::View;
 use overact_codegen::mechanism::Mechanism;

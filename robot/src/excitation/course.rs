@@ -1,6 +1,6 @@
 //! Evaluates a period of a run and the peaks of all limited quantities.
 
-use super::frame::Frame;
+use super::fourier_run::FourierRun;
 use super::kind::LimitKind;
 use nalgebra::DMatrix;
 use overact::{Columns, Error, Function, Info, Model, math::wrap_angle};
@@ -73,7 +73,7 @@ impl<'a> Bench<'a> {
     /// The model's error if the robot cannot reach the motion.
     pub(super) fn course(
         &self,
-        frame: &Frame,
+        frame: &FourierRun,
         trajectory: &Trajectory,
         samples: usize,
     ) -> Result<Course, Error> {
@@ -131,7 +131,7 @@ impl<'a> Bench<'a> {
     /// Displacements of the coordinates, and bounds on their rise between two samples.
     fn displacement(
         &self,
-        frame: &Frame,
+        frame: &FourierRun,
         trajectory: &Trajectory,
         samples: usize,
     ) -> (Vec<f64>, Vec<f64>) {

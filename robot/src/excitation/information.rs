@@ -4,7 +4,7 @@
 //! J_p^invᵀ τ, the actuator projection Γ² = τ_a + J_a^-T J_bᵀ τ_b.
 
 use super::course::{Bench, Course};
-use super::frame::Frame;
+use super::fourier_run::FourierRun;
 use crate::error::{Error, Problem};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use overact_codegen::diagnostic::Code;
@@ -59,7 +59,7 @@ impl Question {
     /// A robot without base parameters.
     pub(super) fn new(
         bench: &Bench<'_>,
-        frames: &[Frame],
+        frames: &[FourierRun],
         settings: &Settings,
         truth: Option<&BTreeMap<String, f64>>,
         measurement: TorqueMeasurement,
@@ -115,7 +115,7 @@ impl Question {
     pub(super) fn information(
         &self,
         bench: &Bench<'_>,
-        frame: &Frame,
+        frame: &FourierRun,
         course: &Course,
     ) -> Option<Vec<DMatrix<f64>>> {
         let states = &course.states;

@@ -1,7 +1,7 @@
 //! Limits of exciting runs on coordinates, actuators and conditioning, and their origins.
 
 use super::course::{Bench, Course};
-use super::frame::Frame;
+use super::fourier_run::FourierRun;
 use super::kind::LimitKind;
 use overact_codegen::description::{self, Description};
 use overact_identification::significant;
@@ -91,7 +91,7 @@ pub(super) fn uses(course: &Course, limits: &[Limit], between: bool) -> Vec<f64>
 pub(super) fn unlimited_speeds(
     bench: &Bench<'_>,
     limits: &[Limit],
-    found: &[(Frame, Trajectory)],
+    found: &[(FourierRun, Trajectory)],
 ) -> Option<String> {
     if limits.iter().any(|limit| limit.kind == LimitKind::Velocity) {
         return None;
@@ -115,10 +115,10 @@ pub(super) fn unlimited_speeds(
 pub(super) fn limits(
     bench: &Bench<'_>,
     description: &Description,
-    described: &[(Frame, Trajectory)],
+    described: &[(FourierRun, Trajectory)],
 ) -> Vec<Limit> {
     let reach =
-        |(frame, trajectory): &(Frame, Trajectory)| bench.course(frame, trajectory, SAMPLES);
+        |(frame, trajectory): &(FourierRun, Trajectory)| bench.course(frame, trajectory, SAMPLES);
     // Ignore unreachable runs; simulating them reports the error.
     let courses: Vec<Course> = described.iter().filter_map(|run| reach(run).ok()).collect();
     let of_runs = |kind| reached_by(&courses, kind);

@@ -15,7 +15,7 @@
 
 mod course;
 mod evolution;
-mod frame;
+mod fourier_run;
 mod information;
 mod kind;
 mod limits;
@@ -32,7 +32,7 @@ use crate::{
     settings::settings,
 };
 use course::Bench;
-use frame::Frame;
+use fourier_run::FourierRun;
 use information::{Question, TorqueMeasurement};
 use nalgebra::DMatrix;
 use overact::{Function, Info, Model};
@@ -152,8 +152,8 @@ impl Robot {
 struct Task<'a> {
     bench: Bench<'a>,
     limits: Vec<Limit>,
-    frames: Vec<Frame>,
-    described: Vec<(Frame, Trajectory)>,
+    frames: Vec<FourierRun>,
+    described: Vec<(FourierRun, Trajectory)>,
     question: Question,
     assumed: Vec<String>,
 }
@@ -182,9 +182,9 @@ impl<'a> Task<'a> {
             assumed.push(words.to_owned());
         }
         let bench = bench(robot, truth.as_ref())?;
-        let described = frame::described(description, bench.info.coordinates);
+        let described = fourier_run::described(description, bench.info.coordinates);
         let limits = limits::limits(&bench, description, &described);
-        let frames = frame::wanted(description, &described, effort.runs);
+        let frames = fourier_run::wanted(description, &described, effort.runs);
         let noise = noise(robot, &bench.info, &mut assumed);
         let sampling = description
             .experiment
@@ -335,15 +335,15 @@ impl<'a> Task<'a> {
         let hundred = hundred.map(|told| self.question.judge(told)).collect();
         let (random, found): (Vec<_>, Vec<_>) = (with(chains.random), with(chains.found));
         let duration =
-            |runs: &[(Frame, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
+            |runs: &[(FourierRun, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();
         assumed.extend(limits::unlimited_speeds(&self.bench, &self.limits, &found));
         let whole = duration(&found);
-        let judged = |runs: &[(Frame, Trajectory)]| self.judged(runs, whole / duration(runs));
+        let judged = |runs: &[(FourierRun, Trajectory)]| self.judged(runs, whole / duration(runs));
         let described = judged(&self.described);
         if described.is_none() && !self.described.is_empty() {
             assumed.push("the robot can't reach the runs of the description".to_owned());
         }
-        let names_in = frame::coordinates(robot.description()).into_iter();
+        let names_in = fourier_run::coordinates(robot.description()).into_iter();
         let coordinates = self.bench.info.coordinates.iter().zip(names_in);
         let coordinates: Vec<(&str, String, bool)> = coordinates
             .map(|(model, (name, length))| (*model, name, length))
@@ -369,7 +369,7 @@ impl<'a> Task<'a> {
     /// Judges runs together, with their information times a factor.
     ///
     /// `None` if there is no run, or one that the robot cannot reach.
-    fn judged(&self, runs: &[(Frame, Trajectory)], factor: f64) -> Option<JudgedRuns> {
+    fn judged(&self, runs: &[(FourierRun, Trajectory)], factor: f64) -> Option<JudgedRuns> {
         let (mut information, mut used) = (Vec::new(), vec![0.0; self.limits.len()]);
         for (frame, trajectory) in runs {
             let samples = JUDGED_SAMPLES.max(JUDGED_SAMPLES / 8 * frame.harmonics);
@@ -415,7 +415,7 @@ fn bench<'a>(robot: &'a Robot, truth: Option<&BTreeMap<String, f64>>) -> Result<
         model,
         has_platform: robot.description().platform.is_some(),
         has_loop: !robot.model().model().mechanism.is_tree(),
-        lengths: frame::coordinates(robot.description())
+        lengths: fourier_run::coordinates(robot.description())
             .into_iter()
             .map(|c| c.1)
             .collect(),

@@ -4,7 +4,7 @@
 
 use super::course::Bench;
 use super::evolution::Evolution;
-use super::frame::{Frame, Series};
+use super::fourier_run::{FourierRun, Series};
 use super::information::Question;
 use super::kind::LimitKind;
 use super::limits::{Limit, uses};
@@ -108,7 +108,7 @@ impl<'a> Search<'a> {
     }
 
     /// Series of a run; coordinates with limit 0 have none.
-    pub(super) fn series(&self, frame: &'a Frame) -> Series<'a> {
+    pub(super) fn series(&self, frame: &'a FourierRun) -> Series<'a> {
         let limits = self
             .limits
             .iter()

@@ -1,6 +1,6 @@
 //! Formats runs as tables, and replaces the runs of a description.
 
-use super::frame::Frame;
+use super::fourier_run::FourierRun;
 use crate::error::{Error, Problem};
 use crate::robot::Robot;
 use overact_codegen::diagnostic::Code;
@@ -14,7 +14,10 @@ const COMMENT: &str = "\n# Computed by `overact excite`: they determine the base
 /// Formats runs as `[[experiment.run]]` tables.
 ///
 /// `coordinates` has the model's name, the description's name, and whether each is a length.
-pub(super) fn tables(runs: &[(Frame, Trajectory)], coordinates: &[(&str, String, bool)]) -> String {
+pub(super) fn tables(
+    runs: &[(FourierRun, Trajectory)],
+    coordinates: &[(&str, String, bool)],
+) -> String {
     let mut text = COMMENT.to_owned();
     for (frame, trajectory) in runs {
         let mut table = format!("\n[[experiment.run]]\nname = \"{}\"\n", frame.name);

@@ -2,9 +2,9 @@
 
 use super::InterpretedRobot;
 use overact::{
-    Error, Function, Model, aside,
+    Error, Function, Model,
     forward::{self, Measured},
-    guard,
+    guard, parasitic_motion,
 };
 use overact_codegen::{derivation::MotionInput, interpreter::Rows};
 
@@ -113,7 +113,7 @@ impl InterpretedRobot {
     /// Moves a pose along the twist coordinates.
     pub(super) fn displaced(&self, pose: &mut [f64], step: &[f64]) {
         if let Some(independent) = &self.independent {
-            aside::displace(pose, step, independent, |pose, errors, jacobian| {
+            parasitic_motion::displace(pose, step, independent, |pose, errors, jacobian| {
                 self.evaluate(Function::BlockedError, &[pose], errors)
                     .and_then(|()| self.evaluate(Function::BlockedJacobian, &[pose], jacobian))
                     .map_err(|error| error.error)

@@ -7,11 +7,11 @@
 
 use super::Error;
 use super::closure::State;
-use super::frame::{Frame, logarithm};
 use super::jacobians::{Jacobians, end_rows};
 use super::kinematics::{BodyMotion, all_legs, end_components, end_from_leg, end_from_platform};
 use super::linear::pseudo_inverse;
 use super::mechanism::{Leg, Mechanism};
+use super::placement::{Frame, logarithm};
 use nalgebra::{DMatrix, DVector, Vector6};
 
 /// Relative residual of the equations up to which it counts as rounding.

@@ -9,9 +9,7 @@
 //! J_k q̈ = J_tk v̇ + J̇_tk v - J̇_k q̇.
 
 use super::Error;
-use super::aside;
 use super::chains;
-use super::frame::logarithm;
 use super::jacobians::{Jacobians, end_jacobian, follow};
 use super::kinematics::{
     BodyMotion, all_legs, end_components, end_from_leg, end_from_platform, leg_motion,
@@ -20,6 +18,8 @@ use super::kinematics::{
 use super::linear::pseudo_inverse;
 use super::mechanism::{Leg, Mechanism};
 use super::motion::Motion;
+use super::parasitic_motion;
+use super::placement::logarithm;
 use nalgebra::{DMatrix, DVector};
 
 /// Number of steps from the home pose.
@@ -133,7 +133,7 @@ impl State {
     pub fn platform(&self, mechanism: &Mechanism) -> BodyMotion {
         if matches!(mechanism.motion, Motion::Aside(_)) {
             let still = BodyMotion::at_rest(mechanism.motion.placement(&self.pose));
-            return aside::platform(mechanism, self).unwrap_or(still);
+            return parasitic_motion::platform(mechanism, self).unwrap_or(still);
         }
         platform_motion(
             &mechanism.motion,
@@ -268,7 +268,7 @@ fn joint_accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f
         return chains::accelerations(mechanism, state);
     }
     if matches!(mechanism.motion, Motion::Aside(_)) {
-        let [joints, _] = aside::accelerations(mechanism, state)?;
+        let [joints, _] = parasitic_motion::accelerations(mechanism, state)?;
         return Ok(joints);
     }
     let platform = state.platform(mechanism);

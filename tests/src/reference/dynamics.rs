@@ -210,7 +210,7 @@ impl<'a> Dynamics<'a> {
         let actuators = self.jacobians.actuated.len();
         let projected: Vec<usize> = (0..actuators).filter(|at| !kept.contains(at)).collect();
         if matches!(self.mechanism.motion, Motion::Aside(_)) {
-            return self.partition_aside(kept, projected, loads);
+            return self.partition_with_parasitic_motion(kept, projected, loads);
         }
         let matrix = self.partition_matrix(&projected);
         let condition = condition(&matrix);
@@ -237,7 +237,7 @@ impl<'a> Dynamics<'a> {
     /// Actuator projection with parasitic motion, from any torques of the constrained system.
     ///
     /// These and the torques of the kept actuators alone do the same work.
-    fn partition_aside(
+    fn partition_with_parasitic_motion(
         &self,
         kept: &[usize],
         projected: Vec<usize>,

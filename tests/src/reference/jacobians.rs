@@ -14,7 +14,6 @@
 //! For the DualV this gives the corrected (59) and (60).
 
 use super::Error;
-use super::aside;
 use super::chains;
 use super::kinematics::{
     end_components, end_equations, end_from_leg, end_from_platform, leg_motion, platform_motion,
@@ -22,6 +21,7 @@ use super::kinematics::{
 use super::linear::{adjugate, condition, determinant, independent_rows, pseudo_inverse};
 use super::mechanism::{Leg, Mechanism};
 use super::motion::Motion;
+use super::parasitic_motion;
 use nalgebra::{DMatrix, DVector};
 
 /// Largest relative residual that counts as rounding.
@@ -65,7 +65,7 @@ impl Jacobians {
             return chains::jacobians(mechanism, q);
         }
         if matches!(mechanism.motion, Motion::Aside(_)) {
-            return aside::jacobians(mechanism, pose, q);
+            return parasitic_motion::jacobians(mechanism, pose, q);
         }
         let (total, dof) = (mechanism.joints(), mechanism.dof());
         let equations: usize = mechanism.legs.iter().map(end_equations).sum();

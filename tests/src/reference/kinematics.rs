@@ -9,9 +9,9 @@
 //!
 //! The offset r along a revolute axis needs no term of its own: the axis doesn't move in i.
 
-use super::frame::Frame;
 use super::mechanism::{End, JointKind, Leg, Mechanism};
 use super::motion::Motion;
+use super::placement::Frame;
 use nalgebra::{DVector, Vector3, Vector6};
 
 /// Placement, velocity and acceleration of a body, for the origin of its frame.

@@ -9,8 +9,8 @@
 //!
 //! Every joint carries a body. Whether the body has mass is a matter of the parameters alone.
 
-use super::frame::Frame;
 use super::motion::Motion;
+use super::placement::Frame;
 use nalgebra::Vector3;
 use std::fmt::{Debug, Formatter};
 use std::sync::Arc;

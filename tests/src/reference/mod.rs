@@ -17,12 +17,10 @@
 //! Equation numbers are those of Briot, Krut and Gautier, "Dynamic Parameter Identification of
 //! Overactuated Parallel Robots" (2015), in their corrected form.
 
-pub mod aside;
 pub mod chains;
 pub mod closure;
 pub mod dynamics;
 pub mod energy;
-pub mod frame;
 pub mod jacobians;
 pub mod kinematics;
 pub mod linear;
@@ -30,6 +28,8 @@ pub mod mechanism;
 pub mod motion;
 pub mod newton_euler;
 pub mod parameters;
+pub mod parasitic_motion;
+pub mod placement;
 pub mod robots;
 pub mod states;
 pub mod torques;
@@ -40,10 +40,10 @@ use std::fmt;
 
 pub use closure::State;
 pub use dynamics::Dynamics;
-pub use frame::Frame;
 pub use jacobians::Jacobians;
 pub use mechanism::{End, Joint, JointKind, Leg, Mechanism, Spring};
 pub use motion::Motion;
+pub use placement::Frame;
 
 /// Why a quantity can't be computed. Legs are counted from 0.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@
 //! in the base frame. The free coordinates v give it by t = D v. D is constant for every motion
 //! here, so the derivative of the twist is D v̇.
 
-use super::frame::{Frame, logarithm};
+use super::placement::{Frame, logarithm};
 use nalgebra::{DMatrix, DVector, Quaternion, Rotation3, UnitQuaternion, Vector3, Vector6};
 
 /// Free motions of the platform.

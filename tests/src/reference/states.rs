@@ -5,11 +5,11 @@
 //! closure is badly conditioned: comparisons there would measure the conditioning, not the model.
 
 use super::Error;
-use super::aside;
 use super::closure::State;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
 use super::parameters::{BODY, INERTIAL, count, platform_start};
+use super::parasitic_motion;
 use super::units::unitless_condition;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -42,8 +42,8 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Result<V
         let twist = random_vector(&mut generator, &vec![MAX_SPEED; dof]);
         let acceleration = random_vector(&mut generator, &vec![MAX_ACCELERATION; dof]);
         let solved = if matches!(mechanism.motion, Motion::Aside(_)) {
-            let start = aside::start(mechanism);
-            aside::displaced(mechanism, &mechanism.home, &start, &displacement).and_then(
+            let start = parasitic_motion::start(mechanism);
+            parasitic_motion::displaced(mechanism, &mechanism.home, &start, &displacement).and_then(
                 |(pose, q)| State::with_joints(mechanism, &pose, &q, &twist, &acceleration),
             )
         } else {

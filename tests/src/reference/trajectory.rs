@@ -4,10 +4,10 @@
 //! rotation vector, exact up to the second derivative at t = 0, which is sufficient.
 
 use super::Error;
-use super::aside;
 use super::closure::State;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
+use super::parasitic_motion;
 use nalgebra::DVector;
 
 /// Largest step of the finite differences, s.
@@ -30,7 +30,8 @@ pub fn at(mechanism: &Mechanism, state: &State, t: f64) -> Result<State, Error> 
     let displacement = &state.twist * t + &state.acceleration * (0.5 * t * t);
     let twist = &state.twist + &state.acceleration * t;
     if matches!(mechanism.motion, Motion::Aside(_)) {
-        let (pose, q) = aside::displaced(mechanism, &state.pose, &state.q, &displacement)?;
+        let (pose, q) =
+            parasitic_motion::displaced(mechanism, &state.pose, &state.q, &displacement)?;
         return State::with_joints(mechanism, &pose, &q, &twist, &state.acceleration);
     }
     let pose = mechanism.motion.displace(&state.pose, &displacement);

@@ -2,10 +2,10 @@
 
 use super::sample::fitted_acceleration;
 use super::{Failure, Parameters, Sample};
-use crate::reference::aside::rates;
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
 use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_start};
+use crate::reference::parasitic_motion::rates;
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::{DMatrix, DVector};
 use overact::{Columns, Function};

@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod agreement;
+pub mod all_functions;
 pub mod backend;
 pub mod comparison;
 pub mod conversion;
@@ -14,7 +15,6 @@ pub mod rank;
 pub mod sample;
 pub mod served;
 pub mod tree;
-pub mod whole;
 
 pub use agreement::Agreement;
 pub use backend::{Backend, Evaluated};

@@ -5,7 +5,7 @@ mod resolve;
 
 use crate::{
     failure::{Failure, Problem},
-    forms::{ColumnsOf, Source},
+    function_options::{ColumnsOf, Source},
     input,
     note::tell_doubts,
     output,

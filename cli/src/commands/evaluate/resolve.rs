@@ -3,7 +3,7 @@
 use super::Arguments;
 use crate::{
     failure::{Failure, Problem},
-    forms::ColumnsOf,
+    function_options::ColumnsOf,
     states::States,
 };
 use overact::Columns;

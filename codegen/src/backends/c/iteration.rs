@@ -15,7 +15,7 @@ use crate::model::RobotModel;
 use overact_core::Function;
 
 const DISPLACE: &str = include_str!("text/displace.c");
-const DISPLACE_ASIDE: &str = include_str!("text/displace_aside.c");
+const DISPLACE_PARASITIC: &str = include_str!("text/displace_parasitic.c");
 const DISPLACE_QUATERNION: &str = include_str!("text/displace_quaternion.c");
 /// Function called by both displacements of poses with a quaternion.
 const TURN: &str = include_str!("text/turn.c");
@@ -42,7 +42,7 @@ const FORWARD_START_QUATERNION: &str = "    double pose[ROB_POSE];
     }
 ";
 
-const FORWARD_START_ASIDE: &str = "    const double still[ROB_DOF] = { 0.0 };
+const FORWARD_START_PARASITIC: &str = "    const double still[ROB_DOF] = { 0.0 };
     double pose[ROB_POSE];
     if (!(rob_unit_quaternion(start, pose))) {
         return ROB_ZERO_QUATERNION_START;
@@ -143,13 +143,13 @@ pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
     if model.forward_kinematics {
         let way = match closed_form(model) {
             ClosedForm::None => " It keeps the assembly mode of `start`.",
-            ClosedForm::Alone => " It is pose_in_closed_form where that has a value.",
+            ClosedForm::Alone => " It equals pose_in_closed_form if that succeeds.",
             ClosedForm::Start => {
-                " The iteration starts from pose_in_closed_form where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration."
+                " The iteration starts from pose_in_closed_form if that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps. If that fails, the result is in the assembly mode of the home configuration."
             }
         };
         let lines = [
-            format!("Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.{way}"),
+            format!("Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`.{way}"),
             String::new(),
             "@param actuators q, positions of the actuated joints (m, rad) (ROB_ACTUATORS)".to_owned(),
             "@param start a pose near the wanted one, in its assembly mode (m, rad) (ROB_POSE)".to_owned(),
@@ -218,9 +218,9 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
     if model.is_tree() {
         return format!("{head}{checks}{}", text(&[FORWARD_OF_A_TREE]));
     }
-    let aside = model.mechanism.independent_coordinates();
-    let (displace, start) = match (has_quaternion(model), &aside) {
-        (_, Some(_)) => (DISPLACE_ASIDE, FORWARD_START_ASIDE),
+    let independent = model.mechanism.independent_coordinates();
+    let (displace, start) = match (has_quaternion(model), &independent) {
+        (_, Some(_)) => (DISPLACE_PARASITIC, FORWARD_START_PARASITIC),
         (true, None) => (DISPLACE_QUATERNION, FORWARD_START_QUATERNION),
         (false, None) => (DISPLACE, FORWARD_START),
     };
@@ -229,7 +229,7 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
         ClosedForm::Alone => FORWARD_BY_RULE,
         ClosedForm::Start => FORWARD_FROM_RULE,
     };
-    let tables = aside.map_or_else(String::new, |own| coordinates(&own));
+    let tables = independent.map_or_else(String::new, |own| coordinates(&own));
     let (fit, steps) = fitting(model);
     let turn = if has_quaternion(model) {
         [TURN, "\n"].concat()

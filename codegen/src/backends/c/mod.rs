@@ -173,13 +173,12 @@ fn overview(model: &RobotModel) -> Vec<String> {
     }
     out.push(String::new());
     if model.float == Float::F32 {
-        out.push("All numbers are of 32 bits, of seven digits.".to_owned());
+        out.push("All numbers have 32 bits, about seven digits.".to_owned());
     }
     out.push(
-        "Arrays hold as many numbers as the comment of their function says, matrices row by row. All is in \
-         SI units and radians. A function returns 0 where it has a value; where it returns an error its \
-         output is left as it was. Nothing is allocated and no state is kept: functions may run at the \
-         same time. Equation numbers are those of Briot, Krut, Gautier 2015, \
+        "The comment of a function states the lengths of its arrays; matrices are row-major. All numbers are in \
+         SI units and radians. A function returns 0 on success; on an error its output is unchanged. \
+         Functions allocate nothing and keep no state, so they are reentrant. Equation numbers are those of Briot, Krut, Gautier 2015, \
          Dynamic Parameter Identification of Overactuated Parallel Robots."
             .to_owned(),
     );

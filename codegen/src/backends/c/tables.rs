@@ -79,7 +79,7 @@ fn tables(model: &RobotModel) -> Vec<Table> {
             element: "rob_value",
             name: "parameter_values",
             length: "ROB_PARAMETER_VALUES".to_owned(),
-            comment: "Values of the base parameters, in which all others are regrouped, and of the payload's: constants in the functions (SI).",
+            comment: "Values of the base parameters and of the payload parameters (SI), which the functions contain as constants.",
             elements: values
                 .iter()
                 .map(|&(parameter, value)| {
@@ -139,7 +139,7 @@ fn names(model: &RobotModel) -> Vec<Table> {
         table(
             "pose_coordinates",
             "ROB_POSE",
-            "Names of the pose's numbers.",
+            "Names of the pose coordinates.",
             mechanism.pose_coordinates(),
         ),
     ]
@@ -178,7 +178,7 @@ fn configuration(model: &RobotModel) -> Vec<Table> {
             "int",
             "kept_actuators",
             &mechanism.kept_actuators.len().to_string(),
-            "Kept actuators of case 2.",
+            "Kept actuators of the actuator projection (case 2).",
             indices(&mechanism.kept_actuators),
         ),
         table(
@@ -192,7 +192,7 @@ fn configuration(model: &RobotModel) -> Vec<Table> {
             "double",
             "home_joints",
             "ROB_JOINTS",
-            "Joint positions of the home configuration, which fixes the working mode (m, rad).",
+            "Joint positions of the home configuration, which defines the working mode (m, rad).",
             numbers(&mechanism.home.joints),
         ),
     ]
@@ -252,7 +252,7 @@ fn parameters(model: &RobotModel) -> Vec<Table> {
         element: "rob_base_parameter",
         name: "base_parameters",
         length: "ROB_BASE_PARAMETERS".to_owned(),
-        comment: "The base parameters in the order in which functions take them.",
+        comment: "The base parameters in the order of the functions' inputs.",
         elements: base.collect(),
     });
     tables

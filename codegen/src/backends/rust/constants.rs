@@ -67,7 +67,7 @@ pub fn items(model: &RobotModel) -> TokenStream {
         (
             "POSE_COORDINATES",
             mechanism.pose_coordinates(),
-            " Names of the pose's numbers.",
+            " Names of the pose coordinates.",
         ),
     ];
     let strings = strings.map(|(name, values, doc): (_, Vec<String>, _)| {
@@ -129,13 +129,13 @@ fn home(model: &RobotModel) -> TokenStream {
     quote! {
         #[doc = " Indices of the actuated joints among all joints."]
         pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [#(#indices),*];
-        #[doc = " Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N)."]
+        #[doc = " Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N)."]
         pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [#(#revolute),*];
-        #[doc = " Kept actuators of case 2."]
+        #[doc = " Kept actuators of the actuator projection (case 2)."]
         pub const KEPT_ACTUATORS: [::core::primitive::usize; #kept_count] = [#(#kept),*];
         #[doc = " Pose of the home configuration (m, rad)."]
         pub const HOME_POSE: [#kind; Self::POSE] = [#(#pose),*];
-        #[doc = " Joint positions of the home configuration, which fixes the working mode (m, rad)."]
+        #[doc = " Joint positions of the home configuration, which defines the working mode (m, rad)."]
         pub const HOME_JOINTS: [#kind; Self::JOINTS] = [#(#positions),*];
     }
 }
@@ -195,7 +195,7 @@ fn parameter_values(model: &RobotModel, values: &[(BodyParameter, f64)]) -> Toke
     let count = Literal::usize_unsuffixed(values.len());
     let kind = kind(model.float);
     quote! {
-        #[doc = " Values of the base parameters, in which all others are regrouped, and of the payload's: constants in the functions (SI)."]
+        #[doc = " Values of the base parameters and of the payload parameters (SI), which the functions contain as constants."]
         pub const PARAMETER_VALUES: [(&'static ::core::primitive::str, #kind); #count] = [#(#entries),*];
     }
 }
@@ -218,7 +218,7 @@ fn base_parameters(model: &RobotModel) -> TokenStream {
     });
     let count = Literal::usize_unsuffixed(model.base.len());
     quote! {
-        #[doc = " The base parameters in the order in which functions take them, and what is regrouped into them."]
+        #[doc = " The base parameters in the order of the functions' inputs, with the standard parameters regrouped into them."]
         pub const BASE_PARAMETERS: [::overact::BaseParameter; #count] = {
             use ::overact::BaseParameter;
             [#(#entries),*]

@@ -5,13 +5,13 @@
 
 use super::boundary::boundary;
 use super::expression::{self, Writer, array_type, ident};
-use super::lanes::{self, Work};
 use super::layout::Sections;
+use super::simd::{self, Work};
 use crate::backends::writing::body::Body;
 use crate::backends::writing::labels::Labels;
 use crate::backends::writing::operations;
 use crate::backends::writing::outline::{Outline, Table};
-use crate::lowering::{Pays, Program};
+use crate::lowering::{Profitable, Program};
 use crate::model::{CompiledFunction, RobotModel};
 use overact_core::Function;
 use proc_macro2::TokenStream;
@@ -59,10 +59,10 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
         return straight(model, function, &outline, TokenStream::new());
     };
     let name = body_name(function, &outline);
-    let mut written = lanes::write(model, function, lanes, &name);
+    let mut written = simd::write(model, function, lanes, &name);
     written.sections.columns = columns(model, function, outline.columns);
     let Work { item, value } = Work::new(function, lanes, &written);
-    if lanes.pays == Pays::Always {
+    if lanes.pays == Profitable::Always {
         return Item {
             tokens: around(model, function, &outline, &item, &value),
             sections: written.sections,
@@ -72,7 +72,7 @@ pub fn item(model: &RobotModel, function: &CompiledFunction) -> Item {
     }
     let before = quote! {
         #item
-        if ::overact::lanes::four() {
+        if ::overact::simd::four() {
             return #value;
         }
     };
@@ -111,9 +111,9 @@ fn straight(
     let (statements, value) = (written.statements, written.value);
     let value = quote!(::core::result::Result::Ok(#value));
     let (run, copies) = if outline.is_placed() {
-        (quote!(::overact::roomiest), copies(program))
+        (quote!(::overact::with_avx512), copies(program))
     } else {
-        (quote!(::overact::widest), TokenStream::new())
+        (quote!(::overact::with_avx2), TokenStream::new())
     };
     let (statements, value) = if is_wide {
         (
@@ -223,17 +223,15 @@ fn around(
     }
     let into = ident(&body_name(function, outline));
     let written = [
-        format!(" [`Self::{name}`], written into `output` rather than handed back."),
+        format!(" [`Self::{name}`] with its result in `output`."),
         String::new(),
         " # Errors".to_owned(),
-        format!(
-            " Those of [`Self::{name}`]. What stands in `output` is no result then: some of it may have been written."
-        ),
+        format!(" Those of [`Self::{name}`]; `output` is then only partly written."),
     ];
     quote! {
         #(#[doc = #documentation])*
         pub fn #name(#(#names: &#kinds),*) -> ::core::result::Result<#output, ::overact::Error> {
-            ::overact::filled(|output| Self::#into(#(#names,)* output))
+            ::overact::zeroed_then_fill(|output| Self::#into(#(#names,)* output))
         }
 
         #(#[doc = #written])*
@@ -291,16 +289,16 @@ fn documentation(
     lines.extend(operations::of_function(&model.cost(function)));
     if function.program.pieces > 0 {
         lines.push(format!(
-            " Too large to be searched as a whole: fewer operations were searched in {} pieces.",
+            " The program was too large to optimise as a whole; it was optimised in {} parts.",
             function.program.pieces
         ));
     }
     lines.push(String::new());
     lines.push(" # Errors".to_owned());
     lines.push(if outline.can_fail {
-        " An input that is not finite or too large, a pose out of reach, or a singular configuration.".to_owned()
+        " An input is not finite or too large, the pose is out of reach, or the configuration is singular.".to_owned()
     } else {
-        " An input that is not finite or too large.".to_owned()
+        " An input is not finite or too large.".to_owned()
     });
     lines
 }

@@ -200,9 +200,9 @@ mod tests {
 
     #[test]
     fn closures_begin_on_the_line_of_their_call() {
-        let code = "fn f() {\n    a::widest(\n        #[inline(always)]\n        || {\n            \
+        let code = "fn f() {\n    a::with_avx2(\n        #[inline(always)]\n        || {\n            \
                     let x = g(\n                [1],\n            );\n            x\n        },\n    )\n}\n";
-        let wanted = "fn f() {\n    a::widest(#[inline(always)] || {\n        \
+        let wanted = "fn f() {\n    a::with_avx2(#[inline(always)] || {\n        \
                       let x = g(\n            [1],\n        );\n        x\n    })\n}\n";
         assert_eq!(super::join_closures(code), wanted);
     }

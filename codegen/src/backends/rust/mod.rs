@@ -16,10 +16,10 @@ mod constants;
 mod expression;
 mod function;
 mod inverse;
-mod lanes;
 mod layout;
 mod model_impl;
 mod runtime;
+mod simd;
 
 use crate::backends::writing::{labels::Labels, legend, operations, text};
 use crate::float::Float;
@@ -62,7 +62,7 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
             nonstandard_style,
             unused,
             unused_qualifications,
-            reason = "straight-line code with the names of the derivation, in whatever scope it stands"
+            reason = "straight-line code with the names of the derivation, in any scope"
         )]
         impl #name {
             #constants
@@ -168,14 +168,14 @@ fn sizes(model: &RobotModel) -> String {
 /// A note on single precision, if it is used.
 fn is_short(model: &RobotModel) -> Option<&'static str> {
     let is_short = model.float == Float::F32;
-    is_short.then_some(" All numbers are `f32`, of seven digits.")
+    is_short.then_some(" All numbers are `f32`, with seven digits.")
 }
 
 /// A note on functions with a variant that writes into the caller's matrix.
 fn written_into() -> [String; 2] {
     [
         String::new(),
-        " A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.".to_owned(),
+        " Functions with a column for each parameter have two variants: one returns a matrix; the other, with the suffix `_into`, writes into the caller's matrix, which is faster. Comments name the columns.".to_owned(),
     ]
 }
 

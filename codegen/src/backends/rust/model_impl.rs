@@ -135,7 +135,7 @@ fn pattern(function: Function) -> TokenStream {
 /// Forward kinematics as an associated function.
 #[must_use]
 pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
-    let doc = " Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.";
+    let doc = " Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`.";
     let kind = expression::kind(model.float);
     let range = boundary::range(model.float, &["actuators", "start"]);
     if model.is_tree() {
@@ -143,7 +143,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             #[doc = #doc]
             #[doc = ""]
             #[doc = " # Errors"]
-            #[doc = " An input that is not finite or too large; else none: the pose of a robot without a loop is its joint positions."]
+            #[doc = " An input is not finite or too large. The pose of a robot without loops is its joint positions."]
             pub fn pose_from_actuators(
                 actuators: &[#kind; Self::ACTUATORS],
                 start: &[#kind; Self::POSE],
@@ -158,15 +158,15 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         .platform
         .as_ref()
         .is_some_and(|p| p.motion.has_quaternion());
-    let aside = model.mechanism.independent_coordinates();
-    let displace = match (&aside, quaternion) {
+    let independent = model.mechanism.independent_coordinates();
+    let displace = match (&independent, quaternion) {
         (Some(_), _) => quote!(Self::displace),
         (None, true) => quote!(::overact::forward::displace_quaternion),
         (None, false) => quote!(::overact::forward::displace),
     };
     let unit = quaternion
         .then(|| quote!(let start = &::overact::guard::unit_quaternion(start, "start")?;));
-    let closed = aside.is_some().then(|| {
+    let closed = independent.is_some().then(|| {
         quote! {
             let mut closed = *start;
             Self::displace(&mut closed, &[]);
@@ -211,7 +211,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
     let (way, body) = match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
         Some(_) if is_redundant => (
-            " The iteration starts from `pose_in_closed_form` where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration.",
+            " The iteration starts from `pose_in_closed_form` if that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps. If that fails, the result is in the assembly mode of the home configuration.",
             quote! {
                 let closed = Self::pose_in_closed_form(actuators).ok();
                 ::overact::forward::from_closed_form(closed, *start, |mut pose: [#kind; Self::POSE]| {
@@ -221,7 +221,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             },
         ),
         Some(_) => (
-            " It is `pose_in_closed_form` where that has a value.",
+            " It equals `pose_in_closed_form` if that succeeds.",
             quote! {
                 if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
                     return ::core::result::Result::Ok(pose);
@@ -241,14 +241,14 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         ),
     };
     let doc = format!("{doc}{way}");
-    let displace = aside.map(|independent| self::displace(&independent, &kind));
+    let displace = independent.map(|coordinates| self::displace(&coordinates, &kind));
     quote! {
         #displace
 
         #[doc = #doc]
         #[doc = ""]
         #[doc = " # Errors"]
-        #[doc = " An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way."]
+        #[doc = " An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach."]
         pub fn pose_from_actuators(
             actuators: &[#kind; Self::ACTUATORS],
             start: &[#kind; Self::POSE],
@@ -265,9 +265,9 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
 fn displace(independent: &[usize], kind: &TokenStream) -> TokenStream {
     let independent = independent.iter().map(|&at| Literal::usize_unsuffixed(at));
     quote! {
-        #[doc = " Moves a pose by a small `step` along its independent coordinates, and along the others by Newton's method until the legs close. Where they do not, the pose is one that functions refuse."]
+        #[doc = " Displaces a pose by a small `step` along its independent coordinates; Newton's method finds the others so that the legs close. If it fails, other functions reject the pose."]
         pub fn displace(pose: &mut [#kind], step: &[#kind]) {
-            ::overact::aside::displace(pose, step, &[#(#independent),*], |pose, errors, jacobian| {
+            ::overact::parasitic_motion::displace(pose, step, &[#(#independent),*], |pose, errors, jacobian| {
                 let pose = ::overact::block::array(pose)?;
                 ::overact::block::write(&Self::blocked_error(pose)?, errors);
                 ::overact::block::write(&Self::blocked_jacobian(pose)?, jacobian);

@@ -62,13 +62,13 @@ mod tests {
             #[doc = "::overact"]
             fn overact(a: &::overact::Error) -> [::overact::Parameter; 2] { b::overact(::core::a) }
             impl ::overact::Model for A { use ::overact::Error; }
-            fn b() { if ::overact::lanes::four() { return ::overact::a; } }
+            fn b() { if ::overact::simd::four() { return ::overact::a; } }
         };
         let wanted = quote! {
             #[doc = "::overact"]
             fn overact(a: &crate::my::Error) -> [crate::my::Parameter; 2] { b::overact(::core::a) }
             impl crate::my::Model for A { use crate::my::Error; }
-            fn b() { if crate::my::lanes::four() { return crate::my::a; } }
+            fn b() { if crate::my::simd::four() { return crate::my::a; } }
         };
         let path = Runtime::new("crate::my").expect("a path");
         assert_eq!(

@@ -1,7 +1,7 @@
 //! Labels of a function's inputs and outputs, for use in names.
 
 use super::dimensions::{Dimension, Dimensions};
-use crate::lowering::{Column, Gathered, Lanes, Program};
+use crate::lowering::{Column, LaneOutput, Lanes, Program};
 use crate::mechanism::TwistCoordinate;
 use crate::model::{CompiledFunction, RobotModel};
 use overact_core::Function;
@@ -129,7 +129,7 @@ impl Labels {
     /// number.
     #[must_use]
     pub(crate) fn in_lanes(mut self, lanes: &Lanes) -> Self {
-        let Gathered::Columns(columns) = &lanes.gathered else {
+        let LaneOutput::Columns(columns) = &lanes.gathered else {
             self.outputs.clear();
             return self;
         };

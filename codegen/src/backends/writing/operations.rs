@@ -15,17 +15,17 @@ pub fn of_function(cost: &TotalCost) -> Vec<String> {
         lanes,
     }) = cost.side_by_side
     {
-        let others = "interpreted robots and other languages have";
+        let others = "interpreted robots and other languages use";
         lines.push(match lanes {
             0..=2 => format!(
-                " That is the straight program, which {others}. Here the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
+                " These are the counts of the scalar program, which {others}. This code has the {legs} legs in the lanes of SIMD vectors: {once} operations, and {each} for each leg."
             ),
             _ => format!(
-                " That is the straight program, which {others}, and processors without vectors of {lanes} numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the {legs} legs run side by side, in the lanes of vectors: {once} operations once, and {each} of each leg."
+                " These are the counts of the scalar program, which {others}, also on processors without vectors of {lanes} numbers. With such vectors (chosen at run time by the feature `dispatch`, or at compile time by `-C target-cpu=native`) the {legs} legs are in their lanes: {once} operations, and {each} for each leg."
             ),
         });
         lines.push(
-            " In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.".to_owned(),
+            " In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.".to_owned(),
         );
     }
     for iteration in &cost.iterations {
@@ -39,7 +39,7 @@ pub fn of_function(cost: &TotalCost) -> Vec<String> {
             None => String::new(),
         };
         lines.push(format!(
-            " And in each step of the iteration in `{function}`{runs}{within}: {step}."
+            " Additionally in each step of the iteration in `{function}`{runs}{within}: {step}."
         ));
     }
     lines
@@ -51,7 +51,7 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
     let mut lines = vec![
         " # Operations".to_owned(),
         String::new(),
-        " Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.".to_owned(),
+        " Additions, multiplications (including those by signs and constants) and divisions of each function and of all functions that it calls; then √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. Iterations have the counts of one step.".to_owned(),
         String::new(),
         " | function | once | each step |".to_owned(),
         " |---|---|---|".to_owned(),

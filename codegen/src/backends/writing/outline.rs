@@ -102,7 +102,7 @@ fn origin(model: &RobotModel, function: &CompiledFunction) -> &'static str {
         (_, true) => "From the joints' positions and rates.",
         (MotionInput::Pose, _) => "From the platform's pose and motion.",
         (MotionInput::Joints, _) => {
-            "From measured joint positions and the platform's motion; of the pose only the orientation is used."
+            "From measured joint positions and the platform's motion; only the orientation of the pose is used."
         }
         (MotionInput::Actuators, _) if !model.finds_pose(function) => {
             "From the actuators' positions."
@@ -183,7 +183,7 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
             "values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
         }
         "preload" => "coordinates of the internal torque on `null_space` (N, N m)".to_owned(),
-        "start" => "a pose near the wanted one, in its assembly mode (m, rad)".to_owned(),
+        "start" => "a pose near the solution, in its assembly mode (m, rad)".to_owned(),
         _ => return None,
     })
 }

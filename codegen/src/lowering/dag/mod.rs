@@ -8,9 +8,9 @@
 
 mod candidate_prefilter;
 mod cone;
+mod definitions;
 pub(crate) mod digits;
 mod dominators;
-mod forms;
 pub(crate) mod from_arena;
 mod node;
 pub(crate) mod test_states;
@@ -24,8 +24,8 @@ use crate::cas::arena::{Fingerprint, negative_name};
 use crate::cas::field::{ByValue, Element, canonical};
 use crate::cas::hasher::QuickMap;
 use crate::cas::{Direction, InputElement};
+use definitions::Forms;
 use digits::Digits;
-use forms::Forms;
 use std::sync::Arc;
 
 /// Cost of a root or arc tangent, so that these are saved first.

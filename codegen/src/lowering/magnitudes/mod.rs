@@ -14,7 +14,7 @@
 
 use super::program::{Condition, Guard, Operand, Operation, Program};
 use super::vertex_cut::VertexCut;
-use super::{Gathered, Lanes, LegRows, Sums};
+use super::{LaneOutput, Lanes, LegRows, Sums};
 use crate::float::Float;
 use overact_core::Limits;
 
@@ -129,13 +129,13 @@ impl Magnitudes {
         };
         // Factors of a product have at most half of the exponents.
         let most = match &lanes.gathered {
-            Gathered::Columns(_) => f64::INFINITY,
-            Gathered::Sums(_) => self.most_of_factors(),
+            LaneOutput::Columns(_) => f64::INFINITY,
+            LaneOutput::Sums(_) => self.most_of_factors(),
         };
         let bounds = self.guard(&mut lanes.program, &inputs, most);
         lanes.homes.resize(lanes.program.guards.len(), Vec::new());
         let legs = (lanes.legs.len() as f64).log2();
-        if let Gathered::Sums(sums) = &mut lanes.gathered {
+        if let LaneOutput::Sums(sums) = &mut lanes.gathered {
             self.guard_sums(sums, &bounds, legs);
         }
     }

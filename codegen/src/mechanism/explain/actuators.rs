@@ -33,7 +33,7 @@ pub(in crate::mechanism) fn too_few_actuators(
     let help = match left {
         Some((left, parts, parasitic)) if left < dof => {
             let (words, way) = match &parasitic {
-                Some(found) => (words(&found.independent), moves_aside(found)),
+                Some(found) => (words(&found.independent), parasitic_motions(found)),
                 None => (
                     Motions::of_directions(&parts).words("along", "about"),
                     "choose a `motion` that the legs allow, or give the legs more passive joints"
@@ -52,7 +52,7 @@ pub(in crate::mechanism) fn too_few_actuators(
 }
 
 /// Describes the platform's parasitic motion and how to declare it.
-fn moves_aside(found: &Parasitic) -> String {
+fn parasitic_motions(found: &Parasitic) -> String {
     format!(
         "these determine the others best (condition number {:.1} at home), and away from home the platform has parasitic motion with them, {}: write {} next to `motion`, or give the legs more passive joints",
         found.condition,

@@ -121,7 +121,7 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
 /// A tilted pose without its parasitic displacement is not allowed by the legs. It is projected
 /// onto the closures before motions are counted. The legs' planes block the rotation about z.
 #[test]
-fn a_tilted_platform_is_moved_aside_before_its_motions_are_counted() {
+fn a_tilted_platform_is_closed_before_its_motions_are_counted() {
     let tilted = three_rps("spatial").replace(
         "z = \"0.5 m\" }",
         "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
@@ -198,7 +198,7 @@ fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
 
 /// Three legs of three parallel axes each keep a free platform in a plane that does not change.
 #[test]
-fn a_platform_that_does_not_move_aside_has_a_motion() {
+fn a_platform_without_parasitic_motion_has_a_motion() {
     let free = [
         ("motion = \"planar\"", "motion = \"spatial\""),
         ("phi = \"0 deg\"", "rz = \"0 deg\""),

@@ -9,7 +9,7 @@
 //! deviation is therefore harmless.
 
 use super::{
-    Context, Watched,
+    Context, RunMonitor,
     level::{FALSE_ALARMS, level},
 };
 use crate::{
@@ -134,7 +134,7 @@ impl Closing {
 }
 
 /// Largest residual that resolution and noise explain, and the noise (m, rad).
-fn limit(watched: &Watched, samples: usize) -> (f64, f64) {
+fn limit(watched: &RunMonitor, samples: usize) -> (f64, f64) {
     let [variances, _] = watched.monitor.noise();
     let resolutions = watched.monitor.resolutions();
     let tests = samples * variances.len().max(1);

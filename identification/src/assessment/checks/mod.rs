@@ -58,7 +58,7 @@ pub(crate) struct Context<'a> {
     /// For each projection its system in the base parameters, or the error.
     pub(crate) systems: &'a [Result<System, Error>],
     /// Statistics of the training runs, then of the validation runs.
-    pub(crate) watched: &'a [Watched],
+    pub(crate) watched: &'a [RunMonitor],
     /// All estimates, each with the number of its projection.
     pub(crate) estimates: &'a [(usize, Estimate)],
     /// Models without a physically consistent solution.
@@ -79,7 +79,7 @@ pub(crate) struct Context<'a> {
 
 /// Statistics of a run, collected while its samples are read.
 #[derive(Debug, Clone)]
-pub(crate) struct Watched {
+pub(crate) struct RunMonitor {
     /// Statistics of the raw numbers.
     pub(crate) monitor: Monitor,
     /// Largest closure residual (m, rad).
@@ -88,7 +88,7 @@ pub(crate) struct Watched {
 
 impl<'a> Context<'a> {
     /// Training runs, then validation runs, with their statistics.
-    pub(crate) fn runs(&self) -> impl Iterator<Item = (&'a Log, &'a Watched)> {
+    pub(crate) fn runs(&self) -> impl Iterator<Item = (&'a Log, &'a RunMonitor)> {
         let all = self.dataset.runs.iter().chain(self.dataset.validation);
         all.zip(self.watched)
     }

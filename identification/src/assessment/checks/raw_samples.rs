@@ -8,12 +8,12 @@ use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
     error::Error,
     kinematics::conditioning::couples,
-    monitor::{Monitor, Suspicion, Trouble},
+    monitor::{DataFault, Monitor, Suspicion},
 };
 
 /// Checks all runs.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
-    let of_run = |(log, watched): (&crate::data::Log, &super::Watched)| {
+    let of_run = |(log, watched): (&crate::data::Log, &super::RunMonitor)| {
         suspicions(context.model, log.name(), watched.monitor.clone())
     };
     let mut checks: Vec<Check> = context.runs().flat_map(of_run).collect();
@@ -81,38 +81,38 @@ fn suspicions(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
 
 /// A suspicion as a check.
 fn told(run: &str, suspicion: Suspicion) -> Check {
-    let (kind, grade, origin) = match suspicion.trouble {
-        Trouble::Clipped => (
+    let (kind, grade, origin) = match suspicion.fault {
+        DataFault::Clipped => (
             CheckKind::ClippedTorque,
             Grade::DoNotUse,
             "a smooth peak is not so flat",
         ),
-        Trouble::Stuck => (
+        DataFault::Stuck => (
             CheckKind::StuckEncoder,
             Grade::DoNotUse,
             "a joint needs time to stop",
         ),
-        Trouble::Dropped => (
+        DataFault::Dropped => (
             CheckKind::DroppedSamples,
             Grade::DoNotUse,
             "the steps of the run itself",
         ),
-        Trouble::Duplicate => (
+        DataFault::Duplicate => (
             CheckKind::DuplicateColumns,
             Grade::DoNotUse,
             "two measured signals are never equal throughout",
         ),
-        Trouble::Zero => (
+        DataFault::Zero => (
             CheckKind::ZeroTorque,
             Grade::DoNotUse,
             "a measured torque is never zero throughout",
         ),
-        Trouble::FrozenTorque => (
+        DataFault::FrozenTorque => (
             CheckKind::FrozenTorque,
             Grade::DoNotUse,
             "twenty times the usual length of equal torques",
         ),
-        Trouble::Standstill => (
+        DataFault::Standstill => (
             CheckKind::Standstill,
             Grade::Use,
             "the range of noise by its steps",

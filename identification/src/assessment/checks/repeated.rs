@@ -2,7 +2,7 @@
 //!
 //! Repeated samples make intervals too narrow, and validation on training data tests nothing.
 
-use super::{Context, Watched};
+use super::{Context, RunMonitor};
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
     data::Log,
@@ -17,7 +17,7 @@ const HARMLESS: f64 = 0.05;
 
 /// Checks all pairs of runs with at least one training run.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
-    let runs: Vec<(&Log, &Watched)> = context.runs().collect();
+    let runs: Vec<(&Log, &RunMonitor)> = context.runs().collect();
     let identified = context.dataset.runs.len();
     let mut found = Vec::new();
     for (number, (log, watched)) in runs.iter().enumerate() {

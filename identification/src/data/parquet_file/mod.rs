@@ -27,7 +27,7 @@ use self::{
     rows::{Rows, Wanted},
 };
 use super::{
-    medium::Medium,
+    byte_source::ByteSource,
     problems::{Existing, legible, only, shown, unreadable},
     stored::{Stored, StoredRows},
 };
@@ -38,7 +38,7 @@ use crate::error::{Error, Problem};
 pub(super) struct Parquet {
     /// The file as the caller named it.
     file: String,
-    medium: Medium,
+    medium: ByteSource,
     metadata: Arc<ParquetMetaData>,
     columns: Vec<Column>,
     /// Origin of instants, s since 1970; `None` without instants.
@@ -60,7 +60,7 @@ impl Parquet {
     ///
     /// # Errors
     /// A file that cannot be read, is truncated or broken.
-    pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
+    pub(super) fn open(file: String, medium: &ByteSource) -> Result<Self, Error> {
         let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let metadata = ParquetMetaDataReader::new().parse_and_finish(&input);
         let metadata = metadata.map_err(|error| broken(&file, &error.to_string()))?;

@@ -10,7 +10,7 @@ use parquet::{
 };
 
 use super::packed::Packing;
-use crate::data::medium::Opened;
+use crate::data::byte_source::Opened;
 
 /// Pages of a column within a row group.
 pub(super) struct Pages {

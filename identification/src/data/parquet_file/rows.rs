@@ -19,7 +19,7 @@ use parquet::{
 use super::{kind::Kind, pages::Pages};
 use crate::{
     data::{
-        medium::Opened,
+        byte_source::Opened,
         problems::{legible, shown},
         stored::StoredRows,
     },

@@ -35,7 +35,7 @@ pub(super) type Source<'a> = dyn FnMut(&mut [f64]) -> Result<bool, Error> + 'a;
 /// Position of a time relative to the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
-    Before,
+    PriorStage,
     Inside,
     Behind,
 }
@@ -174,9 +174,9 @@ impl Resampled {
             match self.between(source, origin + next as f64 * low_pass.step, &mut row)? {
                 Place::Inside => low_pass.values.push_back(row),
                 // Times before the first sample are not requested again.
-                Place::Before => {
+                Place::PriorStage => {
                     low_pass.values.clear();
-                    return Ok(Place::Before);
+                    return Ok(Place::PriorStage);
                 }
                 Place::Behind => return Ok(Place::Behind),
             }
@@ -217,7 +217,7 @@ impl Resampled {
             }
         }
         match self.range {
-            Some((first, _)) if time < first => return Ok(Place::Before),
+            Some((first, _)) if time < first => return Ok(Place::PriorStage),
             Some((_, last)) if time <= last => {}
             _ => return Ok(Place::Behind),
         }

@@ -9,7 +9,7 @@
 use csv::{ReaderBuilder, StringRecord, Trim};
 use overact::Code;
 
-use super::squeeze::Squeeze;
+use super::collapsed_blanks::CollapsedBlanks;
 use crate::{
     data::problems::shown,
     error::{Error, Problem},
@@ -149,7 +149,7 @@ fn records(text: &[u8], separator: u8, comment: u8) -> Vec<(u64, StringRecord)> 
         }
     };
     if separator == b' ' {
-        let mut reader = builder.from_reader(Squeeze::new(text, BEGINNING));
+        let mut reader = builder.from_reader(CollapsedBlanks::new(text, BEGINNING));
         take(&mut reader.byte_records());
     } else {
         let mut reader = builder.from_reader(text);

@@ -11,7 +11,7 @@ use std::{
 use memchr::{memchr, memchr2};
 
 use super::BUFFER;
-use crate::data::medium::Opened;
+use crate::data::byte_source::Opened;
 
 /// The unread rest of a file.
 pub(super) type Rest = Chain<Cursor<Vec<u8>>, Opened>;

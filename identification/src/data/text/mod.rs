@@ -11,11 +11,11 @@
 //! - `rows`: rows of plain lines, or of records with quotation marks.
 
 mod cells;
+mod collapsed_blanks;
 mod dialect;
 mod lines;
 mod row_diagnostics;
 mod rows;
-mod squeeze;
 
 use overact::Code;
 use std::{
@@ -26,7 +26,7 @@ use std::{
 use self::dialect::{BEGINNING, Dialect};
 pub(super) use self::rows::Rows;
 use super::{
-    medium::{Medium, Opened},
+    byte_source::{ByteSource, Opened},
     problems::{Existing, only, unreadable},
 };
 use crate::error::{Error, Problem};
@@ -39,7 +39,7 @@ const BUFFER: usize = 1 << 18;
 pub(super) struct Text {
     /// The file as the caller named it.
     file: String,
-    medium: Medium,
+    medium: ByteSource,
     dialect: Dialect,
 }
 
@@ -48,7 +48,7 @@ impl Text {
     ///
     /// # Errors
     /// A file that cannot be read, or an ambiguous one.
-    pub(super) fn open(file: String, medium: &Medium) -> Result<Self, Error> {
+    pub(super) fn open(file: String, medium: &ByteSource) -> Result<Self, Error> {
         let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let mut beginning = Vec::new();
         input

@@ -5,12 +5,12 @@ use std::io::{Read, Result as IoResult};
 
 use super::{
     BUFFER, Text, cells,
+    collapsed_blanks::CollapsedBlanks,
     dialect::Dialect,
     lines::{Lines, Next, Rest},
     row_diagnostics::{Row, RowDiagnostics},
-    squeeze::Squeeze,
 };
-use crate::{data::medium::Opened, error::Error};
+use crate::{data::byte_source::Opened, error::Error};
 
 /// Remaining rows of a text.
 #[derive(Debug)]
@@ -205,7 +205,7 @@ fn inside(line: &[u8], separator: u8) -> &[u8] {
 #[derive(Debug)]
 enum Input {
     Plain(Rest),
-    Blanks(Squeeze<Rest>),
+    Blanks(CollapsedBlanks<Rest>),
 }
 
 impl Read for Input {
@@ -230,7 +230,7 @@ struct Records {
 impl Records {
     fn new(dialect: &Dialect, (lines, passed): (usize, u64), rest: Rest) -> Self {
         let input = match dialect.separator {
-            b' ' => Input::Blanks(Squeeze::new(rest, BUFFER)),
+            b' ' => Input::Blanks(CollapsedBlanks::new(rest, BUFFER)),
             _ => Input::Plain(rest),
         };
         Self {

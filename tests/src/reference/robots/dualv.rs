@@ -5,9 +5,9 @@
 //! legs 3 and 4 at (0, -r_p), not turned. This is (53): q1 + q2 + q3 = φ + π for legs 1 and 2 and
 //! = φ for legs 3 and 4.
 
-use crate::reference::frame::Frame;
 use crate::reference::mechanism::{End, Joint, Leg, Mechanism};
 use crate::reference::motion::Motion;
+use crate::reference::placement::Frame;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 

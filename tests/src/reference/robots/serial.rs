@@ -1,8 +1,8 @@
 //! Serial and tree robots: no platform, no closure, the model is (1).
 
-use crate::reference::frame::Frame;
 use crate::reference::mechanism::{End, Joint, JointKind, Leg, Mechanism};
 use crate::reference::motion::Motion;
+use crate::reference::placement::Frame;
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
 

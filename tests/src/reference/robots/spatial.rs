@@ -3,9 +3,9 @@
 //!
 //! The universal joint is two crossing revolute joints; a spherical end is a point end.
 
-use crate::reference::frame::Frame;
 use crate::reference::mechanism::{End, Joint, Leg, Mechanism};
 use crate::reference::motion::Motion;
+use crate::reference::placement::Frame;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,9 +1,9 @@
 //! Robots whose platform only translates: the Delta with its parallelograms, and a Tripteron.
 
-use crate::reference::frame::{Frame, exponential};
 use crate::reference::kinematics::leg_motion;
 use crate::reference::mechanism::{End, Joint, Leg, Mechanism};
 use crate::reference::motion::Motion;
+use crate::reference::placement::{Frame, exponential};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 

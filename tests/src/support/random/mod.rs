@@ -9,21 +9,21 @@
 //! A [`Sketch`] is written twice from the same numbers: as TOML for the generator, and as plain
 //! data of the numeric [`reference`](mod@crate::reference).
 
-mod aside;
 mod chain;
 mod defect;
 mod dice;
 pub mod features;
 mod friction;
 mod leg;
+mod parasitic_motion;
 mod plain;
 mod skeleton;
 mod text;
 
-pub use aside::aside;
 pub use defect::Defect;
 pub use dice::Dice;
 pub use friction::Load;
+pub use parasitic_motion::parasitic_motion;
 pub use skeleton::skeleton;
 
 use crate::reference::linear::{condition, singular_values};
