@@ -42,10 +42,11 @@ impl<'m> Motion<'m> {
     /// Kinematics of a model.
     pub(crate) fn new(model: &'m Model) -> Self {
         let mut coordinates = Vec::new();
+        let carried = model.carried();
         for (joint, own) in model.joints.iter().enumerate() {
             let count = match own.kind {
                 // Joints merged into a ball joint carry nothing.
-                _ if own.follow.is_some() || model.carried_by(joint) == 0 => 0,
+                _ if own.follow.is_some() || carried[joint] == 0 => 0,
                 Kind::Ball => 3,
                 Kind::Revolute | Kind::Prismatic => 1,
             };
