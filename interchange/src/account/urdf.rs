@@ -346,7 +346,28 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "gazebo",
-        elements: "dampingFactor velocity_decay",
+        elements: "pose",
+        treatment: unless(
+            "0",
+            "the base link is at the origin of the world in the model",
+        ),
+        attributes: &[],
+    },
+    Rule {
+        within: "gazebo",
+        elements: "velocity_decay",
+        treatment: Container,
+        attributes: &[],
+    },
+    Rule {
+        within: "velocity_decay",
+        elements: "linear angular",
+        treatment: unless("0", "the damping of the body is missing from the model"),
+        attributes: &[],
+    },
+    Rule {
+        within: "gazebo",
+        elements: "dampingFactor",
         treatment: unless("0", "the damping of the body is missing from the model"),
         attributes: &[],
     },
@@ -367,7 +388,7 @@ const RULES: &[Rule] = &[
         within: "gazebo",
         elements: "preserveFixedJoint disableFixedJointLumping implicitSpringDamper provideFeedback \
                    provide_feedback stopCfm stopErp stopKp stopKd fudgeFactor cfmDamping initial_joint_position \
-                   enable_wind allow_auto_disable canonicalBody pose ignition gz",
+                   enable_wind allow_auto_disable canonicalBody ignition gz",
         treatment: SIMULATION,
         attributes: &[],
     },

@@ -27,6 +27,9 @@ const KEYS: [&str; 3] = [
     "ANT SIGMA B D R GAMMA ALPHA THETA",
 ];
 
+/// Tolerance of linear positions, rad or m; larger than the rounding of right angles.
+const LINEAR: f64 = 1e-6;
+
 /// Largest number of frames.
 const FRAMES: usize = 1000;
 
@@ -235,7 +238,18 @@ impl Reader<'_> {
         };
         let zero = self.step(at, &BTreeMap::from([(variable.clone(), 0.0)]))?;
         let one = self.step(at, &BTreeMap::from([(variable.clone(), 1.0)]))?;
+        let two = self.step(at, &BTreeMap::from([(variable.clone(), 2.0)]))?;
         let factor = one.theta - zero.theta + one.r - zero.r;
+        let next_factor = two.theta - one.theta + two.r - one.r;
+        if (next_factor - factor).abs() > LINEAR {
+            let message = format!(
+                "the position of joint {} is `{text}`, which is not linear",
+                at + 1
+            );
+            let help = "a joint's position is a variable, or a multiple of another joint's, plus a constant";
+            self.files.report(place, message, help);
+            return None;
+        }
         let mut joint = Joint::new(&name, kind, place.clone());
         match variables.get(variable) {
             Some(&leader) => {

@@ -88,8 +88,8 @@ pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis
 /// Reports axes that a joint's type does not have.
 fn report_unused_axes(gathered: &Gathered<'_>, item: &JointItem) {
     let unused: &[&str] = match item.element.get("type") {
-        Some("universal" | "revolute2") => &[],
-        Some("fixed" | "ball") => &["axis", "axis2"],
+        Some("universal" | "revolute2" | "gearbox" | "fixed") => &[],
+        Some("ball") => &["axis", "axis2"],
         _ => &["axis2"],
     };
     for tag in unused {
