@@ -132,7 +132,7 @@ impl<'m> Network<'m> {
         for state in &self.states {
             let basis = self.motions(motion, state);
             let bodies = motion.twists(state);
-            let of = |group: &Group| &bodies[group.bodies[0]] * &basis;
+            let of = |group: &Group| &*bodies[group.bodies[0]] * &basis;
             self.twists.push(self.groups.iter().map(of).collect());
             ranks.push(basis.ncols());
         }
