@@ -7,7 +7,7 @@
 ///
 /// # Operations
 ///
-/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+/// Additions, multiplications (including those by signs and constants) and divisions of each function and of all functions that it calls; then √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. Iterations have the counts of one step.
 ///
 /// | function | once | each step |
 /// |---|---|---|
@@ -60,67 +60,67 @@
 /// | `project_torques` | 191, 4 √, 1 sc, 16 gd |  |
 /// | `null_space` | 135, 5 √, 1 sc, 14 gd |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
+/// Functions with a column for each parameter have two variants: one returns a matrix; the other, with the suffix `_into`, writes into the caller's matrix, which is faster. Comments name the columns.
 ///
 /// # Names
 ///
 /// | name | symbol | meaning |
 /// |---|---|---|
-/// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
-/// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
-/// | `c_phi` | cos φ | of the platform's angle |
-/// | `s_phi` | sin φ | of the platform's angle |
-/// | `c12_leg1` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s2_leg2` | sin q | sine of a joint angle, named as its cosine is |
-/// | `p_x_leg3` | p | from the platform's origin to the leg's end, base axes, m |
-/// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
+/// | `vx` | v | platform velocity from the actuators' by least squares, eq. (21) |
+/// | `dvx` | v̇ | platform acceleration from the actuators' by least squares, eq. (24) |
+/// | `c_phi` | cos φ | cosine of the platform angle |
+/// | `s_phi` | sin φ | sine of the platform angle |
+/// | `c12_leg1` | cos q | cosine of a joint angle; `c12`: of q₁ + q₂; `c1o`: of an angle plus its constant offset |
+/// | `s2_leg2` | sin q | sine of a joint angle, named like the cosine |
+/// | `p_x_leg3` | p | vector from the platform's origin to the leg's end, base axes, m |
+/// | `d_x_leg1` | D | vector from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_leg1` | ρ² | D · D, m² |
 /// | `h_squared_leg1` | h² | l₁²/ρ² - a², the square of h |
-/// | `h_leg1` | h | the elbow stands at a D ± h D⊥, eq. (7) solved |
-/// | `l1_x_leg1` | l₁ e₁ | the proximal link, in the leg's plane, m |
-/// | `l2_x_leg1` | l₂ e₂ | the distal link, in the leg's plane, m |
-/// | `det_leg1` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
+/// | `h_leg1` | h | the elbow is at a D ± h D⊥, the solution of eq. (7) |
+/// | `l1_x_leg1` | l₁ e₁ | vector along the proximal link, in the leg's plane, m |
+/// | `l2_x_leg1` | l₂ e₂ | vector along the distal link, in the leg's plane, m |
+/// | `det_leg1` | det J_k | determinant or pivot of the leg's Jacobian J_k, eq. (13), up to a constant factor |
 /// | `k1_leg1` | k_i | common factor of one of the leg's wrenches |
 /// | `rate_1_leg2` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
 /// | `rate_1_squared_leg1` | u_i² | square of a joint rate |
-/// | `rate_dot_1_leg2` | u̇_i | derivative of that rate, eq. (10) |
-/// | `bias_rate_dot_1_leg2` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
-/// | `g1_vx_leg1` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
-/// | `gq2_vx_leg2` | ∂q̇_i/∂v | the same of the joint's own rate; of an actuated joint a row of J_p^inv, eq. (20) |
-/// | `qd_2_leg1` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
-/// | `qdd_2_leg1` | q̈_i | acceleration of a joint, eq. (10) |
+/// | `rate_dot_1_leg2` | u̇_i | derivative of this rate, eq. (10) |
+/// | `bias_rate_dot_1_leg2` | u̇_i at v̇ = 0 | this derivative for zero platform acceleration, eq. (10) |
+/// | `g1_vx_leg1` | ∂u_i/∂v | row of the reduced Jacobian J_k⁻¹ J_tk, eq. (9) |
+/// | `gq2_vx_leg2` | ∂q̇_i/∂v | the same for the rate of joint i; for an actuated joint a row of J_p^inv, eq. (20) |
+/// | `qd_2_leg1` | q̇_i | joint rate, rad/s or m/s, eq. (9) |
+/// | `qdd_2_leg1` | q̈_i | joint acceleration, eq. (10) |
 /// | `v_end_x_leg1` | Ṗ | velocity of the leg's end, m/s |
 /// | `a_end_x_leg1` | P̈ | acceleration of the leg's end, m/s² |
-/// | `v_arm_x_leg3` | ω × p | velocity of the leg's end beside the platform's origin |
-/// | `a_arm_x_leg1` | ω̇ × p + ω × (ω × p) | acceleration of the leg's end beside the platform's origin |
-/// | `bias_a_end_x_leg1` | P̈ at v̇ = 0 | acceleration of the leg's end without the platform's acceleration |
-/// | `a_on_f2_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
-/// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
+/// | `v_arm_x_leg3` | ω × p | velocity of the leg's end relative to the platform's origin |
+/// | `a_arm_x_leg1` | ω̇ × p + ω × (ω × p) | acceleration of the leg's end relative to the platform's origin |
+/// | `bias_a_end_x_leg1` | P̈ at v̇ = 0 | acceleration of the leg's end for zero platform acceleration |
+/// | `a_on_f2_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, minus the bias terms b that do not depend on the pose |
+/// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same for zero platform acceleration |
 /// | `a_x_platform` | Rᵀ a | acceleration of the platform's origin in its own axes |
-/// | `a2_x_leg1` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `a2_x_leg1` | a_j - g | acceleration of the origin of body j minus gravity, in its own axes |
 /// | `v2_by_1_y_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
-/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `moment2_z_leg1` | m | moment of a body's inertial parameters about its origin |
-/// | `tau_1_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force2_x_leg1` | f | inertial force of a body, in its own axes (platform: base axes) |
+/// | `moment2_z_leg1` | m | inertial moment of a body about its origin |
+/// | `tau_1_leg1` | τ_j | torque of friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
-/// | `schur_2_3` | S' | S after elimination of the columns before |
+/// | `schur_2_3` | S' | Schur complement of S after eliminating the previous columns |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
-/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `inv_pivot_1` | 1/d_k | reciprocal pivot |
 /// | `l_2_1` | L | entry of L |
-/// | `missed_1` | q - q(x) | how far an actuator is from its measured position, in the step of forward kinematics |
-/// | `c_actuator_1` | cos q | of the measured position of an actuator |
-/// | `s_actuator_1` | sin q | its sine |
-/// | `share_3_4` | J_a^-T j | what a kept actuator does against the unit torque of a projected one, eq. (50) |
-/// | `norm_4` | √(1 + c · Q c) | length of the internal torque that does one at a projected actuator |
-/// | `inv_norm_4` | 1/√(1 + c · Q c) | the reciprocal |
-/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
+/// | `missed_1` | q - q(x) | measured minus computed position of an actuator, in a step of forward kinematics |
+/// | `c_actuator_1` | cos q | cosine of the measured position of an actuator |
+/// | `s_actuator_1` | sin q | sine of the measured position of an actuator |
+/// | `share_3_4` | J_a^-T j | torque of a kept actuator that balances a unit torque of a projected one, eq. (50) |
+/// | `norm_4` | √(1 + c · Q c) | norm of the internal torque with a unit torque at a projected actuator |
+/// | `inv_norm_4` | 1/√(1 + c · Q c) | reciprocal of this norm |
+/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, up to a constant factor |
 /// | `vx_by_a2` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
-/// | `g1_a1_leg4` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
+/// | `g1_a1_leg4` | ∂u_i/∂q̇_a | reduced Jacobian for a kept actuator's velocity, eq. (36) |
 ///
-/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
-/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
-/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
+/// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
+/// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
+/// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -136,7 +136,7 @@ pub struct DualV;
     nonstandard_style,
     unused,
     unused_qualifications,
-    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
+    reason = "straight-line code with the names of the derivation, in any scope"
 )]
 impl DualV {
     /// The robot's name.
@@ -164,21 +164,21 @@ impl DualV {
     ];
     /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
-    /// Names of the pose's numbers.
+    /// Names of the pose coordinates.
     pub const POSE_COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
         0, 3, 6, 9,
     ];
-    /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
+    /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
     pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true, true, true,
     ];
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection (case 2).
     pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
     pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
-    /// Joint positions of the home configuration, which fixes the working mode (m, rad).
+    /// Joint positions of the home configuration, which defines the working mode (m, rad).
     pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.353104842321743, 1.5754853789017922, -0.7869975676342108, 0.7884878112680508,
         -1.5754853789017937, 3.928590221224005, -0.7884878112680508, 1.5754853789017937,
@@ -264,7 +264,7 @@ impl DualV {
             Parameter::of_payload("m_payload", StandardParameter::M, "kg"),
         ]
     };
-    /// The base parameters in the order in which functions take them, and what is regrouped into them.
+    /// The base parameters in the order of the functions' inputs, with the standard parameters regrouped into them.
     pub const BASE_PARAMETERS: [::overact::BaseParameter; 49] = {
         use ::overact::BaseParameter;
         [
@@ -368,7 +368,7 @@ impl DualV {
             ),
         ]
     };
-    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used. Legs may be in other working modes there than at home.
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration. It uses only as many actuators as there are degrees of freedom. Working modes of legs may differ from those at home.
     ///
     /// From the actuators' positions.
     /// - `actuators`: q, positions of the actuated joints (m, rad)
@@ -378,7 +378,7 @@ impl DualV {
     /// 61 operations (27 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 1 arc tangent, 5 guards, 1 negation, 71 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 4],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
@@ -440,7 +440,7 @@ impl DualV {
     /// 184 operations (82 additions, 98 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 12 arc tangents, 8 guards, 7 negations, 197 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joints(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
@@ -593,7 +593,7 @@ impl DualV {
     /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 4 arc tangents, 8 guards, 2 negations, 88 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
@@ -668,7 +668,7 @@ impl DualV {
             ) + 3.9300804648578436,
         ])
     }
-    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero; `forward::displace`, of free platforms `forward::displace_quaternion`, moves a pose by it. Where the elimination would lose digits it is an error, though J_p^inv be regular; `pose_from_actuators` goes on by normal equations then.
+    /// One Gauss-Newton step v δt from a pose x towards the pose of given actuator positions q: J_p^inv+ (q - q(x)), eq. (21), with differences of angles wrapped to ±π. `forward::displace` applies it to a pose, `forward::displace_quaternion` if the pose has a quaternion. It fails if the elimination would lose digits, even if J_p^inv is regular; `pose_from_actuators` then uses normal equations.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -679,7 +679,7 @@ impl DualV {
     /// 203 operations (83 additions, 109 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn pose_step(
         pose: &[::core::primitive::f64; 3],
         actuators: &[::core::primitive::f64; 4],
@@ -838,7 +838,7 @@ impl DualV {
     /// 80 operations (30 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 6 negations, 74 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
@@ -927,7 +927,7 @@ impl DualV {
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -936,7 +936,7 @@ impl DualV {
     /// 30 operations (8 additions, 18 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 32 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -995,7 +995,7 @@ impl DualV {
     /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 17 guards, 3 negations, 190 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
@@ -1150,7 +1150,7 @@ impl DualV {
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -1159,7 +1159,7 @@ impl DualV {
     /// 28 operations (12 additions, 16 multiplications, 0 divisions), 8 trigonometric pairs, 8 negations, 28 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn legs_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -1219,7 +1219,7 @@ impl DualV {
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -1228,7 +1228,7 @@ impl DualV {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 2 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn legs_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -1248,7 +1248,7 @@ impl DualV {
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -1257,7 +1257,7 @@ impl DualV {
     /// 46 operations (8 additions, 34 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 48 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn closure_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -1321,7 +1321,7 @@ impl DualV {
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -1330,7 +1330,7 @@ impl DualV {
     /// 4 operations (0 additions, 4 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 4 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn closure_actuator_jacobian_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -1358,7 +1358,7 @@ impl DualV {
     /// 122 operations (54 additions, 60 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 116 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -1494,7 +1494,7 @@ impl DualV {
     /// 214 operations (90 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 208 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -1680,7 +1680,7 @@ impl DualV {
             ])
         })
     }
-    /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
+    /// The twist v from the actuator velocities, by least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -1691,7 +1691,7 @@ impl DualV {
     /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 174 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -1830,7 +1830,7 @@ impl DualV {
             ::core::result::Result::Ok([t6, t5, t4])
         })
     }
-    /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
+    /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -1842,7 +1842,7 @@ impl DualV {
     /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 17 guards, 274 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -2068,7 +2068,7 @@ impl DualV {
             ::core::result::Result::Ok([t6, t5, t4])
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -2079,11 +2079,11 @@ impl DualV {
     /// Columns: `PARAMETERS`.
     ///
     /// 454 operations (153 additions, 288 multiplications, 13 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 50 negations, 288 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have, and processors without vectors of 4 numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 126 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use, also on processors without vectors of 4 numbers. With such vectors (chosen at run time by the feature `dispatch`, or at compile time by `-C target-cpu=native`) the 4 legs are in their lanes: 13 operations, and 126 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -2096,10 +2096,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -2111,7 +2111,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -2148,7 +2148,7 @@ impl DualV {
                 output[2][60] = acceleration[2]; // zz_platform
                 output[2][61] = a_y_platform; // mx_platform
                 output[2][62] = -a_x_platform; // my_platform
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -2172,10 +2172,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     let mut failed = ::overact::simd::Failed::none();
                     // --- leg
@@ -2199,7 +2197,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
@@ -2267,7 +2265,7 @@ impl DualV {
                         &mut output[0],
                         [3, 15],
                         at,
-                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
+                        ::overact::lanes::signed(g1_vx_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[0], [4, 15], at, g1_vx_leg);
                     ::overact::simd::put(
@@ -2304,7 +2302,7 @@ impl DualV {
                         &mut output[0],
                         [10, 15],
                         at,
-                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        ::overact::lanes::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(
                         &mut output[0],
@@ -2322,7 +2320,7 @@ impl DualV {
                         &mut output[0],
                         [13, 15],
                         at,
-                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        ::overact::lanes::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put(&mut output[0], [14, 15], at, minus_g2_vx_leg);
                     ::overact::simd::put(&mut output[1], [0, 15], at, zz_1_leg_on_vy);
@@ -2337,7 +2335,7 @@ impl DualV {
                         &mut output[1],
                         [3, 15],
                         at,
-                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
+                        ::overact::lanes::signed(g1_vy_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[1], [4, 15], at, g1_vy_leg);
                     ::overact::simd::put(
@@ -2374,7 +2372,7 @@ impl DualV {
                         &mut output[1],
                         [10, 15],
                         at,
-                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        ::overact::lanes::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(
                         &mut output[1],
@@ -2392,7 +2390,7 @@ impl DualV {
                         &mut output[1],
                         [13, 15],
                         at,
-                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        ::overact::lanes::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put(&mut output[1], [14, 15], at, minus_g2_vy_leg);
                     ::overact::simd::put(
@@ -2417,7 +2415,7 @@ impl DualV {
                         &mut output[2],
                         [3, 15],
                         at,
-                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -::overact::lanes::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [4, 15], at, -minus_g1_wz_leg);
                     ::overact::simd::put(
@@ -2454,7 +2452,7 @@ impl DualV {
                         &mut output[2],
                         [10, 15],
                         at,
-                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -::overact::lanes::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [11, 15], at, gq2_wz_leg);
                     ::overact::simd::put(
@@ -2467,7 +2465,7 @@ impl DualV {
                         &mut output[2],
                         [13, 15],
                         at,
-                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
+                        ::overact::lanes::signed(gq3_wz_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [14, 15], at, gq3_wz_leg);
                 }
@@ -2953,9 +2951,9 @@ impl DualV {
         output[2][58] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
         ::core::result::Result::Ok(())
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
@@ -2967,7 +2965,7 @@ impl DualV {
     /// 404 operations (122 additions, 278 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 34 negations, 250 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -2982,10 +2980,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -3496,22 +3494,22 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
     /// 688 operations (255 additions, 413 multiplications, 20 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 36 guards, 51 negations, 526 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -3526,10 +3524,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -4209,7 +4207,7 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -4222,7 +4220,7 @@ impl DualV {
     /// 526 operations (184 additions, 333 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 48 negations, 401 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -4235,10 +4233,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -4803,9 +4801,9 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
@@ -4817,7 +4815,7 @@ impl DualV {
     /// 479 operations (156 additions, 318 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 58 negations, 366 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -4832,10 +4830,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -5354,22 +5352,22 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
     /// 746 operations (282 additions, 449 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 49 negations, 628 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -5384,10 +5382,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -6074,7 +6072,7 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -6085,11 +6083,11 @@ impl DualV {
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 398 operations (127 additions, 263 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 42 negations, 265 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have, and processors without vectors of 4 numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 107 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use, also on processors without vectors of 4 numbers. With such vectors (chosen at run time by the feature `dispatch`, or at compile time by `-C target-cpu=native`) the 4 legs are in their lanes: 13 operations, and 107 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -6102,10 +6100,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -6117,7 +6115,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -6156,7 +6154,7 @@ impl DualV {
                 output[2][0] = acceleration[2]; // zz_platformR
                 output[2][1] = a_y_platform; // mx_platform
                 output[2][2] = -a_x_platform; // my_platformR
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -6180,10 +6178,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     let mut failed = ::overact::simd::Failed::none();
                     let minus_p_x_leg = s_phi * of_leg[0];
@@ -6206,7 +6202,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -6270,7 +6266,7 @@ impl DualV {
                         &mut output[0],
                         [12, 1],
                         at,
-                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
+                        ::overact::lanes::signed(g1_vx_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[0], [16, 1], at, g1_vx_leg);
                     ::overact::simd::put(
@@ -6295,14 +6291,9 @@ impl DualV {
                         &mut output[0],
                         [32, 1],
                         at,
-                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        ::overact::lanes::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(
-                        &mut output[0],
-                        [36, 1],
-                        at,
-                        -minus_gq2_vx_leg,
-                    );
+                    ::overact::simd::put(&mut output[0], [36, 1], at, -minus_gq2_vx_leg);
                     ::overact::simd::put(
                         &mut output[0],
                         [40, 1],
@@ -6313,7 +6304,7 @@ impl DualV {
                         &mut output[0],
                         [44, 1],
                         at,
-                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        ::overact::lanes::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put_of_first(
                         &mut output[0],
@@ -6338,7 +6329,7 @@ impl DualV {
                         &mut output[1],
                         [12, 1],
                         at,
-                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
+                        ::overact::lanes::signed(g1_vy_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[1], [16, 1], at, g1_vy_leg);
                     ::overact::simd::put(
@@ -6363,14 +6354,9 @@ impl DualV {
                         &mut output[1],
                         [32, 1],
                         at,
-                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        ::overact::lanes::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(
-                        &mut output[1],
-                        [36, 1],
-                        at,
-                        -minus_gq2_vy_leg,
-                    );
+                    ::overact::simd::put(&mut output[1], [36, 1], at, -minus_gq2_vy_leg);
                     ::overact::simd::put(
                         &mut output[1],
                         [40, 1],
@@ -6381,7 +6367,7 @@ impl DualV {
                         &mut output[1],
                         [44, 1],
                         at,
-                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        ::overact::lanes::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put_of_first(
                         &mut output[1],
@@ -6406,7 +6392,7 @@ impl DualV {
                         &mut output[2],
                         [12, 1],
                         at,
-                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -::overact::lanes::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [16, 1], at, -minus_g1_wz_leg);
                     ::overact::simd::put(
@@ -6431,7 +6417,7 @@ impl DualV {
                         &mut output[2],
                         [32, 1],
                         at,
-                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -::overact::lanes::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [36, 1], at, gq2_wz_leg);
                     ::overact::simd::put(
@@ -6444,7 +6430,7 @@ impl DualV {
                         &mut output[2],
                         [44, 1],
                         at,
-                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
+                        ::overact::lanes::signed(gq3_wz_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put_of_first(
                         &mut output[2],
@@ -6843,9 +6829,9 @@ impl DualV {
         output[2][47] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
         ::core::result::Result::Ok(())
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
@@ -6857,7 +6843,7 @@ impl DualV {
     /// 346 operations (96 additions, 246 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 30 negations, 225 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -6872,10 +6858,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -7289,22 +7275,22 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 615 operations (224 additions, 365 multiplications, 26 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 36 guards, 43 negations, 486 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -7319,10 +7305,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -7886,7 +7872,7 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -7899,7 +7885,7 @@ impl DualV {
     /// 477 operations (160 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 39 negations, 376 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -7912,10 +7898,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -8408,9 +8394,9 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
@@ -8422,7 +8408,7 @@ impl DualV {
     /// 430 operations (132 additions, 293 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 51 negations, 341 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -8437,10 +8423,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -8890,22 +8876,22 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 701 operations (259 additions, 427 multiplications, 15 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 37 guards, 40 negations, 607 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -8920,10 +8906,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -9537,7 +9523,7 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// The payload's columns of case 1, eq. (38).
+    /// The payload's columns of the platform projection (case 1), eq. (38).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -9550,7 +9536,7 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn idm_red_payload(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -9563,10 +9549,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload`], written into `output` rather than handed back.
+    /// [`Self::idm_red_payload`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_payload`]; `output` is then only partly written.
     pub fn idm_red_payload_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -9609,9 +9595,9 @@ impl DualV {
         output[1][1] = -my_payload_on_vx; // mx_payload
         ::core::result::Result::Ok(())
     }
-    /// The payload's columns of case 1, eq. (38).
+    /// The payload's columns of the platform projection (case 1), eq. (38).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
@@ -9623,7 +9609,7 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn idm_red_payload_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -9638,10 +9624,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_payload_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_payload_from_joints`]; `output` is then only partly written.
     pub fn idm_red_payload_from_joints_into(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -9686,22 +9672,22 @@ impl DualV {
         output[1][1] = -my_payload_on_vx; // mx_payload
         ::core::result::Result::Ok(())
     }
-    /// The payload's columns of case 1, eq. (38).
+    /// The payload's columns of the platform projection (case 1), eq. (38).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
     /// 384 operations (156 additions, 214 multiplications, 14 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 28 guards, 5 negations, 390 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_payload_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -9716,10 +9702,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_payload_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_payload_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_payload_from_actuators_into(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -10001,7 +9987,7 @@ impl DualV {
             ::core::result::Result::Ok(())
         })
     }
-    /// The payload's columns of case 2, eq. (38).
+    /// The payload's columns of the actuator projection (case 2), eq. (38).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -10014,7 +10000,7 @@ impl DualV {
     /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pair, 10 guards, 2 negations, 142 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_payload_actuators(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -10027,10 +10013,10 @@ impl DualV {
             output,
         ))
     }
-    /// [`Self::idm_red_payload_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_payload_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_payload_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_payload_actuators`]; `output` is then only partly written.
     pub fn idm_red_payload_actuators_into(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -10161,7 +10147,7 @@ impl DualV {
     /// 101 operations (39 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 104 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
@@ -10262,7 +10248,7 @@ impl DualV {
     /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 13 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
@@ -10374,7 +10360,7 @@ impl DualV {
             torques[2] + torques[3] * g1_a3_leg4,
         ])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -10385,11 +10371,11 @@ impl DualV {
     /// Output: 4.
     ///
     /// 573 operations (249 additions, 310 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 575 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 61 operations once, and 141 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use. This code has the 4 legs in the lanes of SIMD vectors: 61 operations, and 141 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -10402,7 +10388,7 @@ impl DualV {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -10451,7 +10437,7 @@ impl DualV {
                 let mut added = [[0.0; 4]; 9];
                 // --- what the legs need again when the sums are known
                 let mut own = [[0.0; 4]; 3];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -10475,10 +10461,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
@@ -10520,7 +10504,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -10570,14 +10554,14 @@ impl DualV {
                     let t4_leg = own_parameters[4]
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(own_parameters[3], rate_1_leg, at)
+                        + ::overact::lanes::signed(own_parameters[3], rate_1_leg, at)
                         + rate_dot_1_leg
                             * (own_parameters[6] + L_AB_SQUARED * own_parameters[5]
                                 + own_parameters[7]);
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[10]
                         - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::simd::signed(
+                            + ::overact::lanes::signed(
                                 own_parameters[9],
                                 minus_qd_2_leg,
                                 at,
@@ -10591,7 +10575,7 @@ impl DualV {
                         - own_parameters[11] * minus_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
+                        + ::overact::lanes::signed(own_parameters[13], qd_3_leg, at)
                         + own_parameters[14];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -10720,9 +10704,9 @@ impl DualV {
             parameters,
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
@@ -10734,7 +10718,7 @@ impl DualV {
     /// 517 operations (218 additions, 289 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 531 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -11081,22 +11065,22 @@ impl DualV {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 4.
     ///
     /// 739 operations (325 additions, 397 multiplications, 17 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 28 guards, 2 negations, 748 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -11581,7 +11565,7 @@ impl DualV {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -11592,11 +11576,11 @@ impl DualV {
     /// Output: 4.
     ///
     /// 490 operations (217 additions, 259 multiplications, 14 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 492 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 61 operations once, and 121 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use. This code has the 4 legs in the lanes of SIMD vectors: 61 operations, and 121 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -11609,7 +11593,7 @@ impl DualV {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -11652,7 +11636,7 @@ impl DualV {
                 let mut added = [[0.0; 4]; 9];
                 // --- what the legs need again when the sums are known
                 let mut own = [[0.0; 4]; 3];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -11676,10 +11660,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
@@ -11723,7 +11705,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -11760,7 +11742,7 @@ impl DualV {
                         + L_AB_SQUARED * rate_1_squared_leg;
                     let t4_leg = own_base_parameters[1] * INV_L_AB;
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(
+                        + ::overact::lanes::signed(
                             own_base_parameters[3],
                             rate_1_leg,
                             at,
@@ -11768,7 +11750,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::simd::signed(
+                            + ::overact::lanes::signed(
                                 own_base_parameters[6],
                                 minus_qd_2_leg,
                                 at,
@@ -11781,7 +11763,7 @@ impl DualV {
                         * minus_rate_dot_2_leg + minus_a_on_f1_leg * t4_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
+                        + ::overact::lanes::signed(own_base_parameters[10], qd_3_leg, at)
                         + own_base_parameters[11];
                     let force_on_u2_leg = tau_2_leg - minus_moment2_z_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -11910,9 +11892,9 @@ impl DualV {
             base_parameters,
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y, omega_z]` (m/s, rad/s), in the base frame
@@ -11924,7 +11906,7 @@ impl DualV {
     /// 442 operations (187 additions, 245 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 456 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_joints(
         pose: &[::core::primitive::f64; 3],
         joints: &[::core::primitive::f64; 12],
@@ -12230,22 +12212,22 @@ impl DualV {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 4.
     ///
     /// 656 operations (293 additions, 345 multiplications, 18 divisions), 7 square roots, 5 trigonometric pairs, 1 arc tangent, 12 signs, 28 guards, 2 negations, 665 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_actuators(
         actuators: &[::core::primitive::f64; 4],
         actuator_velocities: &[::core::primitive::f64; 4],
@@ -12685,11 +12667,11 @@ impl DualV {
     /// Output: 3 x 3.
     ///
     /// 323 operations (136 additions, 176 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 323 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have, and processors without vectors of 4 numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the 4 legs run side by side, in the lanes of vectors: 15 operations once, and 83 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use, also on processors without vectors of 4 numbers. With such vectors (chosen at run time by the feature `dispatch`, or at compile time by `-C target-cpu=native`) the 4 legs are in their lanes: 15 operations, and 83 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 3],
         parameters: &[::core::primitive::f64; 68],
@@ -12697,7 +12679,7 @@ impl DualV {
         ::overact::guard::within(
             &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             parameters: &'a [::core::primitive::f64; 68],
@@ -12726,7 +12708,7 @@ impl DualV {
                 let inertia_zz_platform = parameters[60] + parameters[64];
                 // --- what the legs add: a row for each number, in it one for each leg
                 let mut added = [[0.0; 4]; 6];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -12750,10 +12732,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
@@ -12786,7 +12766,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13101,11 +13081,11 @@ impl DualV {
     /// Output: 3 x 3.
     ///
     /// 297 operations (119 additions, 170 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 297 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have, and processors without vectors of 4 numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the 4 legs run side by side, in the lanes of vectors: 15 operations once, and 86 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use, also on processors without vectors of 4 numbers. With such vectors (chosen at run time by the feature `dispatch`, or at compile time by `-C target-cpu=native`) the 4 legs are in their lanes: 15 operations, and 86 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix_base(
         pose: &[::core::primitive::f64; 3],
         base_parameters: &[::core::primitive::f64; 53],
@@ -13113,7 +13093,7 @@ impl DualV {
         ::overact::guard::within(
             &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             base_parameters: &'a [::core::primitive::f64; 53],
@@ -13144,7 +13124,7 @@ impl DualV {
                 let inertia_zz_platform = base_parameters[0] + base_parameters[49];
                 // --- what the legs add: a row for each number, in it one for each leg
                 let mut added = [[0.0; 4]; 6];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -13168,10 +13148,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
@@ -13201,7 +13179,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13516,11 +13494,11 @@ impl DualV {
     /// Output: 3.
     ///
     /// 461 operations (197 additions, 256 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 464 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 122 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use. This code has the 4 legs in the lanes of SIMD vectors: 13 operations, and 122 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -13531,7 +13509,7 @@ impl DualV {
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -13569,7 +13547,7 @@ impl DualV {
                     + c_phi_rate_3_squared_leg * first_y_platform;
                 // --- what the legs add: a row for each number, in it one for each leg
                 let mut added = [[0.0; 4]; 3];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -13593,10 +13571,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
@@ -13638,7 +13614,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13684,7 +13660,7 @@ impl DualV {
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - l_ab_squared_rate_1_squared_leg * c2_leg);
                     let t2_leg = own_parameters[4]
-                        + ::overact::simd::signed(own_parameters[0], rate_1_leg, at)
+                        + ::overact::lanes::signed(own_parameters[0], rate_1_leg, at)
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[3] * rate_1_leg
                         - minus_bias_rate_dot_1_leg
@@ -13693,7 +13669,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[10]
                         - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::simd::signed(
+                            + ::overact::lanes::signed(
                                 own_parameters[9],
                                 minus_qd_2_leg,
                                 at,
@@ -13707,7 +13683,7 @@ impl DualV {
                         - own_parameters[11] * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
+                        + ::overact::lanes::signed(own_parameters[13], qd_3_leg, at)
                         + own_parameters[14];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -13757,11 +13733,11 @@ impl DualV {
     /// Output: 3.
     ///
     /// 378 operations (166 additions, 204 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 12 guards, 381 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 13 operations once, and 102 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use. This code has the 4 legs in the lanes of SIMD vectors: 13 operations, and 102 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -13773,7 +13749,7 @@ impl DualV {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -13805,7 +13781,7 @@ impl DualV {
                     + c_phi_rate_3_squared_leg * first_y_platform;
                 // --- what the legs add: a row for each number, in it one for each leg
                 let mut added = [[0.0; 4]; 3];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -13829,10 +13805,8 @@ impl DualV {
                 for at in ::overact::simd::places::<V, 4>(lanes) {
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
@@ -13876,7 +13850,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13911,7 +13885,7 @@ impl DualV {
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(
+                        + ::overact::lanes::signed(
                             own_base_parameters[3],
                             rate_1_leg,
                             at,
@@ -13919,7 +13893,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::simd::signed(
+                            + ::overact::lanes::signed(
                                 own_base_parameters[6],
                                 minus_qd_2_leg,
                                 at,
@@ -13933,7 +13907,7 @@ impl DualV {
                         - own_base_parameters[8] * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
+                        + ::overact::lanes::signed(own_base_parameters[10], qd_3_leg, at)
                         + own_base_parameters[11];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -13988,11 +13962,11 @@ impl DualV {
     /// Output: 3.
     ///
     /// 707 operations (298 additions, 382 multiplications, 27 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 19 guards, 710 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 48 operations once, and 169 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use. This code has the 4 legs in the lanes of SIMD vectors: 48 operations, and 169 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -14005,7 +13979,7 @@ impl DualV {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -14045,7 +14019,7 @@ impl DualV {
                 let minus_force_y_platform = t1_platform * rate_3_squared_leg;
                 // --- what the legs add: a row for each number, in it one for each leg
                 let mut added = [[0.0; 4]; 9];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -14071,10 +14045,8 @@ impl DualV {
                     let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
@@ -14116,7 +14088,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -14182,14 +14154,14 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[8]
                         - (own_parameters[6] * minus_qd_2_leg
-                            + ::overact::simd::signed(
+                            + ::overact::lanes::signed(
                                 own_parameters[7],
                                 minus_qd_2_leg,
                                 at,
                             ));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[9] * qd_3_leg
-                        + ::overact::simd::signed(own_parameters[10], qd_3_leg, at)
+                        + ::overact::lanes::signed(own_parameters[10], qd_3_leg, at)
                         + own_parameters[11];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let force2_x_leg = own_parameters[4] * minus_bias_rate_dot_2_leg
@@ -14197,7 +14169,7 @@ impl DualV {
                     let minus_force2_y_leg = own_parameters[3]
                         * minus_bias_rate_dot_2_leg
                         + own_parameters[4] * rate_2_squared_leg;
-                    let t6_leg = ::overact::simd::signed(
+                    let t6_leg = ::overact::lanes::signed(
                         own_parameters[12],
                         rate_1_leg,
                         at,
@@ -14273,8 +14245,7 @@ impl DualV {
                 // --- what all share and what the legs add, added up
                 let sums = [
                     mass_platform + ::overact::simd::sum(&added[0]),
-                    ::overact::simd::sum(&added[1]),
-                    -t1_platform + ::overact::simd::sum(&added[2]),
+                    ::overact::simd::sum(&added[1]), -t1_platform + ::overact::simd::sum(&added[2]),
                     mass_platform + ::overact::simd::sum(&added[3]),
                     t2_platform + ::overact::simd::sum(&added[4]),
                     inertia_zz_platform + ::overact::simd::sum(&added[5]),
@@ -14326,11 +14297,11 @@ impl DualV {
     /// Output: 3.
     ///
     /// 609 operations (263 additions, 335 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 20 guards, 612 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have. Here the 4 legs run side by side, in the lanes of vectors: 48 operations once, and 155 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use. This code has the 4 legs in the lanes of SIMD vectors: 48 operations, and 155 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -14343,7 +14314,7 @@ impl DualV {
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 3],
             twist: &'a [::core::primitive::f64; 3],
@@ -14381,7 +14352,7 @@ impl DualV {
                 let minus_force_y_platform = t1_platform * rate_3_squared_leg;
                 // --- what the legs add: a row for each number, in it one for each leg
                 let mut added = [[0.0; 4]; 9];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
@@ -14407,10 +14378,8 @@ impl DualV {
                     let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_base_parameters = [
@@ -14454,7 +14423,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -14517,20 +14486,20 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[5]
                         - (own_base_parameters[3] * minus_qd_2_leg
-                            + ::overact::simd::signed(
+                            + ::overact::lanes::signed(
                                 own_base_parameters[4],
                                 minus_qd_2_leg,
                                 at,
                             ));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[6] * qd_3_leg
-                        + ::overact::simd::signed(own_base_parameters[7], qd_3_leg, at)
+                        + ::overact::lanes::signed(own_base_parameters[7], qd_3_leg, at)
                         + own_base_parameters[8];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
                     let tau_1_leg = own_base_parameters[9] * rate_1_leg
-                        + ::overact::simd::signed(
+                        + ::overact::lanes::signed(
                             own_base_parameters[10],
                             rate_1_leg,
                             at,
@@ -14596,8 +14565,7 @@ impl DualV {
                 // --- what all share and what the legs add, added up
                 let sums = [
                     mass_platform + ::overact::simd::sum(&added[0]),
-                    ::overact::simd::sum(&added[1]),
-                    -t1_platform + ::overact::simd::sum(&added[2]),
+                    ::overact::simd::sum(&added[1]), -t1_platform + ::overact::simd::sum(&added[2]),
                     mass_platform + ::overact::simd::sum(&added[3]),
                     t2_platform + ::overact::simd::sum(&added[4]),
                     inertia_zz_platform + ::overact::simd::sum(&added[5]),
@@ -14638,7 +14606,7 @@ impl DualV {
             base_parameters,
         })
     }
-    /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
+    /// Actuator torques of least norm plus N `preload`, where N is the basis from `null_space`.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -14652,7 +14620,7 @@ impl DualV {
     /// 580 operations (238 additions, 332 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 12 signs, 17 guards, 583 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_preloaded(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -15080,7 +15048,7 @@ impl DualV {
     /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
@@ -15218,7 +15186,7 @@ impl DualV {
             ])
         })
     }
-    /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
+    /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive at the k-th projected actuator of case 2.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -15228,7 +15196,7 @@ impl DualV {
     /// 135 operations (47 additions, 78 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 14 guards, 3 negations, 138 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn null_space(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
@@ -15334,10 +15302,10 @@ impl DualV {
             [inv_norm_4],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. The iteration starts from `pose_in_closed_form` where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration.
+    /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`. The iteration starts from `pose_in_closed_form` if that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps. If that fails, the result is in the assembly mode of the home configuration.
     ///
     /// # Errors
-    /// An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.
+    /// An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],

@@ -7,7 +7,7 @@
 ///
 /// # Operations
 ///
-/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+/// Additions, multiplications (including those by signs and constants) and divisions of each function and of all functions that it calls; then √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. Iterations have the counts of one step.
 ///
 /// | function | once | each step |
 /// |---|---|---|
@@ -31,19 +31,19 @@
 /// | `forward_dynamics_base` | 6, 1 sg, 2 gd |  |
 /// | `project_torques` | 0 |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
+/// Functions with a column for each parameter have two variants: one returns a matrix; the other, with the suffix `_into`, writes into the caller's matrix, which is faster. Comments name the columns.
 ///
 /// # Names
 ///
 /// | name | symbol | meaning |
 /// |---|---|---|
-/// | `force1_z_axis` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `tau_1_axis` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force1_z_axis` | f | inertial force of a body, in its own axes (platform: base axes) |
+/// | `tau_1_axis` | τ_j | torque of friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_axis` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 ///
-/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
-/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
-/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
+/// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
+/// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
+/// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -59,7 +59,7 @@ pub struct Emps;
     nonstandard_style,
     unused,
     unused_qualifications,
-    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
+    reason = "straight-line code with the names of the derivation, in any scope"
 )]
 impl Emps {
     /// The robot's name.
@@ -80,17 +80,17 @@ impl Emps {
     pub const JOINT_NAMES: [&'static ::core::primitive::str; 1] = ["1"];
     /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 1] = ["1"];
-    /// Names of the pose's numbers.
+    /// Names of the pose coordinates.
     pub const POSE_COORDINATES: [&'static ::core::primitive::str; 1] = ["q_1"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0];
-    /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
+    /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
     pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [false];
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection (case 2).
     pub const KEPT_ACTUATORS: [::core::primitive::usize; 1] = [0];
     /// Pose of the home configuration (m, rad).
     pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0];
-    /// Joint positions of the home configuration, which fixes the working mode (m, rad).
+    /// Joint positions of the home configuration, which defines the working mode (m, rad).
     pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [0.0];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 5] = {
@@ -105,7 +105,7 @@ impl Emps {
     };
     /// The payload's parameters, in column order.
     pub const PAYLOAD_PARAMETERS: [::overact::Parameter; 0] = { [] };
-    /// The base parameters in the order in which functions take them, and what is regrouped into them.
+    /// The base parameters in the order of the functions' inputs, with the standard parameters regrouped into them.
     pub const BASE_PARAMETERS: [::overact::BaseParameter; 4] = {
         use ::overact::BaseParameter;
         [
@@ -124,7 +124,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn joints(
         joints: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
@@ -141,7 +141,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn actuator_positions(
         joints: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
@@ -158,7 +158,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn inverse_jacobian(
         joints: &[::core::primitive::f64; 1],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
@@ -176,7 +176,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn joint_velocities(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -198,7 +198,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn joint_accelerations(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -212,7 +212,7 @@ impl Emps {
         )?;
         ::core::result::Result::Ok([joint_accelerations[0]])
     }
-    /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
+    /// The twist v from the actuator velocities, by least squares, eq. (21).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -223,7 +223,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn twist_from_actuators(
         joints: &[::core::primitive::f64; 1],
         actuator_velocities: &[::core::primitive::f64; 1],
@@ -235,7 +235,7 @@ impl Emps {
         )?;
         ::core::result::Result::Ok([actuator_velocities[0]])
     }
-    /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
+    /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -247,7 +247,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn acceleration_from_actuators(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -261,7 +261,7 @@ impl Emps {
         )?;
         ::core::result::Result::Ok([actuator_accelerations[0]])
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -274,7 +274,7 @@ impl Emps {
     /// 0 operations, 1 sign.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn idm_red_platform(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -287,10 +287,10 @@ impl Emps {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -309,7 +309,7 @@ impl Emps {
         output[0][3] = ::overact::math::sign(joint_velocities[0]); // fs_1
         ::core::result::Result::Ok(())
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -322,7 +322,7 @@ impl Emps {
     /// 0 operations, 1 sign.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn idm_red_platform_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -335,10 +335,10 @@ impl Emps {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -368,7 +368,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn project_platform(
         joints: &[::core::primitive::f64; 1],
         torques: &[::core::primitive::f64; 1],
@@ -378,7 +378,7 @@ impl Emps {
         )?;
         ::core::result::Result::Ok([torques[0]])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -391,7 +391,7 @@ impl Emps {
     /// 7 operations (4 additions, 3 multiplications, 0 divisions), 1 sign, 6 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn inverse_dynamics(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -410,7 +410,7 @@ impl Emps {
             + joint_accelerations[0] * (parameters[0] + parameters[1]);
         ::core::result::Result::Ok([force_on_u1_axis])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -423,7 +423,7 @@ impl Emps {
     /// 6 operations (3 additions, 3 multiplications, 0 divisions), 1 sign, 5 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn inverse_dynamics_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -455,7 +455,7 @@ impl Emps {
     /// 1 operation (1 addition, 0 multiplications, 0 divisions).
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn mass_matrix(
         joints: &[::core::primitive::f64; 1],
         parameters: &[::core::primitive::f64; 5],
@@ -478,7 +478,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn mass_matrix_base(
         joints: &[::core::primitive::f64; 1],
         base_parameters: &[::core::primitive::f64; 4],
@@ -500,7 +500,7 @@ impl Emps {
     /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn bias(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -529,7 +529,7 @@ impl Emps {
     /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn bias_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -559,7 +559,7 @@ impl Emps {
     /// 7 operations (4 additions, 2 multiplications, 1 division), 1 sign, 2 guards, 6 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -595,7 +595,7 @@ impl Emps {
     /// 6 operations (3 additions, 2 multiplications, 1 division), 1 sign, 2 guards, 5 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
         joints: &[::core::primitive::f64; 1],
         joint_velocities: &[::core::primitive::f64; 1],
@@ -627,7 +627,7 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn project_torques(
         joints: &[::core::primitive::f64; 1],
         torques: &[::core::primitive::f64; 1],
@@ -637,10 +637,10 @@ impl Emps {
         )?;
         ::core::result::Result::Ok([torques[0]])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.
+    /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`.
     ///
     /// # Errors
-    /// An input that is not finite or too large; else none: the pose of a robot without a loop is its joint positions.
+    /// An input is not finite or too large. The pose of a robot without loops is its joint positions.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],

@@ -7,7 +7,7 @@
 ///
 /// # Operations
 ///
-/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+/// Additions, multiplications (including those by signs and constants) and divisions of each function and of all functions that it calls; then √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. Iterations have the counts of one step.
 ///
 /// | function | once | each step |
 /// |---|---|---|
@@ -54,54 +54,54 @@
 /// | `forward_dynamics_base` | 220, 2 √, 4 sg, 11 gd |  |
 /// | `project_torques` | 0 |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
+/// Functions with a column for each parameter have two variants: one returns a matrix; the other, with the suffix `_into`, writes into the caller's matrix, which is faster. Comments name the columns.
 ///
 /// # Names
 ///
 /// | name | symbol | meaning |
 /// |---|---|---|
-/// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
-/// | `dvy` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
-/// | `c12_left` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s2_left` | sin q | sine of a joint angle, named as its cosine is |
-/// | `d_x_left` | D | from the leg's first joint to its end, in the leg's plane, m |
+/// | `vx` | v | platform velocity from the actuators' by least squares, eq. (21) |
+/// | `dvy` | v̇ | platform acceleration from the actuators' by least squares, eq. (24) |
+/// | `c12_left` | cos q | cosine of a joint angle; `c12`: of q₁ + q₂; `c1o`: of an angle plus its constant offset |
+/// | `s2_left` | sin q | sine of a joint angle, named like the cosine |
+/// | `d_x_left` | D | vector from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_left` | ρ² | D · D, m² |
 /// | `h_squared_left` | h² | l₁²/ρ² - a², the square of h |
-/// | `h_left` | h | the elbow stands at a D ± h D⊥, eq. (7) solved |
-/// | `l1_x_left` | l₁ e₁ | the proximal link, in the leg's plane, m |
-/// | `l2_x_left` | l₂ e₂ | the distal link, in the leg's plane, m |
-/// | `det_left` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
-/// | `k_left` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
+/// | `h_left` | h | the elbow is at a D ± h D⊥, the solution of eq. (7) |
+/// | `l1_x_left` | l₁ e₁ | vector along the proximal link, in the leg's plane, m |
+/// | `l2_x_left` | l₂ e₂ | vector along the distal link, in the leg's plane, m |
+/// | `det_left` | det J_k | determinant or pivot of the leg's Jacobian J_k, eq. (13), up to a constant factor |
+/// | `k_left` | k | common factor of the leg's wrenches, up to sign: a constant by the determinant |
 /// | `k1_left` | k_i | common factor of one of the leg's wrenches |
-/// | `fk1_x_left` | f_i/k | that force without the factor k, in the leg's axes |
+/// | `fk1_x_left` | f_i/k | this force without the factor k, in the leg's axes |
 /// | `rate_1_left` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
 /// | `rate_1_squared_left` | u_i² | square of a joint rate |
-/// | `rate_dot_1_left` | u̇_i | derivative of that rate, eq. (10) |
-/// | `bias_rate_dot_1_right` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
-/// | `g1_vx_left` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
-/// | `gq2_vx_left` | ∂q̇_i/∂v | the same of the joint's own rate; of an actuated joint a row of J_p^inv, eq. (20) |
-/// | `qd_2_left` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
-/// | `qdd_2_right` | q̈_i | acceleration of a joint, eq. (10) |
-/// | `a_on_f1_left` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
-/// | `bias_a_on_f1_left` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
-/// | `a1_x_left` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
-/// | `force2_x_left` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `moment2_z_left` | m | moment of a body's inertial parameters about its origin |
-/// | `tau_2_left` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `rate_dot_1_left` | u̇_i | derivative of this rate, eq. (10) |
+/// | `bias_rate_dot_1_right` | u̇_i at v̇ = 0 | this derivative for zero platform acceleration, eq. (10) |
+/// | `g1_vx_left` | ∂u_i/∂v | row of the reduced Jacobian J_k⁻¹ J_tk, eq. (9) |
+/// | `gq2_vx_left` | ∂q̇_i/∂v | the same for the rate of joint i; for an actuated joint a row of J_p^inv, eq. (20) |
+/// | `qd_2_left` | q̇_i | joint rate, rad/s or m/s, eq. (9) |
+/// | `qdd_2_right` | q̈_i | joint acceleration, eq. (10) |
+/// | `a_on_f1_left` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, minus the bias terms b that do not depend on the pose |
+/// | `bias_a_on_f1_left` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same for zero platform acceleration |
+/// | `a1_x_left` | a_j - g | acceleration of the origin of body j minus gravity, in its own axes |
+/// | `force2_x_left` | f | inertial force of a body, in its own axes (platform: base axes) |
+/// | `moment2_z_left` | m | inertial moment of a body about its origin |
+/// | `tau_2_left` | τ_j | torque of friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_left` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
-/// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
+/// | `bias_a1_x_left` | a_j - g at v̇ = 0 | acceleration of the origin of body j for zero independent accelerations |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
 /// | `l_2_1` | L | entry of L |
-/// | `missed_1` | q - q(x) | how far an actuator is from its measured position, in the step of forward kinematics |
-/// | `c_actuator_1` | cos q | of the measured position of an actuator |
-/// | `s_actuator_1` | sin q | its sine |
-/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
+/// | `missed_1` | q - q(x) | measured minus computed position of an actuator, in a step of forward kinematics |
+/// | `c_actuator_1` | cos q | cosine of the measured position of an actuator |
+/// | `s_actuator_1` | sin q | sine of the measured position of an actuator |
+/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, up to a constant factor |
 /// | `vx_by_a1` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
-/// | `g2_a1_left` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
+/// | `g2_a1_left` | ∂u_i/∂q̇_a | reduced Jacobian for a kept actuator's velocity, eq. (36) |
 ///
-/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
-/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
-/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
+/// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
+/// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
+/// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -117,7 +117,7 @@ pub struct FiveBar;
     nonstandard_style,
     unused,
     unused_qualifications,
-    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
+    reason = "straight-line code with the names of the derivation, in any scope"
 )]
 impl FiveBar {
     /// The robot's name.
@@ -140,19 +140,19 @@ impl FiveBar {
     ];
     /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
-    /// Names of the pose's numbers.
+    /// Names of the pose coordinates.
     pub const POSE_COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2];
-    /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
+    /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
     pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true,
     ];
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection (case 2).
     pub const KEPT_ACTUATORS: [::core::primitive::usize; 2] = [0, 1];
     /// Pose of the home configuration (m, rad).
     pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.3];
-    /// Joint positions of the home configuration, which fixes the working mode (m, rad).
+    /// Joint positions of the home configuration, which defines the working mode (m, rad).
     pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.160380669573568, -1.595798931694268, 0.981211984016226, 1.5957989316942673,
     ];
@@ -189,7 +189,7 @@ impl FiveBar {
     };
     /// The payload's parameters, in column order.
     pub const PAYLOAD_PARAMETERS: [::overact::Parameter; 0] = { [] };
-    /// The base parameters in the order in which functions take them, and what is regrouped into them.
+    /// The base parameters in the order of the functions' inputs, with the standard parameters regrouped into them.
     pub const BASE_PARAMETERS: [::overact::BaseParameter; 19] = {
         use ::overact::BaseParameter;
         [
@@ -234,7 +234,7 @@ impl FiveBar {
             BaseParameter::new("fs_2_right", "fs_2_right", &[]),
         ]
     };
-    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used. Legs may be in other working modes there than at home.
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration. It uses only as many actuators as there are degrees of freedom. Working modes of legs may differ from those at home.
     ///
     /// From the actuators' positions.
     /// - `actuators`: q, positions of the actuated joints (m, rad)
@@ -244,7 +244,7 @@ impl FiveBar {
     /// 22 operations (10 additions, 11 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 25 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
@@ -285,7 +285,7 @@ impl FiveBar {
     /// 63 operations (26 additions, 35 multiplications, 2 divisions), 2 square roots, 4 arc tangents, 4 guards, 2 negations, 67 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
@@ -350,7 +350,7 @@ impl FiveBar {
     /// 45 operations (18 additions, 25 multiplications, 2 divisions), 2 square roots, 2 arc tangents, 4 guards, 1 negation, 48 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
@@ -393,7 +393,7 @@ impl FiveBar {
             ) + 0.981211984016226,
         ])
     }
-    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero; `forward::displace`, of free platforms `forward::displace_quaternion`, moves a pose by it. Where the elimination would lose digits it is an error, though J_p^inv be regular; `pose_from_actuators` goes on by normal equations then.
+    /// One Gauss-Newton step v δt from a pose x towards the pose of given actuator positions q: J_p^inv+ (q - q(x)), eq. (21), with differences of angles wrapped to ±π. `forward::displace` applies it to a pose, `forward::displace_quaternion` if the pose has a quaternion. It fails if the elimination would lose digits, even if J_p^inv is regular; `pose_from_actuators` then uses normal equations.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -404,7 +404,7 @@ impl FiveBar {
     /// 67 operations (23 additions, 39 multiplications, 5 divisions), 2 square roots, 2 trigonometric pairs, 2 arc tangents, 7 guards, 1 negation, 73 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn pose_step(
         pose: &[::core::primitive::f64; 2],
         actuators: &[::core::primitive::f64; 2],
@@ -483,7 +483,7 @@ impl FiveBar {
     /// 43 operations (16 additions, 23 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 41 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
@@ -535,7 +535,7 @@ impl FiveBar {
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -544,7 +544,7 @@ impl FiveBar {
     /// 8 operations (2 additions, 4 multiplications, 2 divisions), 4 trigonometric pairs, 2 guards, 10 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -581,7 +581,7 @@ impl FiveBar {
     /// 51 operations (17 additions, 29 multiplications, 5 divisions), 2 square roots, 7 guards, 2 negations, 49 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
@@ -637,7 +637,7 @@ impl FiveBar {
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -646,7 +646,7 @@ impl FiveBar {
     /// 14 operations (6 additions, 8 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 14 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn legs_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -676,7 +676,7 @@ impl FiveBar {
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -685,7 +685,7 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn legs_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -695,7 +695,7 @@ impl FiveBar {
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -704,7 +704,7 @@ impl FiveBar {
     /// 6 operations (2 additions, 4 multiplications, 0 divisions), 2 trigonometric pairs, 6 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn closure_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -724,7 +724,7 @@ impl FiveBar {
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -733,7 +733,7 @@ impl FiveBar {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 2 trigonometric pairs, 2 negations, 2 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn closure_actuator_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -760,7 +760,7 @@ impl FiveBar {
     /// 61 operations (22 additions, 35 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 59 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -835,7 +835,7 @@ impl FiveBar {
     /// 101 operations (36 additions, 61 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 99 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -927,7 +927,7 @@ impl FiveBar {
             -minus_rate_dot_1_left, qdd_2_left, rate_dot_1_right, -minus_qdd_2_right,
         ])
     }
-    /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
+    /// The twist v from the actuator velocities, by least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -938,7 +938,7 @@ impl FiveBar {
     /// 55 operations (19 additions, 31 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 55 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -999,7 +999,7 @@ impl FiveBar {
                     + minus_g1_vx_left * actuator_velocities[1]),
         ])
     }
-    /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
+    /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -1011,7 +1011,7 @@ impl FiveBar {
     /// 89 operations (29 additions, 55 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 89 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1106,7 +1106,7 @@ impl FiveBar {
                     + minus_g1_vx_left * qdd1_minus_bias_rate_dot_1_right),
         ])
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -1119,7 +1119,7 @@ impl FiveBar {
     /// 194 operations (55 additions, 132 multiplications, 7 divisions), 2 square roots, 4 signs, 6 guards, 10 negations, 152 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1132,10 +1132,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1348,9 +1348,9 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -1362,7 +1362,7 @@ impl FiveBar {
     /// 161 operations (43 additions, 116 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 124 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -1377,10 +1377,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -1573,13 +1573,13 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
@@ -1587,7 +1587,7 @@ impl FiveBar {
     /// 224 operations (66 additions, 148 multiplications, 10 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 24 negations, 185 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -1602,10 +1602,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -1853,7 +1853,7 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -1866,7 +1866,7 @@ impl FiveBar {
     /// 182 operations (58 additions, 119 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 12 negations, 156 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1879,10 +1879,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2092,9 +2092,9 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -2106,7 +2106,7 @@ impl FiveBar {
     /// 153 operations (48 additions, 102 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 133 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2121,10 +2121,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2305,13 +2305,13 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
@@ -2319,7 +2319,7 @@ impl FiveBar {
     /// 208 operations (68 additions, 134 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 189 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -2334,10 +2334,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -2571,7 +2571,7 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -2584,7 +2584,7 @@ impl FiveBar {
     /// 166 operations (47 additions, 113 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 8 negations, 131 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2597,10 +2597,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2767,9 +2767,9 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -2781,7 +2781,7 @@ impl FiveBar {
     /// 129 operations (33 additions, 94 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 100 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2796,10 +2796,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -2936,13 +2936,13 @@ impl FiveBar {
         output[1][18] = ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right); // fs_2_right
         ::core::result::Result::Ok(())
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
@@ -2950,7 +2950,7 @@ impl FiveBar {
     /// 195 operations (58 additions, 125 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 19 negations, 163 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -2965,10 +2965,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3159,7 +3159,7 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -3172,7 +3172,7 @@ impl FiveBar {
     /// 164 operations (52 additions, 107 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 11 negations, 144 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3185,10 +3185,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3372,9 +3372,9 @@ impl FiveBar {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -3386,7 +3386,7 @@ impl FiveBar {
     /// 135 operations (42 additions, 90 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 121 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -3401,10 +3401,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -3549,13 +3549,13 @@ impl FiveBar {
         output[1][18] = -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right); // fs_2_right
         ::core::result::Result::Ok(())
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
@@ -3563,7 +3563,7 @@ impl FiveBar {
     /// 190 operations (62 additions, 122 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 177 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3578,10 +3578,10 @@ impl FiveBar {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -3799,7 +3799,7 @@ impl FiveBar {
     /// 49 operations (18 additions, 27 multiplications, 4 divisions), 2 square roots, 6 guards, 49 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
@@ -3862,7 +3862,7 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
@@ -3870,7 +3870,7 @@ impl FiveBar {
         ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         ::core::result::Result::Ok([torques[0], torques[1]])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -3883,7 +3883,7 @@ impl FiveBar {
     /// 203 operations (82 additions, 113 multiplications, 8 divisions), 2 square roots, 4 signs, 7 guards, 203 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -4054,9 +4054,9 @@ impl FiveBar {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -4068,7 +4068,7 @@ impl FiveBar {
     /// 186 operations (72 additions, 108 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 192 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -4219,21 +4219,21 @@ impl FiveBar {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2.
     ///
     /// 230 operations (92 additions, 130 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 233 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -4429,7 +4429,7 @@ impl FiveBar {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -4442,7 +4442,7 @@ impl FiveBar {
     /// 182 operations (70 additions, 99 multiplications, 13 divisions), 2 square roots, 4 signs, 7 guards, 182 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -4598,9 +4598,9 @@ impl FiveBar {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -4612,7 +4612,7 @@ impl FiveBar {
     /// 146 operations (52 additions, 88 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 152 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 4],
@@ -4741,21 +4741,21 @@ impl FiveBar {
             force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
         ])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2.
     ///
     /// 210 operations (80 additions, 122 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 213 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_actuators(
         actuators: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 2],
@@ -4950,7 +4950,7 @@ impl FiveBar {
     /// 111 operations (43 additions, 57 multiplications, 11 divisions), 2 square roots, 6 guards, 110 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 25],
@@ -5055,7 +5055,7 @@ impl FiveBar {
     /// 98 operations (35 additions, 55 multiplications, 8 divisions), 2 square roots, 6 guards, 97 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix_base(
         pose: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 19],
@@ -5158,7 +5158,7 @@ impl FiveBar {
     /// 179 operations (71 additions, 102 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 179 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -5330,7 +5330,7 @@ impl FiveBar {
     /// 160 operations (61 additions, 94 multiplications, 5 divisions), 2 square roots, 4 signs, 6 guards, 160 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -5500,7 +5500,7 @@ impl FiveBar {
     /// 251 operations (101 additions, 137 multiplications, 13 divisions), 2 square roots, 4 signs, 11 guards, 251 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -5723,7 +5723,7 @@ impl FiveBar {
     /// 220 operations (83 additions, 121 multiplications, 16 divisions), 2 square roots, 4 signs, 11 guards, 220 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -5926,7 +5926,7 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 2],
@@ -5934,10 +5934,10 @@ impl FiveBar {
         ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         ::core::result::Result::Ok([torques[0], torques[1]])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. It is `pose_in_closed_form` where that has a value.
+    /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`. It equals `pose_in_closed_form` if that succeeds.
     ///
     /// # Errors
-    /// An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.
+    /// An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],

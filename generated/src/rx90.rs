@@ -7,7 +7,7 @@
 ///
 /// # Operations
 ///
-/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+/// Additions, multiplications (including those by signs and constants) and divisions of each function and of all functions that it calls; then √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. Iterations have the counts of one step.
 ///
 /// | function | once | each step |
 /// |---|---|---|
@@ -31,36 +31,36 @@
 /// | `forward_dynamics_base` | 855, 5 sc, 6 sg, 17 gd |  |
 /// | `project_torques` | 0 |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
+/// Functions with a column for each parameter have two variants: one returns a matrix; the other, with the suffix `_into`, writes into the caller's matrix, which is faster. Comments name the columns.
 ///
 /// # Names
 ///
 /// | name | symbol | meaning |
 /// |---|---|---|
-/// | `c23_arm` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s23_arm` | sin q | sine of a joint angle, named as its cosine is |
+/// | `c23_arm` | cos q | cosine of a joint angle; `c12`: of q₁ + q₂; `c1o`: of an angle plus its constant offset |
+/// | `s23_arm` | sin q | sine of a joint angle, named like the cosine |
 /// | `rate_2_squared_arm` | u_i² | square of a joint rate |
 /// | `w4_y_arm` | ω_j | angular velocity of body j in its own axes |
 /// | `wd4_y_arm` | ω̇_j | angular acceleration of body j in its own axes |
-/// | `a2_x_arm` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `a2_x_arm` | a_j - g | acceleration of the origin of body j minus gravity, in its own axes |
 /// | `u2_xx_arm` | U_j | S(ω̇_j) + S(ω_j) S(ω_j), where S(a) b = a × b |
 /// | `v3_by_1_z_arm` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `w5_by_2_x_arm` | ∂Ω_j/∂u_i | partial angular velocity of body j |
-/// | `force3_x_arm` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `moment1_z_arm` | m | moment of a body's inertial parameters about its origin |
-/// | `tau_1_arm` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force3_x_arm` | f | inertial force of a body, in its own axes (platform: base axes) |
+/// | `moment1_z_arm` | m | inertial moment of a body about its origin |
+/// | `tau_1_arm` | τ_j | torque of friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_arm` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
-/// | `bias_wd2_x_arm` | ω̇_j at v̇ = 0 | angular acceleration of body j without the independent accelerations |
-/// | `bias_a2_x_arm` | a_j - g at v̇ = 0 | acceleration of the origin of body j without the independent accelerations |
-/// | `bias_u2_xy_arm` | U_j at v̇ = 0 | S(ω̇_j) + S(ω_j) S(ω_j) without the independent accelerations |
-/// | `schur_5_6` | S' | S after elimination of the columns before |
+/// | `bias_wd2_x_arm` | ω̇_j at v̇ = 0 | angular acceleration of body j for zero independent accelerations |
+/// | `bias_a2_x_arm` | a_j - g at v̇ = 0 | acceleration of the origin of body j for zero independent accelerations |
+/// | `bias_u2_xy_arm` | U_j at v̇ = 0 | S(ω̇_j) + S(ω_j) S(ω_j) for zero independent accelerations |
+/// | `schur_5_6` | S' | Schur complement of S after eliminating the previous columns |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
-/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `inv_pivot_1` | 1/d_k | reciprocal pivot |
 /// | `l_2_1` | L | entry of L |
 ///
-/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
-/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
-/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
+/// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
+/// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
+/// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -76,7 +76,7 @@ pub struct Rx90;
     nonstandard_style,
     unused,
     unused_qualifications,
-    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
+    reason = "straight-line code with the names of the derivation, in any scope"
 )]
 impl Rx90 {
     /// The robot's name.
@@ -103,7 +103,7 @@ impl Rx90 {
     pub const COORDINATES: [&'static ::core::primitive::str; 6] = [
         "1", "2", "3", "4", "5", "6",
     ];
-    /// Names of the pose's numbers.
+    /// Names of the pose coordinates.
     pub const POSE_COORDINATES: [&'static ::core::primitive::str; 6] = [
         "q_1", "q_2", "q_3", "q_4", "q_5", "q_6",
     ];
@@ -111,17 +111,17 @@ impl Rx90 {
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
         0, 1, 2, 3, 4, 5,
     ];
-    /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
+    /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
     pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true, true, true, true, true,
     ];
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection (case 2).
     pub const KEPT_ACTUATORS: [::core::primitive::usize; 6] = [0, 1, 2, 3, 4, 5];
     /// Pose of the home configuration (m, rad).
     pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [
         0.0, 1.0471975511965976, 1.0471975511965976, 0.0, 0.7853981633974483, 0.0,
     ];
-    /// Joint positions of the home configuration, which fixes the working mode (m, rad).
+    /// Joint positions of the home configuration, which defines the working mode (m, rad).
     pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.0, 1.0471975511965976, 1.0471975511965976, 0.0, 0.7853981633974483, 0.0,
     ];
@@ -206,7 +206,7 @@ impl Rx90 {
     };
     /// The payload's parameters, in column order.
     pub const PAYLOAD_PARAMETERS: [::overact::Parameter; 0] = { [] };
-    /// The base parameters in the order in which functions take them, and what is regrouped into them.
+    /// The base parameters in the order of the functions' inputs, with the standard parameters regrouped into them.
     pub const BASE_PARAMETERS: [::overact::BaseParameter; 58] = {
         use ::overact::BaseParameter;
         [
@@ -314,7 +314,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn joints(
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
@@ -333,7 +333,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn actuator_positions(
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
@@ -352,7 +352,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn inverse_jacobian(
         joints: &[::core::primitive::f64; 6],
     ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
@@ -374,7 +374,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn joint_velocities(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -399,7 +399,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn joint_accelerations(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -416,7 +416,7 @@ impl Rx90 {
             joint_accelerations[3], joint_accelerations[4], joint_accelerations[5],
         ])
     }
-    /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
+    /// The twist v from the actuator velocities, by least squares, eq. (21).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -427,7 +427,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn twist_from_actuators(
         joints: &[::core::primitive::f64; 6],
         actuator_velocities: &[::core::primitive::f64; 6],
@@ -442,7 +442,7 @@ impl Rx90 {
             actuator_velocities[3], actuator_velocities[4], actuator_velocities[5],
         ])
     }
-    /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
+    /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -454,7 +454,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn acceleration_from_actuators(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -471,7 +471,7 @@ impl Rx90 {
             actuator_accelerations[3], actuator_accelerations[4], actuator_accelerations[5],
         ])
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -484,7 +484,7 @@ impl Rx90 {
     /// 623 operations (271 additions, 352 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 51 negations, 497 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn idm_red_platform(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -497,10 +497,10 @@ impl Rx90 {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -1064,7 +1064,7 @@ impl Rx90 {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -1077,7 +1077,7 @@ impl Rx90 {
     /// 601 operations (253 additions, 348 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 27 negations, 496 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn idm_red_platform_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -1090,10 +1090,10 @@ impl Rx90 {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -1586,7 +1586,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn project_platform(
         joints: &[::core::primitive::f64; 6],
         torques: &[::core::primitive::f64; 6],
@@ -1598,7 +1598,7 @@ impl Rx90 {
             torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
         ])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -1611,7 +1611,7 @@ impl Rx90 {
     /// 548 operations (281 additions, 267 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 552 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn inverse_dynamics(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -1922,7 +1922,7 @@ impl Rx90 {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the joints' positions and rates.
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
@@ -1935,7 +1935,7 @@ impl Rx90 {
     /// 522 operations (260 additions, 262 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 526 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn inverse_dynamics_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -2274,7 +2274,7 @@ impl Rx90 {
     /// 244 operations (126 additions, 118 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 233 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn mass_matrix(
         joints: &[::core::primitive::f64; 6],
         parameters: &[::core::primitive::f64; 73],
@@ -2482,7 +2482,7 @@ impl Rx90 {
     /// 226 operations (110 additions, 116 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 215 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn mass_matrix_base(
         joints: &[::core::primitive::f64; 6],
         base_parameters: &[::core::primitive::f64; 58],
@@ -2681,7 +2681,7 @@ impl Rx90 {
     /// 491 operations (245 additions, 246 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 495 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn bias(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -2997,7 +2997,7 @@ impl Rx90 {
     /// 470 operations (225 additions, 245 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 474 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn bias_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -3328,7 +3328,7 @@ impl Rx90 {
     /// 884 operations (432 additions, 446 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 19 guards, 888 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -3883,7 +3883,7 @@ impl Rx90 {
     /// 855 operations (406 additions, 440 multiplications, 9 divisions), 5 trigonometric pairs, 6 signs, 17 guards, 859 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
         joints: &[::core::primitive::f64; 6],
         joint_velocities: &[::core::primitive::f64; 6],
@@ -4436,7 +4436,7 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn project_torques(
         joints: &[::core::primitive::f64; 6],
         torques: &[::core::primitive::f64; 6],
@@ -4448,10 +4448,10 @@ impl Rx90 {
             torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`.
+    /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`.
     ///
     /// # Errors
-    /// An input that is not finite or too large; else none: the pose of a robot without a loop is its joint positions.
+    /// An input is not finite or too large. The pose of a robot without loops is its joint positions.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],

@@ -7,7 +7,7 @@
 ///
 /// # Operations
 ///
-/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+/// Additions, multiplications (including those by signs and constants) and divisions of each function and of all functions that it calls; then √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. Iterations have the counts of one step.
 ///
 /// | function | once | each step |
 /// |---|---|---|
@@ -56,59 +56,59 @@
 /// | `project_torques` | 114, 3 √, 11 gd |  |
 /// | `null_space` | 89, 4 √, 11 gd |  |
 ///
-/// A function with a column for each parameter comes twice: under its name it gives a matrix back, with `_into` behind its name it writes into one that is handed in, which takes less time. Behind a number of the matrix stands the name of its column.
+/// Functions with a column for each parameter have two variants: one returns a matrix; the other, with the suffix `_into`, writes into the caller's matrix, which is faster. Comments name the columns.
 ///
 /// # Names
 ///
 /// | name | symbol | meaning |
 /// |---|---|---|
-/// | `vx` | v | platform's velocity that fits the actuators' best, eq. (21) |
-/// | `dvx` | v̇ | platform's acceleration that fits the actuators' best, eq. (24) |
-/// | `c12_leg1` | cos q | of a joint angle; `c12` of q₁ + q₂; `c1o` of an angle with the constant offset that its leg gives it |
-/// | `s12_leg1` | sin q | sine of a joint angle, named as its cosine is |
-/// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
+/// | `vx` | v | platform velocity from the actuators' by least squares, eq. (21) |
+/// | `dvx` | v̇ | platform acceleration from the actuators' by least squares, eq. (24) |
+/// | `c12_leg1` | cos q | cosine of a joint angle; `c12`: of q₁ + q₂; `c1o`: of an angle plus its constant offset |
+/// | `s12_leg1` | sin q | sine of a joint angle, named like the cosine |
+/// | `d_x_leg1` | D | vector from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_leg1` | ρ² | D · D, m² |
 /// | `h_squared_leg1` | h² | l₁²/ρ² - a², the square of h |
-/// | `h_leg1` | h | the elbow stands at a D ± h D⊥, eq. (7) solved |
-/// | `l1_x_leg1` | l₁ e₁ | the proximal link, in the leg's plane, m |
-/// | `l2_x_leg1` | l₂ e₂ | the distal link, in the leg's plane, m |
-/// | `det_leg1` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
-/// | `k_leg1` | k | common factor, but for signs, of the leg's wrenches: the reciprocal of its determinant and a constant |
+/// | `h_leg1` | h | the elbow is at a D ± h D⊥, the solution of eq. (7) |
+/// | `l1_x_leg1` | l₁ e₁ | vector along the proximal link, in the leg's plane, m |
+/// | `l2_x_leg1` | l₂ e₂ | vector along the distal link, in the leg's plane, m |
+/// | `det_leg1` | det J_k | determinant or pivot of the leg's Jacobian J_k, eq. (13), up to a constant factor |
+/// | `k_leg1` | k | common factor of the leg's wrenches, up to sign: a constant by the determinant |
 /// | `k1_leg1` | k_i | common factor of one of the leg's wrenches |
-/// | `fk1_x_leg3` | f_i/k | that force without the factor k, in the leg's axes |
+/// | `fk1_x_leg3` | f_i/k | this force without the factor k, in the leg's axes |
 /// | `rate_2_leg1` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
 /// | `rate_1_squared_leg1` | u_i² | square of a joint rate |
-/// | `rate_dot_1_leg1` | u̇_i | derivative of that rate, eq. (10) |
-/// | `bias_rate_dot_1_leg1` | u̇_i at v̇ = 0 | what is left of the derivative without the platform's acceleration, eq. (10) |
-/// | `g1_vx_leg2` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
-/// | `gq2_vx_leg1` | ∂q̇_i/∂v | the same of the joint's own rate; of an actuated joint a row of J_p^inv, eq. (20) |
-/// | `qd_2_leg1` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
-/// | `qdd_2_leg1` | q̈_i | acceleration of a joint, eq. (10) |
-/// | `a_on_f1_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
-/// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same without the platform's acceleration |
-/// | `atip_x_leg2` | a_j - g | acceleration of the origin of body j less gravity, in its own axes |
+/// | `rate_dot_1_leg1` | u̇_i | derivative of this rate, eq. (10) |
+/// | `bias_rate_dot_1_leg1` | u̇_i at v̇ = 0 | this derivative for zero platform acceleration, eq. (10) |
+/// | `g1_vx_leg2` | ∂u_i/∂v | row of the reduced Jacobian J_k⁻¹ J_tk, eq. (9) |
+/// | `gq2_vx_leg1` | ∂q̇_i/∂v | the same for the rate of joint i; for an actuated joint a row of J_p^inv, eq. (20) |
+/// | `qd_2_leg1` | q̇_i | joint rate, rad/s or m/s, eq. (9) |
+/// | `qdd_2_leg1` | q̈_i | joint acceleration, eq. (10) |
+/// | `a_on_f1_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, minus the bias terms b that do not depend on the pose |
+/// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same for zero platform acceleration |
+/// | `atip_x_leg2` | a_j - g | acceleration of the origin of body j minus gravity, in its own axes |
 /// | `v2_by_1_x_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
-/// | `force2_x_leg1` | f | force of a body's inertial parameters, in its own axes (the platform's: in the base's) |
-/// | `moment1_z_leg1` | m | moment of a body's inertial parameters about its origin |
-/// | `tau_2_leg1` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `force2_x_leg1` | f | inertial force of a body, in its own axes (platform: base axes) |
+/// | `moment1_z_leg1` | m | inertial moment of a body about its origin |
+/// | `tau_2_leg1` | τ_j | torque of friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `s_1_2` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
-/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `inv_pivot_1` | 1/d_k | reciprocal pivot |
 /// | `l_2_1` | L | entry of L |
-/// | `missed_1` | q - q(x) | how far an actuator is from its measured position, in the step of forward kinematics |
-/// | `c_actuator_1` | cos q | of the measured position of an actuator |
-/// | `s_actuator_1` | sin q | its sine |
-/// | `share_1_3` | J_a^-T j | what a kept actuator does against the unit torque of a projected one, eq. (50) |
-/// | `norm_3` | √(1 + c · Q c) | length of the internal torque that does one at a projected actuator |
-/// | `inv_norm_3` | 1/√(1 + c · Q c) | the reciprocal |
-/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, but for a constant |
+/// | `missed_1` | q - q(x) | measured minus computed position of an actuator, in a step of forward kinematics |
+/// | `c_actuator_1` | cos q | cosine of the measured position of an actuator |
+/// | `s_actuator_1` | sin q | sine of the measured position of an actuator |
+/// | `share_1_3` | J_a^-T j | torque of a kept actuator that balances a unit torque of a projected one, eq. (50) |
+/// | `norm_3` | √(1 + c · Q c) | norm of the internal torque with a unit torque at a projected actuator |
+/// | `inv_norm_3` | 1/√(1 + c · Q c) | reciprocal of this norm |
+/// | `det_ja` | det J_a | determinant of the kept actuators' rows of J_p^inv, up to a constant factor |
 /// | `vx_by_a1` | J_a⁻¹ | ∂v/∂q̇ of a kept actuator, eq. (36) |
-/// | `g1_a1_leg3` | ∂u_i/∂q̇_a | the reduced Jacobian on a kept actuator, eq. (36) |
+/// | `g1_a1_leg3` | ∂u_i/∂q̇_a | reduced Jacobian for a kept actuator's velocity, eq. (36) |
 ///
-/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
-/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
-/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
+/// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
+/// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
+/// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -124,7 +124,7 @@ pub struct ThreeLegPoint;
     nonstandard_style,
     unused,
     unused_qualifications,
-    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
+    reason = "straight-line code with the names of the derivation, in any scope"
 )]
 impl ThreeLegPoint {
     /// The robot's name.
@@ -149,19 +149,19 @@ impl ThreeLegPoint {
     ];
     /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
-    /// Names of the pose's numbers.
+    /// Names of the pose coordinates.
     pub const POSE_COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2, 4];
-    /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
+    /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
     pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true, true,
     ];
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection (case 2).
     pub const KEPT_ACTUATORS: [::core::primitive::usize; 2] = [0, 1];
     /// Pose of the home configuration (m, rad).
     pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0];
-    /// Joint positions of the home configuration, which fixes the working mode (m, rad).
+    /// Joint positions of the home configuration, which defines the working mode (m, rad).
     pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.387899760924694, 1.5073857853212624, 2.387899760924693, 1.5073857853212629,
         2.3878997609246957, 1.5073857853212607,
@@ -205,7 +205,7 @@ impl ThreeLegPoint {
     };
     /// The payload's parameters, in column order.
     pub const PAYLOAD_PARAMETERS: [::overact::Parameter; 0] = { [] };
-    /// The base parameters in the order in which functions take them, and what is regrouped into them.
+    /// The base parameters in the order of the functions' inputs, with the standard parameters regrouped into them.
     pub const BASE_PARAMETERS: [::overact::BaseParameter; 22] = {
         use ::overact::BaseParameter;
         [
@@ -252,7 +252,7 @@ impl ThreeLegPoint {
             BaseParameter::new("fs_2_leg3", "fs_2_leg3", &[]),
         ]
     };
-    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used. Legs may be in other working modes there than at home.
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration. It uses only as many actuators as there are degrees of freedom. Working modes of legs may differ from those at home.
     ///
     /// From the actuators' positions.
     /// - `actuators`: q, positions of the actuated joints (m, rad)
@@ -262,7 +262,7 @@ impl ThreeLegPoint {
     /// 29 operations (13 additions, 15 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 32 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn pose_in_closed_form(
         actuators: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
@@ -304,7 +304,7 @@ impl ThreeLegPoint {
     /// 94 operations (41 additions, 50 multiplications, 3 divisions), 3 square roots, 6 arc tangents, 6 guards, 3 negations, 100 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joints(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
@@ -393,7 +393,7 @@ impl ThreeLegPoint {
     /// 67 operations (29 additions, 35 multiplications, 3 divisions), 3 square roots, 3 arc tangents, 6 guards, 3 negations, 73 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
@@ -452,7 +452,7 @@ impl ThreeLegPoint {
             ) + 2.3878997609246957,
         ])
     }
-    /// The step v δt of Gauss and Newton from a pose x towards the one that fits the actuators: J_p^inv+ (q - q(x)), eq. (21), of angles the difference nearest to zero; `forward::displace`, of free platforms `forward::displace_quaternion`, moves a pose by it. Where the elimination would lose digits it is an error, though J_p^inv be regular; `pose_from_actuators` goes on by normal equations then.
+    /// One Gauss-Newton step v δt from a pose x towards the pose of given actuator positions q: J_p^inv+ (q - q(x)), eq. (21), with differences of angles wrapped to ±π. `forward::displace` applies it to a pose, `forward::displace_quaternion` if the pose has a quaternion. It fails if the elimination would lose digits, even if J_p^inv is regular; `pose_from_actuators` then uses normal equations.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -463,7 +463,7 @@ impl ThreeLegPoint {
     /// 129 operations (49 additions, 72 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn pose_step(
         pose: &[::core::primitive::f64; 2],
         actuators: &[::core::primitive::f64; 3],
@@ -584,7 +584,7 @@ impl ThreeLegPoint {
     /// 70 operations (24 additions, 40 multiplications, 6 divisions), 3 square roots, 9 guards, 3 negations, 67 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
@@ -659,7 +659,7 @@ impl ThreeLegPoint {
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -668,7 +668,7 @@ impl ThreeLegPoint {
     /// 24 operations (7 additions, 14 multiplications, 3 divisions), 6 trigonometric pairs, 3 guards, 3 negations, 27 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -715,7 +715,7 @@ impl ThreeLegPoint {
     /// 108 operations (37 additions, 63 multiplications, 8 divisions), 3 square roots, 11 guards, 105 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn jacobian(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 2], ::overact::Error> {
@@ -809,7 +809,7 @@ impl ThreeLegPoint {
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -818,7 +818,7 @@ impl ThreeLegPoint {
     /// 45 operations (17 additions, 28 multiplications, 0 divisions), 6 trigonometric pairs, 4 negations, 45 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn legs_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -861,7 +861,7 @@ impl ThreeLegPoint {
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -870,7 +870,7 @@ impl ThreeLegPoint {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn legs_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -882,7 +882,7 @@ impl ThreeLegPoint {
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -891,7 +891,7 @@ impl ThreeLegPoint {
     /// 21 operations (7 additions, 14 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 21 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn closure_platform_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -917,7 +917,7 @@ impl ThreeLegPoint {
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     ///
@@ -926,7 +926,7 @@ impl ThreeLegPoint {
     /// 3 operations (0 additions, 3 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 3 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large.
+    /// An input is not finite or too large.
     pub fn closure_actuator_jacobian_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -954,7 +954,7 @@ impl ThreeLegPoint {
     /// 93 operations (39 additions, 48 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_velocities(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1048,7 +1048,7 @@ impl ThreeLegPoint {
     /// 161 operations (64 additions, 91 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 158 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_accelerations(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1185,7 +1185,7 @@ impl ThreeLegPoint {
             ])
         })
     }
-    /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
+    /// The twist v from the actuator velocities, by least squares, eq. (21).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -1196,7 +1196,7 @@ impl ThreeLegPoint {
     /// 105 operations (37 additions, 60 multiplications, 8 divisions), 3 square roots, 11 guards, 106 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn twist_from_actuators(
         pose: &[::core::primitive::f64; 2],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -1286,7 +1286,7 @@ impl ThreeLegPoint {
             - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
         ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
     }
-    /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
+    /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -1298,7 +1298,7 @@ impl ThreeLegPoint {
     /// 162 operations (57 additions, 97 multiplications, 8 divisions), 3 square roots, 11 guards, 163 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn acceleration_from_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1447,7 +1447,7 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -1460,7 +1460,7 @@ impl ThreeLegPoint {
     /// 244 operations (78 additions, 160 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 26 negations, 195 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1473,10 +1473,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -1734,9 +1734,9 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -1748,7 +1748,7 @@ impl ThreeLegPoint {
     /// 212 operations (65 additions, 144 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 24 negations, 170 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -1763,10 +1763,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -1991,22 +1991,22 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
     /// 336 operations (120 additions, 203 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 21 guards, 19 negations, 286 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2021,10 +2021,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2346,7 +2346,7 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -2359,7 +2359,7 @@ impl ThreeLegPoint {
     /// 267 operations (91 additions, 168 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 20 negations, 228 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2372,10 +2372,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -2651,9 +2651,9 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -2665,7 +2665,7 @@ impl ThreeLegPoint {
     /// 229 operations (70 additions, 155 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 16 negations, 199 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -2680,10 +2680,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -2907,22 +2907,22 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
     /// 359 operations (131 additions, 217 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 22 guards, 20 negations, 321 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -2937,10 +2937,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -3284,7 +3284,7 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -3297,7 +3297,7 @@ impl ThreeLegPoint {
     /// 218 operations (66 additions, 145 multiplications, 7 divisions), 3 square roots, 6 signs, 9 guards, 20 negations, 182 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3310,10 +3310,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -3536,9 +3536,9 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -3550,7 +3550,7 @@ impl ThreeLegPoint {
     /// 187 operations (53 additions, 131 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 18 negations, 157 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -3565,10 +3565,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -3752,22 +3752,22 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 310 operations (108 additions, 189 multiplications, 13 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 21 guards, 15 negations, 272 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -3782,10 +3782,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_platform_base_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_platform_base_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_platform_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_platform_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -4069,7 +4069,7 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -4082,7 +4082,7 @@ impl ThreeLegPoint {
     /// 245 operations (81 additions, 156 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 13 negations, 216 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -4095,10 +4095,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_into(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -4349,9 +4349,9 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -4363,7 +4363,7 @@ impl ThreeLegPoint {
     /// 207 operations (60 additions, 143 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 10 negations, 187 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -4378,10 +4378,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_joints`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base_from_joints`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_joints`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_joints_into(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -4576,22 +4576,22 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok(())
         })
     }
-    /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
+    /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
     /// 337 operations (121 additions, 205 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 22 guards, 13 negations, 309 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -4606,10 +4606,10 @@ impl ThreeLegPoint {
             output,
         ))
     }
-    /// [`Self::idm_red_actuators_base_from_actuators`], written into `output` rather than handed back.
+    /// [`Self::idm_red_actuators_base_from_actuators`] with its result in `output`.
     ///
     /// # Errors
-    /// Those of [`Self::idm_red_actuators_base_from_actuators`]. What stands in `output` is no result then: some of it may have been written.
+    /// Those of [`Self::idm_red_actuators_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_actuators_into(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -4933,7 +4933,7 @@ impl ThreeLegPoint {
     /// 80 operations (28 additions, 46 multiplications, 6 divisions), 3 square roots, 9 guards, 81 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_platform(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
@@ -5021,7 +5021,7 @@ impl ThreeLegPoint {
     /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 10 guards, 89 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_actuators(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
@@ -5103,7 +5103,7 @@ impl ThreeLegPoint {
             torques[0] + torques[2] * g1_a1_leg3, torques[1] + torques[2] * g1_a2_leg3,
         ])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -5116,7 +5116,7 @@ impl ThreeLegPoint {
     /// 291 operations (120 additions, 162 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 293 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -5354,9 +5354,9 @@ impl ThreeLegPoint {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -5368,7 +5368,7 @@ impl ThreeLegPoint {
     /// 255 operations (101 additions, 148 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 264 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -5555,22 +5555,22 @@ impl ThreeLegPoint {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `parameters`: values of `PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 3.
     ///
     /// 362 operations (153 additions, 189 multiplications, 20 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 2 negations, 365 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -5849,7 +5849,7 @@ impl ThreeLegPoint {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -5862,7 +5862,7 @@ impl ThreeLegPoint {
     /// 268 operations (105 additions, 155 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 270 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -6088,9 +6088,9 @@ impl ThreeLegPoint {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// From measured joint positions and the platform's motion; only the orientation of the pose is used.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
     /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
     /// - `twist`: v = `[v_x, v_y]` (m/s, rad/s), in the base frame
@@ -6102,7 +6102,7 @@ impl ThreeLegPoint {
     /// 233 operations (86 additions, 141 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 242 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_joints(
         pose: &[::core::primitive::f64; 2],
         joints: &[::core::primitive::f64; 6],
@@ -6281,22 +6281,22 @@ impl ThreeLegPoint {
             ])
         })
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
     /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
     /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
     /// - `base_parameters`: values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)
     /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    /// - `start`: a pose near the solution, in its assembly mode (m, rad)
     ///
     /// Output: 3.
     ///
     /// 340 operations (138 additions, 191 multiplications, 11 divisions), 4 square roots, 2 trigonometric pairs, 6 signs, 17 guards, 2 negations, 343 intermediates.
-    /// And in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
+    /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_actuators(
         actuators: &[::core::primitive::f64; 3],
         actuator_velocities: &[::core::primitive::f64; 3],
@@ -6574,7 +6574,7 @@ impl ThreeLegPoint {
     /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 9 guards, 195 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix(
         pose: &[::core::primitive::f64; 2],
         parameters: &[::core::primitive::f64; 31],
@@ -6751,7 +6751,7 @@ impl ThreeLegPoint {
     /// 174 operations (63 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 174 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix_base(
         pose: &[::core::primitive::f64; 2],
         base_parameters: &[::core::primitive::f64; 22],
@@ -6915,7 +6915,7 @@ impl ThreeLegPoint {
     /// 227 operations (93 additions, 128 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 1 negation, 229 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -7126,7 +7126,7 @@ impl ThreeLegPoint {
     /// 221 operations (84 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 222 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -7339,11 +7339,11 @@ impl ThreeLegPoint {
     /// Output: 2.
     ///
     /// 359 operations (139 additions, 211 multiplications, 9 divisions), 3 square roots, 6 signs, 14 guards, 360 intermediates.
-    /// That is the straight program, which interpreted robots and other languages have, and processors without vectors of 4 numbers, as is found out when it runs (with the feature `dispatch`) or said to the compiler (`-C target-cpu=native`). With these the 3 legs run side by side, in the lanes of vectors: 12 operations once, and 127 of each leg.
-    /// In the loop `at` is the first leg of those that run at once, a name that ends with `_leg` has a value of each of them if it is assigned there, and `of_leg` has the numbers in which legs differ: a row of `OF_LEG` for each, of all legs.
+    /// These are the counts of the scalar program, which interpreted robots and other languages use, also on processors without vectors of 4 numbers. With such vectors (chosen at run time by the feature `dispatch`, or at compile time by `-C target-cpu=native`) the 3 legs are in their lanes: 12 operations, and 127 for each leg.
+    /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -7356,7 +7356,7 @@ impl ThreeLegPoint {
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        /// The function with its legs side by side, in vectors that are chosen when it runs.
+        /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
             pose: &'a [::core::primitive::f64; 2],
             twist: &'a [::core::primitive::f64; 2],
@@ -7383,7 +7383,7 @@ impl ThreeLegPoint {
                 const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
                 // --- what the legs add: a row for each number, in it one for each leg
                 let mut added = [[0.0; 3]; 5];
-                /// Numbers in which the legs differ: a row for each, in it one for each leg.
+                /// Constants that differ between legs: rows of one number per leg.
                 /// 0: x of the base
                 /// 1: cos(turn of the base about z)
                 /// 2: y of the base
@@ -7400,10 +7400,8 @@ impl ThreeLegPoint {
                     let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
                     // --- numbers in which the legs differ, for the legs of this turn
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at),
-                        ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at),
-                        ::overact::simd::row(&OF_LEG[3], at),
+                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
+                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
                     ];
                     // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
                     let own_parameters = [
@@ -7440,7 +7438,7 @@ impl ThreeLegPoint {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let c12_leg = INV_L_1 * l2_x_leg;
@@ -7449,13 +7447,7 @@ impl ThreeLegPoint {
                     let s12_leg = INV_L_1 * l2_y_leg;
                     let minus_fk1_x_leg = of_leg[1] * c12_leg - of_leg[3] * s12_leg;
                     let det_leg = rho_squared_leg * h_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        det_leg,
-                        &[0.05748; 3],
-                        &LEGS,
-                        at,
-                    );
+                    ::overact::simd::leg(&mut failed, det_leg, &[0.05748; 3], &LEGS, at);
                     let k_leg = L_1 / det_leg;
                     let g1_vx_leg = minus_fk1_x_leg * k_leg;
                     let masses_leg_1_1 = own_parameters[1]
@@ -7492,7 +7484,7 @@ impl ThreeLegPoint {
                     let moment2_z_leg = L_1 * (t5_leg - t6_leg)
                         - own_parameters[5] * minus_bias_rate_dot_2_leg;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let minus_tau_2_leg = ::overact::simd::signed(
+                    let minus_tau_2_leg = ::overact::lanes::signed(
                         own_parameters[6],
                         minus_qd_2_leg,
                         at,
@@ -7506,7 +7498,7 @@ impl ThreeLegPoint {
                     let t7_leg = own_parameters[9]
                         + L_1 * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[7] * rate_1_leg
-                        + ::overact::simd::signed(own_parameters[8], rate_1_leg, at)
+                        + ::overact::lanes::signed(own_parameters[8], rate_1_leg, at)
                         + bias_rate_dot_1_leg * masses_leg_1_1;
                     let force_on_u1_leg = minus_tau_2_leg + t7_leg;
                     let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
@@ -7837,7 +7829,7 @@ impl ThreeLegPoint {
     /// 293 operations (116 additions, 169 multiplications, 8 divisions), 3 square roots, 6 signs, 13 guards, 1 negation, 295 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -8084,7 +8076,7 @@ impl ThreeLegPoint {
             ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
         })
     }
-    /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
+    /// Actuator torques of least norm plus N `preload`, where N is the basis from `null_space`.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -8098,7 +8090,7 @@ impl ThreeLegPoint {
     /// 317 operations (124 additions, 185 multiplications, 8 divisions), 4 square roots, 6 signs, 11 guards, 2 negations, 318 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_preloaded(
         pose: &[::core::primitive::f64; 2],
         twist: &[::core::primitive::f64; 2],
@@ -8375,7 +8367,7 @@ impl ThreeLegPoint {
     /// 114 operations (40 additions, 66 multiplications, 8 divisions), 3 square roots, 11 guards, 114 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 2],
         torques: &[::core::primitive::f64; 3],
@@ -8465,7 +8457,7 @@ impl ThreeLegPoint {
             g1_vx_leg3 * t3 - minus_g1_vy_leg3 * t2,
         ])
     }
-    /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
+    /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive at the k-th projected actuator of case 2.
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y]` (m, rad), in the base frame
@@ -8475,7 +8467,7 @@ impl ThreeLegPoint {
     /// 89 operations (29 additions, 52 multiplications, 8 divisions), 4 square roots, 11 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn null_space(
         pose: &[::core::primitive::f64; 2],
     ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
@@ -8560,10 +8552,10 @@ impl ThreeLegPoint {
             [-(share_1_3 * inv_norm_3)], [-(share_2_3 * inv_norm_3)], [inv_norm_3],
         ])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`. The iteration starts from `pose_in_closed_form` where that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps; only where it fails from there it ends in the mode of the home configuration.
+    /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`. The iteration starts from `pose_in_closed_form` if that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps. If that fails, the result is in the assembly mode of the home configuration.
     ///
     /// # Errors
-    /// An input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.
+    /// An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
     pub fn pose_from_actuators(
         actuators: &[::core::primitive::f64; Self::ACTUATORS],
         start: &[::core::primitive::f64; Self::POSE],

@@ -1,10 +1,12 @@
 //! Checks of plausible magnitude and robot size, made before anything is computed.
 
 use crate::{
+    account::Use,
     files::{Files, Place},
     model::{Body, ClosureKind, Joint, Model, Pose},
     xml::Element,
 };
+use nalgebra::Matrix3;
 
 /// Upper bound on numbers in SI units; squares of larger ones could soon overflow.
 const LARGEST: f64 = 1e15;
@@ -15,14 +17,32 @@ const MOST_JOINTS: usize = 200;
 const MOST_JOINT_ELEMENTS: usize = 2_000;
 /// Largest number of body elements.
 const MOST_BODY_ELEMENTS: usize = 10_000;
+/// Largest number of frame elements.
+const MOST_FRAME_ELEMENTS: usize = 5_000;
+/// Largest number of loop closures, because the search for chains solves all of them together.
+const MOST_CLOSURES: usize = 200;
+/// Largest number of elements that close loops, inactive ones included.
+const MOST_CLOSURE_ELEMENTS: usize = 2_000;
 
-/// Rejects files with too many joints or bodies; `None` after an error.
+/// Elements that close loops, of all formats.
+const CLOSURES: &[&str] = &[
+    "connect",
+    "weld",
+    "loop",
+    "constraint",
+    "loop_joint",
+    "ball_constraint",
+];
+
+/// Rejects files with too many joints, bodies, frames or loop closures; `None` after an error.
 ///
 /// This runs before the elements are compared with each other.
 pub(crate) fn check_elements(files: &Files, root: &Element) -> Option<()> {
-    let limits = [
+    let limits: [(&str, &[&str], usize); 4] = [
         ("joints", &["joint", "freejoint"], MOST_JOINT_ELEMENTS),
         ("bodies", &["body", "link"], MOST_BODY_ELEMENTS),
+        ("frames", &["frame"], MOST_FRAME_ELEMENTS),
+        ("loop closures", CLOSURES, MOST_CLOSURE_ELEMENTS),
     ];
     for (what, names, most) in limits {
         let count = count(root, names);
@@ -53,11 +73,22 @@ pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
             "fix joints that need not move, or import it in parts",
         );
     }
+    if let Some(first) = model.closures.get(MOST_CLOSURES) {
+        let count = model.closures.len();
+        let message = format!("the robot has {count} loop closures, more than {MOST_CLOSURES}");
+        let help = "remove redundant ones, or import the robot in parts";
+        files.report(&first.place, message, help);
+    }
     for body in &model.bodies {
         let joint = body.joint.map(|joint| &model.joints[joint].place);
         if !body_numbers(body).into_iter().all(is_in_bounds) {
             let message = format!("`{}` has a number beyond {LARGEST:e}", body.name);
             report(files, body.place.as_ref().or(joint), message);
+        } else if let (Some(inertia), Some(place)) = (&body.inertia, body.place.as_ref().or(joint))
+            && let Some(problem) = impossibility(&inertia.tensor)
+        {
+            let reason = format!("`{}`: {problem}; kept in the model", body.name);
+            files.record(Use::Reported, place, "inertia", None, &reason);
         }
     }
     for joint in &model.joints {
@@ -94,6 +125,27 @@ pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
         );
     }
     files.is_clean().then_some(())
+}
+
+/// Relative size of rounding errors in the inertias of files.
+const ROUNDING: f64 = 0.05;
+
+/// Reason why no body has a central inertia; `None` if a body may have it.
+///
+/// Principal moments of a body are not negative, and none exceeds the sum of the others.
+fn impossibility(tensor: &Matrix3<f64>) -> Option<String> {
+    let mut moments = tensor.symmetric_eigenvalues();
+    moments.as_mut_slice().sort_by(f64::total_cmp);
+    let [small, middle, large] = [moments[0], moments[1], moments[2]];
+    let size = large.abs().max(small.abs());
+    let list = format!(
+        "principal moments about the centre of mass {small:.3e}, {middle:.3e} and {large:.3e} kg m^2"
+    );
+    if small < -ROUNDING * size {
+        return Some(format!("{list}: one is negative"));
+    }
+    let is_too_large = large > (1.0 + ROUNDING) * (small + middle);
+    is_too_large.then(|| format!("{list}: one exceeds the sum of the others"))
 }
 
 fn report(files: &Files, place: Option<&Place>, message: String) {

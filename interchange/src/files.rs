@@ -1,7 +1,7 @@
 //! Input files and their errors, each with file and line; all errors are collected.
 
 use crate::account::{Account, Ledger, Use};
-use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span};
+use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
 use std::{
     cell::{Cell, RefCell},
     fs::File,
@@ -14,8 +14,11 @@ const MOST_BYTES: u64 = 16 << 20;
 /// Largest total number of elements in an import's files.
 const MOST_ELEMENTS: usize = 500_000;
 
-/// Largest number of errors kept for a file, because each new one is compared with all others.
-const MOST_ERRORS: usize = 1_000;
+/// Largest number of errors kept for a file; further ones are counted.
+const MOST_ERRORS: usize = 200;
+
+/// Largest number of unknown names that are compared with all others for a suggestion.
+const MOST_SUGGESTIONS: usize = 50;
 
 /// Location in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,14 +33,28 @@ pub(crate) struct Place {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Errors(pub Vec<(Source, Diagnostics)>);
 
+/// A file, its line numbers and its errors.
+#[derive(Debug)]
+struct InputFile {
+    path: PathBuf,
+    source: Source,
+    /// Byte offset of each line.
+    line_starts: Vec<usize>,
+    errors: Diagnostics,
+    /// Number of errors that are not kept.
+    further_errors: usize,
+}
+
 /// Files of one import and the errors found in them.
 #[derive(Debug)]
 pub(crate) struct Files {
-    read: RefCell<Vec<(PathBuf, Source, Diagnostics)>>,
+    read: RefCell<Vec<InputFile>>,
     /// Remaining byte budget.
     bytes_left: Cell<u64>,
     /// Remaining element budget.
     elements_left: Cell<usize>,
+    /// Number of names that may still be compared with all others.
+    suggestions_left: Cell<usize>,
     ledger: RefCell<Ledger>,
 }
 
@@ -47,6 +64,7 @@ impl Default for Files {
             read: RefCell::default(),
             bytes_left: Cell::new(MOST_BYTES),
             elements_left: Cell::new(MOST_ELEMENTS),
+            suggestions_left: Cell::new(MOST_SUGGESTIONS),
             ledger: RefCell::default(),
         }
     }
@@ -55,8 +73,8 @@ impl Default for Files {
 impl Files {
     /// Reads a file; `None` after an error, which is reported where the file is named.
     pub(crate) fn read(&self, path: &Path, named_at: Option<&Place>) -> Option<usize> {
-        let is_included = named_at.is_some();
-        let (text, error) = match read(path, is_included, self.bytes_left.get()) {
+        let may_be_pipe = named_at.is_none() && is_standard_input(path);
+        let (text, error) = match read(path, may_be_pipe, self.bytes_left.get()) {
             Ok(text) => {
                 let left = self.bytes_left.get().saturating_sub(text.len() as u64);
                 self.bytes_left.set(left);
@@ -70,12 +88,20 @@ impl Files {
             self.report(place, message.clone(), "give the file, or remove its name");
             return None;
         }
-        let source = Source::new(name, text);
+        let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1));
         let mut all = self.read.borrow_mut();
-        all.push((path.to_owned(), source, Diagnostics::new()));
+        all.push(InputFile {
+            path: path.to_owned(),
+            line_starts: line_starts.collect(),
+            source: Source::new(name, text),
+            errors: Diagnostics::new(),
+            further_errors: 0,
+        });
         let at = all.len() - 1;
         if let Some(message) = message {
-            all[at].2.push(Diagnostic::global(Code::FOREIGN, message));
+            all[at]
+                .errors
+                .push(Diagnostic::global(Code::FOREIGN, message));
             return None;
         }
         Some(at)
@@ -94,13 +120,17 @@ impl Files {
 
     /// Text of a file.
     pub(crate) fn text(&self, file: usize) -> String {
-        self.read.borrow()[file].1.text.clone()
+        self.read.borrow()[file].source.text.clone()
     }
 
     /// Folder of a file.
     pub(crate) fn folder(&self, file: usize) -> PathBuf {
         let all = self.read.borrow();
-        all[file].0.parent().map(Path::to_owned).unwrap_or_default()
+        all[file]
+            .path
+            .parent()
+            .map(Path::to_owned)
+            .unwrap_or_default()
     }
 
     /// Number of files read.
@@ -110,12 +140,12 @@ impl Files {
 
     /// Path of a file.
     pub(crate) fn path(&self, file: usize) -> PathBuf {
-        self.read.borrow()[file].0.clone()
+        self.read.borrow()[file].path.clone()
     }
 
     /// Name of a file as the user gave it.
     pub(crate) fn name(&self, file: usize) -> String {
-        self.read.borrow()[file].1.name.clone()
+        self.read.borrow()[file].source.name.clone()
     }
 
     /// Paths of all files read.
@@ -123,19 +153,21 @@ impl Files {
         self.read
             .borrow()
             .iter()
-            .map(|(path, ..)| path.clone())
+            .map(|file| file.path.clone())
             .collect()
     }
 
     /// All files read, in reading order.
     pub(crate) fn sources(&self) -> Vec<Source> {
         let all = self.read.borrow();
-        all.iter().map(|(_, source, _)| source.clone()).collect()
+        all.iter().map(|file| file.source.clone()).collect()
     }
 
     /// Line of a location, counted from 1.
     pub(crate) fn line(&self, place: &Place) -> usize {
-        self.read.borrow()[place.file].1.position(&place.span).line
+        let all = self.read.borrow();
+        let starts = &all[place.file].line_starts;
+        starts.partition_point(|start| *start <= place.span.start)
     }
 
     /// Reports an error at a location.
@@ -146,10 +178,29 @@ impl Files {
         help: impl Into<String>,
     ) {
         let error = Diagnostic::new(Code::FOREIGN, message, place.span.clone()).help(help);
-        let errors = &mut self.read.borrow_mut()[place.file].2;
-        if errors.len() < MOST_ERRORS {
-            errors.push(error);
+        self.push(place.file, error);
+    }
+
+    /// Adds an error of a file, or counts it if the file has too many.
+    fn push(&self, file: usize, error: Diagnostic) {
+        if let Some(own) = self.read.borrow_mut().get_mut(file) {
+            if own.errors.len() < MOST_ERRORS {
+                own.errors.push(error);
+            } else {
+                own.further_errors += 1;
+            }
         }
+    }
+
+    /// Suggests the candidate closest to an unknown name, for the first unknown names only.
+    pub(crate) fn did_you_mean<'a>(
+        &self,
+        name: &str,
+        candidates: impl IntoIterator<Item = &'a str>,
+    ) -> Option<String> {
+        let left = self.suggestions_left.get().checked_sub(1)?;
+        self.suggestions_left.set(left);
+        did_you_mean(name, candidates)
     }
 
     /// Records the treatment of an element or attribute.
@@ -197,30 +248,36 @@ impl Files {
     /// Adds errors of a file that were found elsewhere.
     pub(crate) fn note(&self, file: usize, errors: &Diagnostics) {
         for error in errors {
-            self.read.borrow_mut()[file].2.push(error.clone());
+            self.push(file, error.clone());
         }
     }
 
     /// Reports an error about the first file as a whole.
     pub(crate) fn refuse(&self, message: impl Into<String>, help: impl Into<String>) {
-        if let Some(first) = self.read.borrow_mut().first_mut() {
-            first
-                .2
-                .push(Diagnostic::global(Code::FOREIGN, message).help(help));
-        }
+        self.push(0, Diagnostic::global(Code::FOREIGN, message).help(help));
     }
 
     /// Whether there are no errors.
     pub(crate) fn is_clean(&self) -> bool {
-        self.read
-            .borrow()
-            .iter()
-            .all(|(.., errors)| errors.is_empty())
+        self.read.borrow().iter().all(|file| file.errors.is_empty())
     }
 
     /// All errors, for files with errors only.
     pub(crate) fn into_errors(self) -> Errors {
-        let wrong = |(_, source, errors): (PathBuf, Source, Diagnostics)| {
+        let wrong = |file: InputFile| {
+            let InputFile {
+                source,
+                mut errors,
+                further_errors,
+                ..
+            } = file;
+            if further_errors > 0 {
+                let end = source.text.len();
+                let message = format!("{further_errors} more errors are not shown");
+                let help = "correct the errors above first";
+                let more = Diagnostic::new(Code::FOREIGN, message, end..end).help(help);
+                errors.push(more);
+            }
             (!errors.is_empty()).then_some((source, errors))
         };
         Errors(
@@ -233,15 +290,35 @@ impl Files {
     }
 }
 
+/// Whether a path means standard input or an open file of this process, which may be pipes.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    let folders = ["/dev/fd", "/proc/self/fd"];
+    let is_named = [Path::new("-"), Path::new("/dev/stdin")].contains(&path);
+    is_named || folders.iter().any(|folder| path.starts_with(folder))
+}
+
 /// Reads a text of at most `most` bytes.
 ///
-/// An included file must be a regular file: a device may have no end, and a pipe may block.
-fn read(path: &Path, is_included: bool, most: u64) -> io::Result<String> {
-    if is_included && !path.metadata()?.is_file() {
+/// Without `may_be_pipe` it must be a regular file: a device may have no end, and a pipe may block.
+fn read(path: &Path, may_be_pipe: bool, most: u64) -> io::Result<String> {
+    if may_be_pipe && path == Path::new("-") {
+        return bounded(io::stdin(), most);
+    }
+    let existing = path.metadata()?;
+    if existing.is_dir() {
+        let message = "it is a folder, not a regular file";
+        return Err(io::Error::other(message));
+    }
+    if !existing.is_file() && !may_be_pipe {
         return Err(io::Error::other("it is not a regular file"));
     }
+    bounded(File::open(path)?, most)
+}
+
+/// Reads a text; an error if it has more than `most` bytes.
+fn bounded(input: impl Read, most: u64) -> io::Result<String> {
     let mut text = String::new();
-    File::open(path)?.take(most + 1).read_to_string(&mut text)?;
+    input.take(most + 1).read_to_string(&mut text)?;
     if text.len() as u64 > most {
         let message = format!("the files of a robot may have {MOST_BYTES} bytes together");
         return Err(io::Error::other(message));

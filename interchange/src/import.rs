@@ -189,7 +189,10 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)
 /// Whether a text is in the .par format.
 fn is_table(text: &str) -> bool {
     let mut lines = text.lines();
-    lines.any(|line| line.trim_start().get(..2) == Some("NJ") && line.contains('='))
+    lines.any(|line| {
+        let start = line.trim_start().get(..2);
+        start.is_some_and(|start| start.eq_ignore_ascii_case("NJ")) && line.contains('=')
+    })
 }
 
 /// Applies the user's choice of actuated joints and home positions.
@@ -198,7 +201,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         let found = model.joint_named(name);
         if found.is_none() {
             let names = model.joints.iter().map(|joint| joint.name.as_str());
-            let near = overact_description::diagnostic::did_you_mean(name, names);
+            let near = files.did_you_mean(name, names);
             let help = near.unwrap_or_else(|| "name moving joints of the file".to_owned());
             files.refuse(format!("there is no joint `{name}`"), help);
         }

@@ -167,6 +167,17 @@ impl Model {
         self.bodies.iter().position(|body| body.name == name)
     }
 
+    /// Body that each joint carries; the ground for joints without a body.
+    pub(crate) fn carried(&self) -> Vec<usize> {
+        let mut carried = vec![0; self.joints.len()];
+        for (at, body) in self.bodies.iter().enumerate().rev() {
+            if let Some(joint) = body.joint {
+                carried[joint] = at;
+            }
+        }
+        carried
+    }
+
     /// Body that a joint carries.
     pub(crate) fn carried_by(&self, joint: usize) -> usize {
         self.bodies

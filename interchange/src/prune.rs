@@ -7,12 +7,16 @@ use crate::{
     files::{Files, Place},
     xml::Element,
 };
+use std::collections::BTreeSet;
 
 /// Reason for names that are not in the table.
 const UNKNOWN: &str = "not in the specification; not used";
 
 /// Reason for values without effect, which are not reported.
 const NEUTRAL: &str = "this value has no effect";
+
+/// Reason for text in elements that have none.
+const TEXT: &str = "text is not used: values are attributes or elements";
 
 /// Removes and records everything in a tree that the table does not honour.
 pub(crate) fn keep_honoured(files: &Files, table: &Table, root: &mut Element) {
@@ -29,16 +33,23 @@ fn keep_inside(files: &Files, index: &Index, rule: &Rule, element: &mut Element)
             element: &tag,
             attribute: Some(name),
             value,
+            is_empty: false,
             place,
         };
         is_kept(files, rule.attribute(name), &subject)
     });
+    let (text, text_place) = &element.text;
+    if rule.treatment == Treatment::Honoured && !text.is_empty() && !index.has_text(&tag) {
+        files.record(Use::Reported, text_place, &tag, None, TEXT);
+    }
+    refuse_repetitions(files, index, element);
     element.children.retain_mut(|child| {
         let rule = index.rule(&tag, &child.name);
         let subject = Subject {
             element: &child.name,
             attribute: None,
-            value: &child.text.0,
+            value: if has_parts(child) { "" } else { &child.text.0 },
+            is_empty: is_empty(child),
             place: &child.place,
         };
         let is_kept = is_kept(files, rule.map(|rule| rule.treatment), &subject);
@@ -56,11 +67,37 @@ fn keep_inside(files: &Files, index: &Index, rule: &Rule, element: &mut Element)
     });
 }
 
+/// Reports honoured elements that a parent has twice, of which readers would see the first only.
+fn refuse_repetitions(files: &Files, index: &Index, element: &Element) {
+    let mut seen = BTreeSet::new();
+    for child in &element.children {
+        let rule = index.rule(&element.name, &child.name);
+        let is_read = rule.is_some_and(|rule| rule.treatment == Treatment::Honoured);
+        if is_read && !index.may_repeat(&child.name) && !seen.insert(child.name.as_str()) {
+            let message = format!("<{}> has a second <{}>", element.name, child.name);
+            files.report(&child.place, message, "keep one of them");
+        }
+    }
+}
+
+/// Whether an element has no contents, and therefore its default value.
+fn is_empty(element: &Element) -> bool {
+    element.text.0.is_empty() && !has_parts(element)
+}
+
+/// Whether an element has attributes or children.
+fn has_parts(element: &Element) -> bool {
+    !element.attributes.is_empty() || !element.children.is_empty()
+}
+
 /// An element or attribute of a file.
 struct Subject<'s> {
     element: &'s str,
     attribute: Option<&'s str>,
+    /// Value to compare with neutral ones; empty for elements with attributes or children.
     value: &'s str,
+    /// Whether it is an element without contents.
+    is_empty: bool,
     place: &'s Place,
 }
 
@@ -83,7 +120,7 @@ fn is_kept(files: &Files, treatment: Option<Treatment>, subject: &Subject<'_>) -
         Some(Treatment::Container) => {}
         Some(Treatment::Irrelevant(reason)) => record(Use::Ignored, reason),
         Some(Treatment::Reported { neutral, .. } | Treatment::Rejected { neutral, .. })
-            if is_neutral(subject.value, neutral) =>
+            if is_neutral(subject.value, neutral) || subject.is_empty && !neutral.is_empty() =>
         {
             record(Use::Ignored, NEUTRAL)
         }
@@ -115,6 +152,7 @@ pub(crate) fn record_key(
         element: format,
         attribute: Some(key),
         value,
+        is_empty: false,
         place,
     };
     is_kept(files, rule.and_then(|rule| rule.attribute(key)), &subject);

@@ -47,7 +47,10 @@ pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
                 roxmltree::Error::DtdDetected => {
                     "remove the document type and its entities: write out their contents"
                 }
-                roxmltree::Error::NodesLimitReached => "describe the robot in fewer elements",
+                roxmltree::Error::NodesLimitReached => {
+                    files.count_elements(most);
+                    "describe the robot in fewer elements"
+                }
                 _ => "the file has to be well-formed XML",
             };
             files.report(&place, format!("this is not valid XML: {error}"), help);
@@ -60,6 +63,7 @@ pub(crate) fn parse(files: &Files, file: usize) -> Option<Element> {
         let place = Place { file, span: 0..1 };
         let help = "describe the robot in fewer elements";
         files.report(&place, "the files have too many elements", help);
+        files.count_elements(most);
         return None;
     }
     files.count_elements(count);
@@ -212,6 +216,18 @@ impl Element {
         #[cfg(test)]
         trace::child(&self.name, name);
         self.children.iter().filter(move |child| child.name == name)
+    }
+
+    /// Word in an attribute; `None` if it is absent, or not one of those allowed, which is an error.
+    pub(crate) fn keyword(&self, files: &Files, name: &str, allowed: &[&str]) -> Option<&str> {
+        let (word, place) = self.attribute(name)?;
+        if allowed.contains(&word) {
+            return Some(word);
+        }
+        let message = format!("`{word}` is not a value of `{name}` of `{}`", self.name);
+        let help = format!("write {}", allowed.join(" or "));
+        files.report(place, message, help);
+        None
     }
 
     /// Number in an attribute; the default if it is absent or invalid.

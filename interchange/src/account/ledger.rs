@@ -2,6 +2,12 @@
 
 use std::collections::BTreeMap;
 
+/// Largest number of entries with the same treatment and reason; further ones are counted together.
+const MOST_ENTRIES: usize = 200;
+
+/// Name of the entry that counts further elements and attributes.
+const FURTHER: &str = "further names";
+
 /// Treatment of an element or attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Use {
@@ -49,6 +55,14 @@ pub(crate) struct Ledger {
     entries: BTreeMap<Key, (usize, usize)>,
 }
 
+/// Entries with the same treatment and reason.
+#[derive(Debug, Default)]
+struct Listed {
+    entries: usize,
+    /// Index of the last one in its list.
+    last: usize,
+}
+
 impl Ledger {
     /// Counts an element or attribute at a byte offset of a file.
     pub(crate) fn add(&mut self, key: Key, at: usize) {
@@ -79,18 +93,32 @@ impl Ledger {
         let mut account = Account::default();
         let mut ordered: Vec<_> = self.entries.iter().collect();
         ordered.sort_by_key(|((_, file, ..), (at, _))| (*file, *at));
+        let mut seen: BTreeMap<(Use, &str), Listed> = BTreeMap::new();
         for ((kind, file, element, attribute, reason), (at, count)) in ordered {
-            let (name, line) = locate(*file, *at);
             let list = match kind {
                 Use::Honoured => &mut account.honoured,
                 Use::Ignored => &mut account.ignored,
                 Use::Reported => &mut account.reported,
             };
+            let listed = seen.entry((*kind, reason)).or_default();
+            listed.entries += 1;
+            if listed.entries > MOST_ENTRIES + 1 {
+                list[listed.last].count += count;
+                continue;
+            }
+            listed.last = list.len();
+            let is_further = listed.entries > MOST_ENTRIES;
+            let (element, attribute) = if is_further {
+                (FURTHER, None)
+            } else {
+                (element.as_str(), attribute.clone())
+            };
+            let (name, line) = locate(*file, *at);
             list.push(Entry {
                 file: name,
                 line,
-                element: element.clone(),
-                attribute: attribute.clone(),
+                element: element.to_owned(),
+                attribute,
                 reason: reason.clone(),
                 count: *count,
             });

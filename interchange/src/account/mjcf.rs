@@ -22,7 +22,14 @@ const ON_A_JOINT: &str = "let it act on a joint, or remove the actuator";
 const ENABLE: &str =
     "the flag of the simulation is not used: forces and constraints act in the model";
 
-pub(crate) const TABLE: Table = Table { rules: RULES };
+pub(crate) const TABLE: Table = Table {
+    rules: RULES,
+    // Sections may occur several times; later attributes override earlier ones.
+    repeatable: "include compiler option default worldbody body frame joint freejoint geom site equality actuator \
+                 connect weld tendon flex flexvert flexstrain distance general motor position velocity intvelocity \
+                 orientation pid damper cylinder muscle adhesion dcmotor plugin",
+    texts: "",
+};
 
 const RULES: &[Rule] = &[
     Rule {

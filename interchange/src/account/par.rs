@@ -36,4 +36,6 @@ pub(crate) const TABLE: Table = Table {
             ("Z", unless(IDENTITY, BASE)),
         ],
     }],
+    repeatable: "",
+    texts: "",
 };

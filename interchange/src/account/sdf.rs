@@ -10,7 +10,13 @@ const SIMULATION: Treatment = Irrelevant("settings of the simulation");
 
 const LIMITS: Treatment = Irrelevant("force limits and softness of limits");
 
-pub(crate) const TABLE: Table = Table { rules: RULES };
+pub(crate) const TABLE: Table = Table {
+    rules: RULES,
+    repeatable: "world physics model include frame link joint",
+    texts: "gravity static pose uri name placement_frame mass ixx ixy ixz iyy iyz izz parent child gearbox_ratio \
+            gearbox_reference_body thread_pitch screw_thread_pitch xyz use_parent_model_frame damping friction \
+            spring_stiffness spring_reference lower upper velocity multiplier offset reference",
+};
 
 /// An element whose text is read.
 const fn text(within: &'static str, elements: &'static str) -> Rule {
@@ -40,10 +46,24 @@ const RULES: &[Rule] = &[
         treatment: Honoured,
         attributes: &[("name", SIMULATION)],
     },
-    text("world link", "gravity"),
+    text("world link physics", "gravity"),
+    Rule {
+        // Has gravity up to SDFormat 1.5.
+        within: "world",
+        elements: "physics",
+        treatment: Honoured,
+        attributes: &[("name default type", SIMULATION)],
+    },
+    whole("sdf gazebo", "physics", SIMULATION),
+    whole(
+        "physics",
+        "max_step_size real_time_factor real_time_update_rate max_contacts update_rate dart simbody bullet ode",
+        SIMULATION,
+    ),
+    whole("physics", "magnetic_field", SIMULATION),
     whole(
         "sdf gazebo world",
-        "actor audio atmosphere gui light magnetic_field physics population road scene spherical_coordinates state",
+        "actor audio atmosphere gui light magnetic_field population road scene spherical_coordinates state",
         SIMULATION,
     ),
     whole(

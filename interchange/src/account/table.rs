@@ -1,6 +1,6 @@
 //! Table type: how import treats each element and attribute of a format.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Treatment of an element or attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,10 +42,16 @@ pub(crate) struct Rule {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Table {
     pub(crate) rules: &'static [Rule],
+    /// Names of honoured elements that a parent may have several times, separated by blanks.
+    pub(crate) repeatable: &'static str,
+    /// Names of honoured elements whose text is read, separated by blanks.
+    pub(crate) texts: &'static str,
 }
 
 /// Rules of a table by element name.
 pub(crate) struct Index {
+    repeatable: BTreeSet<&'static str>,
+    texts: BTreeSet<&'static str>,
     by_parent: BTreeMap<(&'static str, &'static str), &'static Rule>,
     by_name: BTreeMap<&'static str, &'static Rule>,
 }
@@ -63,7 +69,22 @@ impl Index {
                 }
             }
         }
-        Self { by_parent, by_name }
+        Self {
+            repeatable: table.repeatable.split_whitespace().collect(),
+            texts: table.texts.split_whitespace().collect(),
+            by_parent,
+            by_name,
+        }
+    }
+
+    /// Whether a parent may have several honoured elements of a name.
+    pub(crate) fn may_repeat(&self, name: &str) -> bool {
+        self.repeatable.contains(name)
+    }
+
+    /// Whether the text of an honoured element is read.
+    pub(crate) fn has_text(&self, name: &str) -> bool {
+        self.texts.contains(name)
     }
 
     /// Rule of an element in a parent; `None` if the element is unknown.
@@ -104,14 +125,26 @@ pub(super) const fn rejected(reason: &'static str, help: &'static str) -> Treatm
 /// Neutral value of 4 × 4 matrices.
 pub(super) const IDENTITY: &str = "identity";
 
-/// Whether a value consists of neutral numbers or words, or is the identity matrix.
+/// Neutral value of gravity: 9.81 m/s² against z.
+pub(super) const USUAL_GRAVITY: &str = "usual gravity";
+
+/// Whether a value consists of neutral numbers or words, or is a neutral vector or matrix.
+///
+/// A value without words is not neutral.
 pub(crate) fn is_neutral(value: &str, neutral: &str) -> bool {
-    if neutral.is_empty() {
+    if neutral.is_empty() || value.trim().is_empty() {
         return false;
     }
+    let numbers = || -> Vec<Option<f64>> {
+        let words = value.split([' ', '\t', '\n', '\r', ',']);
+        let words = words.filter(|word| !word.is_empty());
+        words.map(|word| word.parse().ok()).collect()
+    };
+    if neutral == USUAL_GRAVITY {
+        return numbers() == [Some(0.0), Some(0.0), Some(-9.81)];
+    }
     if neutral == IDENTITY {
-        let words = value.split([' ', ',']).filter(|word| !word.is_empty());
-        let numbers: Vec<Option<f64>> = words.map(|word| word.parse().ok()).collect();
+        let numbers = numbers();
         let mut entries = numbers.iter().enumerate();
         return numbers.len() == 16
             && entries.all(|(at, value)| *value == Some(if at % 5 == 0 { 1.0 } else { 0.0 }));
@@ -139,6 +172,9 @@ mod tests {
         assert!(!is_neutral("0 1e-9", "0"));
         assert!(!is_neutral("true", "false"));
         assert!(!is_neutral("anything", ""));
+        assert!(!is_neutral(" ", "0"));
+        assert!(is_neutral("0 0 -9.810", super::USUAL_GRAVITY));
+        assert!(!is_neutral("0 -9.81 0", super::USUAL_GRAVITY));
         let rows = |first: &str| format!("{first} 0 1 0 0 0 0 1 0 0 0 0 1");
         assert!(is_neutral(&rows("1 0 0 0"), super::IDENTITY));
         assert!(!is_neutral(&rows("0 1 0 0"), super::IDENTITY));

@@ -1,6 +1,6 @@
 //! Table of URDF: urdfdom, loop notations, and the extensions of Gazebo, ROS 2 control and Drake.
 
-use super::table::{Rule, Table, Treatment, rejected, reported, unless};
+use super::table::{Rule, Table, Treatment, USUAL_GRAVITY, rejected, reported, unless};
 use Treatment::{Container, Honoured, Irrelevant};
 
 const APPEARANCE: Treatment = Irrelevant("appearance");
@@ -13,7 +13,12 @@ const COUPLED_MOTORS: &str = "remove the transmission and name the driven joints
 
 const POSE: (&str, Treatment) = ("xyz rpy quat_xyzw", Honoured);
 
-pub(crate) const TABLE: Table = Table { rules: RULES };
+pub(crate) const TABLE: Table = Table {
+    rules: RULES,
+    repeatable: "link joint loop constraint loop_joint coupling ball_constraint transmission ros2_control actuator \
+                 mechanicalReduction mechanical_reduction",
+    texts: "type plugin mechanicalReduction mechanical_reduction",
+};
 
 const RULES: &[Rule] = &[
     Rule {
@@ -341,7 +346,28 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "gazebo",
-        elements: "dampingFactor velocity_decay",
+        elements: "pose",
+        treatment: unless(
+            "0",
+            "the base link is at the origin of the world in the model",
+        ),
+        attributes: &[],
+    },
+    Rule {
+        within: "gazebo",
+        elements: "velocity_decay",
+        treatment: Container,
+        attributes: &[],
+    },
+    Rule {
+        within: "velocity_decay",
+        elements: "linear angular",
+        treatment: unless("0", "the damping of the body is missing from the model"),
+        attributes: &[],
+    },
+    Rule {
+        within: "gazebo",
+        elements: "dampingFactor",
         treatment: unless("0", "the damping of the body is missing from the model"),
         attributes: &[],
     },
@@ -362,7 +388,7 @@ const RULES: &[Rule] = &[
         within: "gazebo",
         elements: "preserveFixedJoint disableFixedJointLumping implicitSpringDamper provideFeedback \
                    provide_feedback stopCfm stopErp stopKp stopKd fudgeFactor cfmDamping initial_joint_position \
-                   enable_wind allow_auto_disable canonicalBody pose ignition gz",
+                   enable_wind allow_auto_disable canonicalBody ignition gz",
         treatment: SIMULATION,
         attributes: &[],
     },
@@ -426,9 +452,24 @@ const RULES: &[Rule] = &[
         treatment: Container,
         attributes: &[
             (
-                "angle assetdir autolimits balanceinertia discardvisual eulerseq fusestatic inertiafromgeom meshdir \
-                 strippath texturedir usethread convexhull",
+                "alignfree angle assetdir autolimits conflict convexhull discardvisual eulerseq fitaabb fusestatic \
+                 inertiagrouprange meshdir passthrough savecanonical savecompiled saveinertial strippath texturedir \
+                 usethread",
                 SIMULATION,
+            ),
+            (
+                "inertiafromgeom",
+                unless(
+                    "auto false",
+                    "masses and inertias of the model are those of <inertial>",
+                ),
+            ),
+            (
+                "balanceinertia",
+                unless(
+                    "false",
+                    "masses and inertias of the model are those of the links",
+                ),
             ),
             (
                 "settotalmass boundmass boundinertia",
@@ -441,7 +482,52 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "mujoco",
-        elements: "option size",
+        elements: "option",
+        treatment: Container,
+        attributes: &[
+            (
+                "gravity",
+                unless(USUAL_GRAVITY, "gravity is 9.81 m/s² against z in the model"),
+            ),
+            (
+                "density viscosity",
+                unless("0", "forces of a fluid are missing from the model"),
+            ),
+            (
+                "actuatorgroupdisable apirate ccd_iterations ccd_tolerance collision cone impratio integrator \
+                 iterations jacobian ls_iterations ls_tolerance magnetic mpr_iterations mpr_tolerance \
+                 noslip_iterations noslip_tolerance o_friction o_margin o_solimp o_solref sdf_initpoints \
+                 sdf_iterations sleep_tolerance solver timestep tolerance wind",
+                SIMULATION,
+            ),
+        ],
+    },
+    Rule {
+        within: "option",
+        elements: "flag",
+        treatment: Container,
+        attributes: &[
+            (
+                "gravity",
+                unless("enable", "gravity is 9.81 m/s² against z in the model"),
+            ),
+            (
+                "constraint equality spring damper passive frictionloss",
+                unless(
+                    "enable",
+                    "the flag of the simulation is not used: forces act in the model",
+                ),
+            ),
+            (
+                "actuation autoreset clampctrl contact diagexact energy eulerdamp filterparent fwdinv invdiscrete \
+                 ipc island limit midphase multiccd nativeccd override refsafe sensor sleep speculative warmstart",
+                SIMULATION,
+            ),
+        ],
+    },
+    Rule {
+        within: "mujoco",
+        elements: "size",
         treatment: SIMULATION,
         attributes: &[],
     },

@@ -10,4 +10,6 @@ pub(crate) const TABLE: Table = Table {
         treatment: Honoured,
         attributes: &[("closed_loop type name_mot joint_name joint_type", Honoured)],
     }],
+    repeatable: "",
+    texts: "",
 };

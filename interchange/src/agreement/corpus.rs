@@ -103,7 +103,7 @@ pub(super) fn urdf() -> Vec<File> {
 
 pub(super) fn sdf() -> Vec<File> {
     let include = "<model name='tool'><link name='tip'/></model>";
-    let robot = "<sdf version='1.11'><world name='w'><gravity>0 0 -9.81</gravity>
+    let robot = "<sdf version='1.11'><world name='w'><gravity>0 0 -9.81</gravity><physics/>
         <model name='floor'><static>true</static><link name='slab'/></model>
         <model name='all' placement_frame='foot' canonical_link='a'><static>false</static><pose degrees='true'
           rotation_format='euler_rpy'>0 0 0 0 0 10</pose><plugin name='p' filename='q'><gain>3</gain></plugin><plugin name='r'/>

@@ -12,10 +12,9 @@ pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
     let mut is_changed = false;
     let mut locked = vec![false; network.edges.len()];
     for group in 1..network.groups.len() {
-        let own: Vec<usize> = (0..network.edges.len())
-            .filter(|&edge| network.edges[edge].groups.contains(&group))
-            .collect();
-        let [a, b] = own[..] else { continue };
+        let [a, b] = network.edges_at[group][..] else {
+            continue;
+        };
         let pins = [a, b].map(|edge| &network.edges[edge]);
         let are_free = pins
             .iter()

@@ -53,6 +53,11 @@ impl Layout {
 /// Largest number of extensions that are tried.
 const TRIES: usize = 3000;
 
+/// Largest number of paths that all searches for chains explore together.
+const PATHS: usize = 3_000_000;
+/// Largest number of bodies that an error lists.
+const LISTED: usize = 10;
+
 /// Finds skeleton and chains; `None` after an error.
 pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> Option<Layout> {
     let wanted = match &options.coordinates {
@@ -61,26 +66,26 @@ pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> O
     };
     let mut search = Search {
         network,
-        kept: required(network),
+        // Groups that alone connect others to the ground must be part of the skeleton, because the
+        // groups behind them have their own coordinates.
+        kept: network.blocks.is_cut.clone(),
         may_branch: false,
         wanted,
         best: None,
         furthest: Vec::new(),
         tries: 0,
+        paths: 0,
     };
     search.grow(Partial::start(network));
     if search.best.is_none() {
         search.kept.fill(false);
         search.may_branch = true;
         search.tries = 0;
+        search.paths = 0;
         search.grow(Partial::start(network));
     }
-    let Search {
-        best,
-        furthest,
-        tries,
-        ..
-    } = search;
+    let is_exhausted = search.is_exhausted();
+    let Search { best, furthest, .. } = search;
     if let Some((_, found)) = best {
         return Some(found);
     }
@@ -88,7 +93,7 @@ pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> O
         files,
         network,
         &furthest,
-        tries,
+        is_exhausted,
         options.coordinates.is_some(),
     );
     None
@@ -105,7 +110,7 @@ fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<
             Some(at) => found.push(at),
             None => {
                 let all = network.edges.iter().map(|edge| network.edge_name(edge));
-                let near = overact_description::diagnostic::did_you_mean(name, all);
+                let near = files.did_you_mean(name, all);
                 let message = format!("there is no joint `{name}` for a coordinate");
                 files.refuse(
                     message,
@@ -115,37 +120,6 @@ fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<
         }
     }
     (found.len() == names.len()).then_some(found)
-}
-
-/// Groups that alone connect others to the ground (cut vertices of the network).
-///
-/// They must be part of the skeleton, because the groups behind them have their own coordinates.
-fn required(network: &Network<'_>) -> Vec<bool> {
-    let count = network.groups.len();
-    let without = |cut: usize| {
-        let mut seen = vec![false; count];
-        let mut open = vec![0];
-        seen[0] = true;
-        while let Some(at) = open.pop() {
-            for edge in network
-                .edges
-                .iter()
-                .filter(|edge| edge.groups.contains(&at))
-            {
-                let next = edge.groups[usize::from(edge.groups[0] == at)];
-                if next != cut && !seen[next] {
-                    seen[next] = true;
-                    open.push(next);
-                }
-            }
-        }
-        seen.iter()
-            .enumerate()
-            .any(|(group, seen)| !seen && group != cut)
-    };
-    (0..count)
-        .map(|group| group != 0 && without(group))
-        .collect()
 }
 
 /// Tree that a group belongs to.
@@ -225,12 +199,22 @@ struct Search<'s, 'm> {
     /// Solved groups of the partial layout that solved most.
     furthest: Vec<bool>,
     tries: usize,
+    /// Number of paths explored so far.
+    paths: usize,
 }
 
 impl Search<'_, '_> {
+    /// Whether the search has used up its extensions or paths.
+    fn is_exhausted(&self) -> bool {
+        self.tries > TRIES || self.paths > PATHS
+    }
+
     fn grow(&mut self, mut partial: Partial) {
         self.tries += 1;
-        while let Some(ear) = cheapest(self.network, &partial.solved, &self.kept, &partial.used) {
+        while !self.is_exhausted() {
+            let (ear, paths) = cheapest(self.network, &partial.solved, &self.kept, &partial.used);
+            self.paths += paths;
+            let Some(ear) = ear else { break };
             for &group in &ear.groups {
                 partial.solved[group] = true;
             }
@@ -244,7 +228,7 @@ impl Search<'_, '_> {
             .best
             .as_ref()
             .is_some_and(|(cost, _)| partial.cost >= *cost);
-        if is_dear || self.tries > TRIES {
+        if is_dear || self.is_exhausted() {
             return;
         }
         let count = |solved: &[bool]| solved.iter().filter(|s| **s).count();
@@ -274,7 +258,7 @@ impl Search<'_, '_> {
             let wanted = self.wanted.as_ref().is_none_or(|wanted| {
                 wanted.contains(&index)
                     || follows(self.network, index)
-                    || is_bridge(self.network, index)
+                    || self.network.blocks.is_bridge[index]
             });
             if partial.used[index] || !wanted {
                 continue;
@@ -285,7 +269,7 @@ impl Search<'_, '_> {
             ] {
                 let may = partial.part[from].is_some() || self.may_branch && partial.solved[from];
                 if may && !partial.solved[to] {
-                    if is_bridge(self.network, index) {
+                    if self.network.blocks.is_bridge[index] {
                         return vec![(index, from, to)];
                     }
                     all.push((index, from, to));
@@ -297,13 +281,8 @@ impl Search<'_, '_> {
             return all;
         };
         all.into_iter()
-            .filter(|(_, from, _)| *from == first || self.same_block(first, *from))
+            .filter(|(_, from, _)| *from == first || self.network.blocks.are_together(first, *from))
             .collect()
-    }
-
-    /// Whether two groups belong to the same biconnected block.
-    fn same_block(&self, a: usize, b: usize) -> bool {
-        self.network.edges.len() < 400 && connected_without_cut(self.network, a, b)
     }
 
     fn finish(&mut self, partial: Partial) {
@@ -324,37 +303,6 @@ pub(crate) fn skeleton_freedoms(network: &Network<'_>, skeleton: &[(usize, usize
         freedoms(network, edge, groups[usize::from(groups[0] == from)], true)
     };
     skeleton.iter().map(of).collect()
-}
-
-/// Whether an edge is a bridge of the network.
-fn is_bridge(network: &Network<'_>, cut: usize) -> bool {
-    let [a, b] = network.edges[cut].groups;
-    !reaches(network, a, b, |index, _| index != cut)
-}
-
-fn connected_without_cut(network: &Network<'_>, a: usize, b: usize) -> bool {
-    (0..network.groups.len())
-        .filter(|cut| *cut != a && *cut != b)
-        .all(|cut| reaches(network, a, b, |_, group| group != cut))
-}
-
-fn reaches(network: &Network<'_>, a: usize, b: usize, may: impl Fn(usize, usize) -> bool) -> bool {
-    let mut seen = vec![false; network.groups.len()];
-    let mut open = vec![a];
-    seen[a] = true;
-    while let Some(at) = open.pop() {
-        for (index, edge) in network.edges.iter().enumerate() {
-            if !edge.groups.contains(&at) {
-                continue;
-            }
-            let next = edge.groups[usize::from(edge.groups[0] == at)];
-            if may(index, next) && !seen[next] {
-                seen[next] = true;
-                open.push(next);
-            }
-        }
-    }
-    seen[b]
 }
 
 /// Whether the skeleton's joints can move independently.
@@ -421,11 +369,22 @@ pub(crate) fn skeleton_rates(
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }
 
-fn refuse(files: &Files, network: &Network<'_>, furthest: &[bool], tries: usize, was_told: bool) {
+fn refuse(
+    files: &Files,
+    network: &Network<'_>,
+    furthest: &[bool],
+    is_exhausted: bool,
+    was_told: bool,
+) {
     let open = furthest.iter().enumerate().filter(|(_, solved)| !**solved);
-    let open: Vec<String> = open
+    let count = open.clone().count();
+    let mut open: Vec<String> = open
+        .take(LISTED)
         .map(|(group, _)| format!("`{}`", network.group_name(group)))
         .collect();
+    if count > LISTED {
+        open.push(format!("and {} more bodies", count - LISTED));
+    }
     let first = network.edges.iter().find(|edge| {
         edge.groups
             .iter()
@@ -441,7 +400,7 @@ fn refuse(files: &Files, network: &Network<'_>, furthest: &[bool], tries: usize,
         network.mobility,
         open.join(", ")
     );
-    let help = match (was_told, tries > TRIES) {
+    let help = match (was_told, is_exhausted) {
         (true, _) => {
             "leave `--coordinates` out, or name as many joints as there are degrees of freedom, each connected to the ground by such joints"
         }

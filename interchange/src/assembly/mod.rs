@@ -1,5 +1,6 @@
 //! Derives a skeleton and chains from bodies and closures.
 
+pub(crate) mod blocks;
 pub(crate) mod idle;
 pub(crate) mod layout;
 pub(crate) mod motion;

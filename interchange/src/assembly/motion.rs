@@ -5,6 +5,7 @@ use crate::{
     model::{ClosureKind, Kind, Model, Pose},
 };
 use nalgebra::{DMatrix, DVector, Point3, Rotation3, Vector3};
+use std::rc::Rc;
 
 /// Configuration of the tree.
 #[derive(Debug, Clone)]
@@ -38,14 +39,18 @@ pub(crate) struct Motion<'m> {
 /// Rows: velocity of the body-fixed point at the world origin, then angular velocity.
 pub(crate) type Twists = DMatrix<f64>;
 
+/// Twists of each body; bodies that are fixed together share theirs.
+pub(crate) type BodyTwists = Vec<Rc<Twists>>;
+
 impl<'m> Motion<'m> {
     /// Kinematics of a model.
     pub(crate) fn new(model: &'m Model) -> Self {
         let mut coordinates = Vec::new();
+        let carried = model.carried();
         for (joint, own) in model.joints.iter().enumerate() {
             let count = match own.kind {
                 // Joints merged into a ball joint carry nothing.
-                _ if own.follow.is_some() || model.carried_by(joint) == 0 => 0,
+                _ if own.follow.is_some() || carried[joint] == 0 => 0,
                 Kind::Ball => 3,
                 Kind::Revolute | Kind::Prismatic => 1,
             };
@@ -102,14 +107,15 @@ impl<'m> Motion<'m> {
     }
 
     /// Twists of all bodies for each coordinate.
-    pub(crate) fn twists(&self, state: &State) -> Vec<Twists> {
-        let mut all: Vec<Twists> = Vec::with_capacity(self.model.bodies.len());
-        all.push(Twists::zeros(6, self.coordinates.len()));
+    pub(crate) fn twists(&self, state: &State) -> BodyTwists {
+        let mut all = BodyTwists::with_capacity(self.model.bodies.len());
+        all.push(Rc::new(Twists::zeros(6, self.coordinates.len())));
         for (at, body) in self.model.bodies.iter().enumerate().skip(1) {
-            let mut own = all[body.parent].clone();
+            let mut own = Rc::clone(&all[body.parent]);
             if let Some(joint) = body.joint {
+                let moved = Rc::make_mut(&mut own);
                 for (column, factor, twist) in self.columns(state, at, joint) {
-                    let mut column = own.column_mut(column);
+                    let mut column = moved.column_mut(column);
                     column += twist * factor;
                 }
             }
@@ -149,7 +155,7 @@ impl<'m> Motion<'m> {
         let (mut gaps, mut rows) = (Vec::new(), Vec::new());
         for closure in &self.model.closures {
             let [a, b] = closure.bodies();
-            let relative = &twists[b] - &twists[a];
+            let relative = &*twists[b] - &*twists[a];
             let (points, turn) = ends(&closure.kind, state);
             let point = points[1].coords;
             for axis in 0..3 {

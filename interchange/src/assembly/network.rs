@@ -1,6 +1,7 @@
 //! Graph of rigid groups and joints, sampled at several closed configurations.
 
 use super::{
+    blocks::Blocks,
     motion::{Motion, State, null_space},
     simple::{is_free, is_weld},
 };
@@ -9,6 +10,7 @@ use crate::{
     model::{ClosureKind, Inertia, Kind, Model, Pose},
 };
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
+use std::collections::BTreeMap;
 
 /// A group of bodies that are fixed together.
 #[derive(Debug, Clone)]
@@ -53,6 +55,11 @@ pub(crate) struct Network<'m> {
     pub(crate) model: &'m Model,
     pub(crate) groups: Vec<Group>,
     pub(crate) edges: Vec<Edge>,
+    /// Edges of each group, in ascending order.
+    pub(crate) edges_at: Vec<Vec<usize>>,
+    pub(crate) blocks: Blocks,
+    /// Body that each joint carries.
+    carried: Vec<usize>,
     /// Closed configurations, home first.
     pub(crate) states: Vec<State>,
     /// For each configuration: a basis of the twists of each group, as columns.
@@ -78,10 +85,15 @@ impl<'m> Network<'m> {
         let of_body = grouped(model);
         let groups = groups(model, &of_body, &home);
         let edges = edges(model, &of_body);
+        let edges_at = edges_at(groups.len(), &edges);
+        let ends: Vec<[usize; 2]> = edges.iter().map(|edge| edge.groups).collect();
         let mut network = Self {
             model,
             groups,
+            blocks: Blocks::new(&edges_at, &ends),
+            edges_at,
             edges,
+            carried: model.carried(),
             states: vec![home],
             twists: Vec::new(),
             mobility: 0,
@@ -94,9 +106,9 @@ impl<'m> Network<'m> {
     /// Marks groups whose only edges are two ball joints.
     fn find_spins(&mut self) {
         for at in 1..self.groups.len() {
-            let mut own = self.edges.iter().filter(|edge| edge.groups.contains(&at));
-            let all_balls = own.clone().all(|edge| edge.kind == Kind::Ball);
-            self.groups[at].spins = all_balls && own.by_ref().count() == 2;
+            let own = &self.edges_at[at];
+            let all_balls = own.iter().all(|&edge| self.edges[edge].kind == Kind::Ball);
+            self.groups[at].spins = all_balls && own.len() == 2;
         }
     }
 
@@ -120,7 +132,7 @@ impl<'m> Network<'m> {
         for state in &self.states {
             let basis = self.motions(motion, state);
             let bodies = motion.twists(state);
-            let of = |group: &Group| &bodies[group.bodies[0]] * &basis;
+            let of = |group: &Group| &*bodies[group.bodies[0]] * &basis;
             self.twists.push(self.groups.iter().map(of).collect());
             ranks.push(basis.ncols());
         }
@@ -156,10 +168,7 @@ impl<'m> Network<'m> {
 
     /// Direction from one ball joint of a rod to the other.
     pub(crate) fn line(&self, group: usize, state: &State) -> Vector3<f64> {
-        let own = self
-            .edges
-            .iter()
-            .filter(|edge| edge.groups.contains(&group));
+        let own = self.edges_at[group].iter().map(|&edge| &self.edges[edge]);
         let centres: Vec<Point3<f64>> = own.map(|edge| self.axis(edge, state).point).collect();
         let line = centres.last().zip(centres.first()).map(|(b, a)| b - a);
         line.and_then(|line| line.try_normalize(1e-9))
@@ -172,7 +181,7 @@ impl<'m> Network<'m> {
         match edge.origin {
             Origin::Joint(joint) => {
                 let own = &self.model.joints[joint];
-                let pose = state.poses[self.model.carried_by(joint)];
+                let pose = state.poses[self.carried[joint]];
                 Axis {
                     point: pose * own.at,
                     direction: pose.rotation * own.axis,
@@ -247,15 +256,11 @@ fn grouped(model: &Model) -> Vec<usize> {
         let (a, b) = (root(&of_body, a), root(&of_body, b));
         of_body[a.max(b)] = a.min(b);
     }
-    let mut numbers: Vec<usize> = Vec::new();
+    let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
     (0..of_body.len())
         .map(|at| {
-            let root = root(&of_body, at);
-            let known = numbers.iter().position(|&own| own == root);
-            known.unwrap_or_else(|| {
-                numbers.push(root);
-                numbers.len() - 1
-            })
+            let next = numbers.len();
+            *numbers.entry(root(&of_body, at)).or_insert(next)
         })
         .collect()
 }
@@ -319,6 +324,17 @@ fn edges(model: &Model, of_body: &[usize]) -> Vec<Edge> {
         .chain(closures)
         .filter(|edge| edge.groups[0] != edge.groups[1])
         .collect()
+}
+
+/// Edges of each group.
+fn edges_at(groups: usize, edges: &[Edge]) -> Vec<Vec<usize>> {
+    let mut at = vec![Vec::new(); groups];
+    for (index, edge) in edges.iter().enumerate() {
+        for group in edge.groups {
+            at[group].push(index);
+        }
+    }
+    at
 }
 
 fn not_closed(files: &Files, model: &Model, gap: f64, row: usize) {

@@ -62,14 +62,15 @@ pub(crate) fn follows(network: &Network<'_>, edge: usize) -> bool {
     }
 }
 
-/// Cheapest chain between solved groups that avoids `kept` groups, if there is one.
+/// Cheapest chain between solved groups that avoids `kept` groups, and the number of explored paths.
 pub(crate) fn cheapest(
     network: &Network<'_>,
     solved: &[bool],
     kept: &[bool],
     used: &[bool],
-) -> Option<SolvableChain> {
+) -> (Option<SolvableChain>, usize) {
     let mut best: Option<SolvableChain> = None;
+    let mut paths = 0;
     for start in (0..solved.len()).filter(|&group| solved[group]) {
         let mut search = Search {
             network,
@@ -80,8 +81,9 @@ pub(crate) fn cheapest(
             ways: 0,
         };
         search.extend(&mut vec![start], &mut Vec::new());
+        paths += search.ways;
     }
-    best
+    (best, paths)
 }
 
 struct Search<'s, 'm> {
@@ -100,8 +102,9 @@ impl Search<'_, '_> {
         if self.ways > WAYS || self.unknowns(groups, edges) > UNKNOWNS + 3 {
             return;
         }
-        for (index, edge) in self.network.edges.iter().enumerate() {
-            if self.used[index] || edges.contains(&index) || !edge.groups.contains(&at) {
+        for &index in &self.network.edges_at[at] {
+            let edge = &self.network.edges[index];
+            if self.used[index] || edges.contains(&index) {
                 continue;
             }
             let next = edge.groups[usize::from(edge.groups[0] == at)];

@@ -54,8 +54,8 @@ impl Course {
         let mut state = guide.network.states[0].clone();
         let mut now = DVector::zeros(sizes.len());
         let mut stops = Vec::new();
+        let mut rates = guide.rates(&state).ok_or(Trouble::Singular)?;
         for step in 1..=APPROACH + STEPS {
-            let rates = guide.rates(&state).ok_or(Trouble::Singular)?;
             let next = if step <= APPROACH {
                 &begin * (f64::from(step) / f64::from(APPROACH))
             } else {
@@ -68,7 +68,7 @@ impl Course {
             let positions = guide.positions(&state).into_iter().enumerate();
             now =
                 DVector::from_iterator(sizes.len(), positions.map(|(at, p)| p.unwrap_or(next[at])));
-            let rates = guide.rates(&state).ok_or(Trouble::Singular)?;
+            rates = guide.rates(&state).ok_or(Trouble::Singular)?;
             if let Some(joint) = guide.beyond(&state) {
                 let share = share(guide, &rates.tree, joint, sizes);
                 return Err(Trouble::Limit { joint, share });
@@ -84,8 +84,8 @@ impl Course {
                 };
                 stops.push(Stop {
                     state: state.clone(),
-                    tree: rates.tree,
-                    actuators: rates.actuators,
+                    tree: rates.tree.clone(),
+                    actuators: rates.actuators.clone(),
                     rates: of(|v| v.1),
                     accelerations: of(|v| v.2),
                 });

@@ -93,7 +93,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             .network
             .groups
             .iter()
-            .map(|group| &bodies[group.bodies[0]] * &basis)
+            .map(|group| &*bodies[group.bodies[0]] * &basis)
             .collect();
         let own = self.own_rates(state, &groups)?;
         if own.nrows() != own.ncols() || own.nrows() != self.count() {

@@ -4,8 +4,9 @@ use super::{
     course::{Course, Stop},
     guide::Guide,
 };
-use crate::model::Inertia;
-use nalgebra::{DMatrix, DVector, Matrix6, Vector3};
+use crate::model::{Inertia, Model};
+use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
+use std::collections::BTreeMap;
 
 /// Root mean square torque of each actuated joint for a fundamental frequency in Hz.
 ///
@@ -70,14 +71,8 @@ fn reduced(guide: &Guide<'_, '_>, stop: &Stop) -> (DMatrix<f64>, DVector<f64>) {
     let twists = guide.motion.twists(&stop.state);
     let count = guide.motion.coordinates.len();
     let (mut mass, mut weight) = (DMatrix::zeros(count, count), DVector::zeros(count));
-    for (at, body) in model.bodies.iter().enumerate() {
-        let Some(inertia) = body.inertia.map(|own| own.seen(&stop.state.poses[at])) else {
-            continue;
-        };
-        mass += twists[at].transpose() * spatial(&inertia) * &twists[at];
-        let force = gravity * inertia.mass;
-        let moment = inertia.centre.coords.cross(&force);
-        let wrench = DVector::from_iterator(6, force.iter().chain(moment.iter()).copied());
+    for (at, (inertia, wrench)) in moved_together(model, stop, &gravity) {
+        mass += twists[at].transpose() * inertia * &*twists[at];
         weight += twists[at].transpose() * wrench;
     }
     for (at, coordinate) in guide.motion.coordinates.iter().enumerate() {
@@ -85,6 +80,34 @@ fn reduced(guide: &Guide<'_, '_>, stop: &Stop) -> (DMatrix<f64>, DVector<f64>) {
     }
     let tree = &stop.tree;
     (tree.transpose() * mass * tree, tree.transpose() * weight)
+}
+
+/// Spatial inertia and weight about the world origin of bodies that are fixed together.
+///
+/// The key is the body of each group that a joint carries, or the ground.
+fn moved_together(
+    model: &Model,
+    stop: &Stop,
+    gravity: &Vector3<f64>,
+) -> BTreeMap<usize, (Matrix6<f64>, Vector6<f64>)> {
+    let mut carriers: Vec<usize> = Vec::with_capacity(model.bodies.len());
+    let mut sums = BTreeMap::new();
+    for (at, body) in model.bodies.iter().enumerate() {
+        let is_fixed = at > 0 && body.joint.is_none();
+        let carrier = if is_fixed { carriers[body.parent] } else { at };
+        carriers.push(carrier);
+        let Some(inertia) = body.inertia.map(|own| own.seen(&stop.state.poses[at])) else {
+            continue;
+        };
+        let force = gravity * inertia.mass;
+        let moment = inertia.centre.coords.cross(&force);
+        let (mass, weight) = sums
+            .entry(carrier)
+            .or_insert((Matrix6::zeros(), Vector6::zeros()));
+        *mass += spatial(&inertia);
+        *weight += Vector6::from_iterator(force.iter().chain(moment.iter()).copied());
+    }
+    sums
 }
 
 /// Whether a mass matrix is positive definite.

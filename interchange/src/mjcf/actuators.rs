@@ -38,7 +38,7 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
     };
     let Some(at) = model.joint_named(joint) else {
         let all = model.joints.iter().map(|joint| joint.name.as_str());
-        let near = overact_description::diagnostic::did_you_mean(joint, all);
+        let near = files.did_you_mean(joint, all);
         let help = near.unwrap_or_else(|| "name a joint".to_owned());
         files.report(place, format!("there is no joint `{joint}`"), help);
         return;

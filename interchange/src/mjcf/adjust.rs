@@ -3,7 +3,7 @@
 //! They are applied after all bodies were read, in MuJoCo's order: bounds, balance, total mass,
 //! springs.
 
-use super::Compiler;
+use super::{BOOLEAN, Compiler};
 use crate::{
     assembly::motion::Motion,
     files::Files,
@@ -30,10 +30,10 @@ impl Adjustments {
     pub(super) fn read(&mut self, files: &Files, compiler: &Element) {
         self.least_mass = compiler.number(files, "boundmass", self.least_mass);
         self.least_inertia = compiler.number(files, "boundinertia", self.least_inertia);
-        if let Some(word) = compiler.get("balanceinertia") {
+        if let Some(word) = compiler.keyword(files, "balanceinertia", BOOLEAN) {
             self.is_balanced = word == "true";
         }
-        if let Some(word) = compiler.get("fusestatic") {
+        if let Some(word) = compiler.keyword(files, "fusestatic", BOOLEAN) {
             self.is_static_fused = word == "true";
         }
         if compiler.get("settotalmass").is_some() {

@@ -1,6 +1,6 @@
 //! Bodies, their joints and inertias.
 
-use super::{Reader, Sites, adjust::SpringDamper, defaults::MAIN, inertia};
+use super::{BOOLEAN_OR_AUTO, Reader, Sites, adjust::SpringDamper, defaults::MAIN, inertia};
 use crate::{
     files::Files,
     geometry::exact,
@@ -8,6 +8,7 @@ use crate::{
     xml::Element,
 };
 use nalgebra::{Point3, Vector3};
+use std::collections::BTreeSet;
 
 /// Reads all bodies; returns the springs that depend on inertias.
 pub(super) fn read(
@@ -20,6 +21,7 @@ pub(super) fn read(
     for world in root.all("worldbody") {
         let class = world.get("childclass").unwrap_or(MAIN).to_owned();
         let mut tree = Tree {
+            names: model.bodies.iter().map(|body| body.name.clone()).collect(),
             model: &mut *model,
             sites: &mut *sites,
             springs: &mut springs,
@@ -31,6 +33,8 @@ pub(super) fn read(
 
 /// Output of the body reader.
 struct Tree<'t> {
+    /// Names of the bodies so far.
+    names: BTreeSet<String>,
     model: &'t mut Model,
     sites: &'t mut Sites,
     springs: &'t mut Vec<SpringDamper>,
@@ -73,15 +77,16 @@ fn body(
     class: &str,
     tree: &mut Tree<'_>,
 ) {
-    let model = &mut *tree.model;
     let files = reader.files;
+    let count = tree.model.bodies.len();
     let name = element
         .get("name")
-        .map_or_else(|| format!("body{}", model.bodies.len()), str::to_owned);
-    if model.body_named(&name).is_some() {
+        .map_or_else(|| format!("body{count}"), str::to_owned);
+    if !tree.names.insert(name.clone()) {
         let message = format!("two bodies have the name `{name}`");
         files.report(&element.place, message, "give each body a name of its own");
     }
+    let model = &mut *tree.model;
     let mut joints = Vec::new();
     gather_joints(reader, element, &Pose::identity(), class, &mut joints);
     let mut placement = offset * reader.compiler.frame(files, element);
@@ -276,7 +281,7 @@ fn spring_damper(
 /// Limits of a joint, if it is limited.
 fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]> {
     let limits: [f64; 2] = element.numbers(reader.files, "range")?;
-    let is_limited = match element.get("limited") {
+    let is_limited = match element.keyword(reader.files, "limited", BOOLEAN_OR_AUTO) {
         Some("true") => true,
         Some("false") => false,
         _ => reader.compiler.limits_ranges,

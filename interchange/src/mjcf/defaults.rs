@@ -94,10 +94,7 @@ impl Defaults {
         let name = named.map_or(around, |(name, _)| name);
         let Some(class) = self.classes.get(name) else {
             let place = named.map_or(&element.place, |(_, place)| place);
-            let near = overact_description::diagnostic::did_you_mean(
-                name,
-                self.classes.keys().map(String::as_str),
-            );
+            let near = files.did_you_mean(name, self.classes.keys().map(String::as_str));
             let help = near.unwrap_or_else(|| "name a class of <default>".to_owned());
             files.report(place, format!("there is no default class `{name}`"), help);
             return whole;

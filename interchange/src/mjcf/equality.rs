@@ -1,7 +1,7 @@
 //! Equality constraints: coincident points and frames, and joint couplings.
 
 use super::{
-    Reader, Sites,
+    BOOLEAN, Reader, Sites,
     defaults::{EQUALITY, MAIN},
 };
 use crate::{
@@ -23,7 +23,7 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
             let whole = reader
                 .defaults
                 .apply_as(EQUALITY, reader.files, element, MAIN);
-            if whole.get("active") == Some("false") {
+            if whole.keyword(reader.files, "active", BOOLEAN) == Some("false") {
                 let reason = "inactive";
                 let tag = &whole.name;
                 reader
@@ -81,10 +81,7 @@ fn frames(
             let name = element.required(files, key)?;
             let found = sites.get(name).copied();
             if found.is_none() {
-                let near = overact_description::diagnostic::did_you_mean(
-                    name,
-                    sites.keys().map(String::as_str),
-                );
+                let near = files.did_you_mean(name, sites.keys().map(String::as_str));
                 let help = near.unwrap_or_else(|| "name a site of a body".to_owned());
                 files.report(&element.place, format!("there is no site `{name}`"), help);
             }
@@ -110,7 +107,7 @@ fn frames(
         };
         if found.is_none() {
             let all = model.bodies.iter().map(|body| body.name.as_str());
-            let near = overact_description::diagnostic::did_you_mean(name, all);
+            let near = files.did_you_mean(name, all);
             let help = near.unwrap_or_else(|| "name a body".to_owned());
             files.report(&element.place, format!("there is no body `{name}`"), help);
         }
@@ -155,7 +152,7 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut
         let found = model.joint_named(name);
         if found.is_none() {
             let all = model.joints.iter().map(|joint| joint.name.as_str());
-            let near = overact_description::diagnostic::did_you_mean(name, all);
+            let near = files.did_you_mean(name, all);
             let help = near.unwrap_or_else(|| "name a joint".to_owned());
             files.report(&element.place, format!("there is no joint `{name}`"), help);
         }

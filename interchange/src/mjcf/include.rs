@@ -10,8 +10,9 @@ use std::path::PathBuf;
 
 /// Largest depth of nested includes.
 const DEPTH: usize = 30;
-/// Largest number of files.
+/// Largest number of files; a file counts as often as it is included.
 const FILES: usize = 500;
+
 /// File with its includes, as one element; `None` after an error.
 pub(super) fn whole(files: &Files, file: usize) -> Option<Element> {
     let mut root = xml::parse(files, file)?;
@@ -50,15 +51,31 @@ fn expand(
             (Ok(a), Ok(b)) => a == b,
             _ => *other == path,
         };
-        if open.iter().any(same) || open.len() > DEPTH || files.count() > FILES {
-            let message = format!("`{name}` includes itself");
-            files.report(place, message, "remove one of the includes");
+        let problem = if open.iter().any(same) {
+            Some((
+                format!("`{name}` includes itself"),
+                "remove one of the includes",
+            ))
+        } else if open.len() > DEPTH {
+            let message = format!("includes are nested more than {DEPTH} deep");
+            Some((message, "describe the robot in fewer files"))
+        } else if files.count() > FILES {
+            let message = format!("more than {FILES} files are included, counting repetitions");
+            Some((message, "include each file once, or use fewer files"))
+        } else {
+            None
+        };
+        if let Some((message, help)) = problem {
+            files.report(place, message, help);
             return None;
         }
         let Some(file) = files.read(&path, Some(place)) else {
             continue;
         };
         let Some(mut included) = xml::parse(files, file) else {
+            if files.elements_left() == 0 {
+                return None;
+            }
             continue;
         };
         open.push(path);

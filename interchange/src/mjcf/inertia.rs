@@ -1,6 +1,6 @@
 //! Inertias of bodies from `<inertial>` or from geoms, computed as in MuJoCo.
 
-use super::Reader;
+use super::{BOOLEAN, Reader};
 use crate::{
     account::Use,
     files::Files,
@@ -26,18 +26,41 @@ pub(super) fn read(reader: &Reader<'_>, body: &Element, class: &str) -> (Option<
 
 /// `<inertial>` of a body, possibly inside a frame of the body.
 fn inertial(reader: &Reader<'_>, element: &Element, offset: &Pose) -> Option<Inertia> {
-    if let Some(own) = element.child("inertial") {
-        return Some(of_inertial(reader, own).seen(offset));
+    let mut all = Vec::new();
+    gather_inertials(reader, element, offset, &mut all);
+    if let Some((second, _)) = all.get(1) {
+        let message = "a body has a second <inertial>";
+        reader
+            .files
+            .report(&second.place, message, "keep one of them");
     }
-    element.all("frame").find_map(|frame| {
+    let (own, offset) = all.first()?;
+    Some(of_inertial(reader, own).seen(offset))
+}
+
+/// `<inertial>` elements of a body and of frames in it, with the poses of these frames.
+fn gather_inertials<'e>(
+    reader: &Reader<'_>,
+    element: &'e Element,
+    offset: &Pose,
+    all: &mut Vec<(&'e Element, Pose)>,
+) {
+    all.extend(element.child("inertial").map(|own| (own, *offset)));
+    for frame in element.all("frame") {
         let offset = offset * reader.compiler.frame(reader.files, frame);
-        inertial(reader, frame, &offset)
-    })
+        gather_inertials(reader, frame, &offset, all);
+    }
 }
 
 fn of_inertial(reader: &Reader<'_>, inertial: &Element) -> Inertia {
     let files = reader.files;
     let mass = inertial.number(files, "mass", 0.0);
+    if mass < 0.0 {
+        let place = inertial.attribute("mass").map(|(_, place)| place);
+        let place = place.unwrap_or(&inertial.place);
+        let help = "give a mass that is zero or more";
+        files.report(place, "a mass is negative", help);
+    }
     let frame = reader.compiler.frame(files, inertial);
     if let Some([xx, yy, zz, xy, xz, yz]) = inertial.numbers(files, "fullinertia") {
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
@@ -120,11 +143,19 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
         .map(|_| geom.number(files, "mass", 0.0));
     let density = geom.number(files, "density", DENSITY);
     let kind = geom.get("type").unwrap_or("sphere");
-    let is_without_volume = matches!(kind, "plane" | "hfield");
-    if group < low || group > high || is_without_volume || mass.unwrap_or(density) == 0.0 {
+    for key in ["mass", "density"] {
+        if let Some((_, place)) = geom
+            .attribute(key)
+            .filter(|_| geom.number(files, key, 0.0) < 0.0)
+        {
+            let message = format!("a {key} is negative");
+            files.report(place, message, format!("give a {key} that is zero or more"));
+        }
+    }
+    if group < low || group > high || kind == "plane" || mass.unwrap_or(density) == 0.0 {
         return Shape::Empty;
     }
-    let is_solid = geom.get("shellinertia") != Some("true");
+    let is_solid = geom.keyword(files, "shellinertia", BOOLEAN) != Some("true");
     let solid = solid(reader, geom, kind).filter(|_| is_solid && geom.get("mesh").is_none());
     let Some((volume, unit)) = solid else {
         return Shape::Unknown;

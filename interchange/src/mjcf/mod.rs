@@ -34,13 +34,19 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         defaults: Defaults::new(files, &root)?,
         options,
     };
+    let mut has_gravity = true;
     for option in root.all("option") {
         if let Some(gravity) = option.numbers(files, "gravity") {
             model.gravity = gravity;
         }
-        if option.child("flag").and_then(|flag| flag.get("gravity")) == Some("disable") {
-            model.gravity = [0.0; 3];
+        let flag = option.child("flag");
+        let said = flag.and_then(|flag| flag.keyword(files, "gravity", &["enable", "disable"]));
+        if let Some(word) = said {
+            has_gravity = word == "enable";
         }
+    }
+    if !has_gravity {
+        model.gravity = [0.0; 3];
     }
     let mut sites = BTreeMap::new();
     let springs = bodies::read(&reader, &root, &mut model, &mut sites);
@@ -54,6 +60,11 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     adjust::springs(files, &mut model, &springs);
     files.is_clean().then_some(model)
 }
+
+/// Words of a boolean attribute.
+const BOOLEAN: &[&str] = &["true", "false"];
+/// Words of an attribute that is true, false or chosen by MuJoCo.
+const BOOLEAN_OR_AUTO: &[&str] = &["true", "false", "auto"];
 
 /// Context for reading elements.
 struct Reader<'r> {
@@ -120,8 +131,10 @@ impl Compiler {
                 let message = format!("coordinates of the kind `{value}` are not supported");
                 files.report(place, message, "save the model with local coordinates");
             }
-            own.limits_ranges &= compiler.get("autolimits") != Some("false");
-            match compiler.get("inertiafromgeom") {
+            if let Some(word) = compiler.keyword(files, "autolimits", BOOLEAN) {
+                own.limits_ranges = word == "true";
+            }
+            match compiler.keyword(files, "inertiafromgeom", BOOLEAN_OR_AUTO) {
                 Some("true") => own.inertia_from_geometry = Some(true),
                 Some("false") => own.inertia_from_geometry = Some(false),
                 Some("auto") => own.inertia_from_geometry = None,

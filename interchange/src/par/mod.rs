@@ -7,7 +7,7 @@ mod expression;
 mod text;
 
 use crate::{
-    account::PAR,
+    account::{PAR, Use},
     files::{Files, Place},
     frames::step::Step,
     geometry::exact,
@@ -19,6 +19,16 @@ use expression::{Fault, symbols, value};
 use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeMap;
 use text::{Entries, entries, robot_name};
+
+/// Keys with one value for each link, each joint, and each frame.
+const KEYS: [&str; 3] = [
+    "XX XY XZ YY YZ ZZ MX MY MZ M",
+    "IA FV FS MU",
+    "ANT SIGMA B D R GAMMA ALPHA THETA",
+];
+
+/// Tolerance of linear positions, rad or m; larger than the rounding of right angles.
+const LINEAR: f64 = 1e-6;
 
 /// Largest number of frames.
 const FRAMES: usize = 1000;
@@ -88,6 +98,7 @@ impl Reader<'_> {
             }
         }
         self.gravity(model);
+        self.report_further_values([links, joints, frames]);
         let table = self.table(frames)?;
         let mut variables = BTreeMap::new();
         model.says_motors = self.entries.contains_key("MU");
@@ -114,13 +125,29 @@ impl Reader<'_> {
                 name: format!("link{number}"),
                 parent: frame.antecedent,
                 placement,
-                place: None,
+                place: Some(frame.place.clone()),
                 joint,
                 inertia,
                 has_unknown_inertia: is_unknown,
             });
         }
         self.files.is_clean().then_some(())
+    }
+
+    /// Reports nonzero values beyond the last link, joint or frame.
+    fn report_further_values(&self, counts: [usize; 3]) {
+        for (keys, most) in KEYS.iter().zip(counts) {
+            for key in keys.split_whitespace() {
+                let values = self.entries.get(key).map(|(_, values)| values.as_slice());
+                for (text, place) in values.unwrap_or_default().iter().skip(most) {
+                    if value(text, &self.symbols).is_ok_and(|value| value != 0.0) {
+                        let reason = "values beyond the last link, joint or frame are not used";
+                        self.files
+                            .record(Use::Reported, place, "par", Some(key), reason);
+                    }
+                }
+            }
+        }
     }
 
     /// Antecedents and types of the frames.
@@ -211,7 +238,18 @@ impl Reader<'_> {
         };
         let zero = self.step(at, &BTreeMap::from([(variable.clone(), 0.0)]))?;
         let one = self.step(at, &BTreeMap::from([(variable.clone(), 1.0)]))?;
+        let two = self.step(at, &BTreeMap::from([(variable.clone(), 2.0)]))?;
         let factor = one.theta - zero.theta + one.r - zero.r;
+        let next_factor = two.theta - one.theta + two.r - one.r;
+        if (next_factor - factor).abs() > LINEAR {
+            let message = format!(
+                "the position of joint {} is `{text}`, which is not linear",
+                at + 1
+            );
+            let help = "a joint's position is a variable, or a multiple of another joint's, plus a constant";
+            self.files.report(place, message, help);
+            return None;
+        }
         let mut joint = Joint::new(&name, kind, place.clone());
         match variables.get(variable) {
             Some(&leader) => {
@@ -274,6 +312,11 @@ impl Reader<'_> {
             // Base parameters are moments without mass and cannot serve as a prior.
             let is_empty = first == Vector3::zeros() && about == Matrix3::zeros();
             return Some((None, !is_empty));
+        }
+        if mass < 0.0 {
+            let (_, place) = self.entry("M", at)?;
+            let help = "give a mass that is zero or more, or a symbol if it is unknown";
+            self.files.report(place, "a mass is negative", help);
         }
         let centre = Point3::from(first / mass);
         let own = Inertia {

@@ -44,7 +44,7 @@ fn mimic(
     let own = &gathered.joints[item];
     let mimic = own.element.child(tag)?.child("mimic")?;
     let name = mimic.required(files, "joint")?;
-    let leading = match mimic.get("axis") {
+    let leading = match mimic.keyword(files, "axis", &["axis", "axis2"]) {
         Some("axis2") => "axis2",
         _ => "axis",
     };

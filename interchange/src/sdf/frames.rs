@@ -137,7 +137,7 @@ impl Frames {
             let scope = &self.scopes[name.scope];
             let own = self.by_name.keys();
             let own = own.filter_map(|whole| whole.strip_prefix(scope.prefix.as_str()));
-            let near = overact_description::diagnostic::did_you_mean(&name.text, own);
+            let near = files.did_you_mean(&name.text, own);
             let message = format!("there is no link, joint, frame or model `{}`", name.text);
             let help =
                 "name one of the same model, one of a model in it as `model::name`, or `__model__`";

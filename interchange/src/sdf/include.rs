@@ -1,6 +1,9 @@
 //! `<include>`: reads the model of another file in the including file's folder or below.
 
-use super::{value::text, version};
+use super::{
+    value::{attribute_flag, text},
+    version,
+};
 use crate::{
     account::SDF,
     bounds,
@@ -111,7 +114,7 @@ impl Include<'_> {
             return None;
         }
         if files.count() > FILES {
-            let message = format!("more than {FILES} files are included");
+            let message = format!("more than {FILES} files are included, counting repetitions");
             files.report(self.place, message, "describe the robot in fewer files");
             return None;
         }
@@ -129,7 +132,7 @@ impl Include<'_> {
         let source = Source {
             version,
             from: Some(path.to_owned()),
-            is_merged: matches!(self.element.get("merge"), Some("true" | "1")),
+            is_merged: attribute_flag(files, self.element, "merge"),
         };
         Some((Box::new(changed(model.clone(), self.element)), source))
     }

@@ -28,6 +28,7 @@ pub(super) struct Axis {
 ///
 /// Directions are in the frame of the joint.
 pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis>> {
+    report_unused_axes(gathered, item);
     let one = |kind, tag, name: String| axis(gathered, item, kind, tag, name);
     let name = || item.name.clone();
     let numbered = |at: usize| format!("{}_{at}", item.name);
@@ -82,6 +83,21 @@ pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis
             return None;
         }
     })
+}
+
+/// Reports axes that a joint's type does not have.
+fn report_unused_axes(gathered: &Gathered<'_>, item: &JointItem) {
+    let unused: &[&str] = match item.element.get("type") {
+        Some("universal" | "revolute2" | "gearbox" | "fixed") => &[],
+        Some("ball") => &["axis", "axis2"],
+        _ => &["axis2"],
+    };
+    for tag in unused {
+        if let Some(element) = item.element.child(tag) {
+            let reason = "not used: joints of this type have no such axis";
+            gathered.files.demote(&element.place, tag, None, reason);
+        }
+    }
 }
 
 fn axis(

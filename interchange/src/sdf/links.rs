@@ -2,7 +2,7 @@
 
 use super::{
     gather::{Gathered, Link},
-    value::{flag, number, pose, told_in},
+    value::{attribute_flag, flag, number, pose, told_in},
 };
 use crate::model::{Inertia, Model};
 use nalgebra::{Matrix3, Point3};
@@ -13,7 +13,7 @@ pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>,
     let Some(inertial) = link.element.child("inertial") else {
         return (Some(usual()), false);
     };
-    if matches!(inertial.get("auto"), Some("true" | "1")) {
+    if attribute_flag(files, inertial, "auto") {
         let reason = "inertias from collision shapes and densities are not computed: the link's has no value";
         files.demote(&inertial.place, "inertial", Some("auto"), reason);
         return (None, true);

@@ -59,10 +59,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     let around = world.unwrap_or(&root);
     let mut model = Model::new("robot");
     if let Some(world) = world {
-        model.gravity = match world.child("gravity") {
-            Some(own) => several(files, own)?,
-            None => GRAVITY,
-        };
+        model.gravity = gravity(files, world, version)?;
     }
     let path = files.path(file);
     let models = models(files, around, version, &path)?;
@@ -97,6 +94,27 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     let (edges, axes) = tree::build(&gathered, options, &mut model)?;
     couplings::read(&gathered, &edges, &axes, &mut model);
     files.is_clean().then_some(model)
+}
+
+/// Gravity of a world; `None` after an error.
+///
+/// Up to SDFormat 1.5 it is an element of `<physics>`.
+fn gravity(files: &Files, world: &Element, version: (u32, u32)) -> Option<[f64; 3]> {
+    let own = world.child("gravity");
+    let physics = world.all("physics");
+    let in_physics: Vec<&Element> = physics.filter_map(|own| own.child("gravity")).collect();
+    let used = match own {
+        None if version <= (1, 5) => in_physics.first().copied(),
+        own => own,
+    };
+    for unused in in_physics {
+        let is_used = used.is_some_and(|used| used.place == unused.place);
+        if !is_used {
+            let reason = "not used: gravity is that of the world, or of its first <physics> up to SDFormat 1.5";
+            files.demote(&unused.place, "gravity", None, reason);
+        }
+    }
+    used.map_or(Some(GRAVITY), |used| several(files, used))
 }
 
 /// SDFormat version of a file; `None` after an error.
@@ -182,8 +200,7 @@ fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) 
     if let Some(wanted) = &options.model {
         let found = (0..models.len()).find(|&at| name(at) == wanted);
         if found.is_none() {
-            let near =
-                overact_description::diagnostic::did_you_mean(wanted, (0..models.len()).map(name));
+            let near = files.did_you_mean(wanted, (0..models.len()).map(name));
             let help = near.unwrap_or_else(|| "name a <model> of the file".to_owned());
             files.report(&around.place, format!("there is no model `{wanted}`"), help);
         }

@@ -59,11 +59,22 @@ pub(super) fn limit(files: &Files, of: &Element, tag: &str) -> Option<f64> {
 
 /// Whether a child element is true; false if absent or invalid.
 pub(super) fn flag(files: &Files, of: &Element, tag: &str) -> bool {
-    match text(of, tag) {
-        None | Some(("false" | "0" | "False", _)) => false,
-        Some(("true" | "1" | "True", _)) => true,
-        Some((other, place)) => {
-            let message = format!("`{other}` is neither true nor false");
+    text(of, tag).is_some_and(|value| is_true(files, value))
+}
+
+/// Whether an attribute is true; false if absent or invalid.
+pub(super) fn attribute_flag(files: &Files, of: &Element, name: &str) -> bool {
+    of.attribute(name)
+        .is_some_and(|value| is_true(files, value))
+}
+
+/// Whether a boolean is true; capitals do not matter, as in libsdformat.
+fn is_true(files: &Files, (text, place): (&str, &Place)) -> bool {
+    match text.trim().to_ascii_lowercase().as_str() {
+        "false" | "0" => false,
+        "true" | "1" => true,
+        _ => {
+            let message = format!("`{text}` is neither true nor false");
             files.report(place, message, "write true or false");
             false
         }
@@ -85,7 +96,7 @@ pub(super) fn pose(files: &Files, element: Option<&Element>) -> Pose {
             ([x, y, z], rotation.unwrap_or_default())
         }),
         None | Some("euler_rpy") => several(files, element).map(|[x, y, z, r, p, q]| {
-            let in_degrees = matches!(element.get("degrees"), Some("true" | "1"));
+            let in_degrees = attribute_flag(files, element, "degrees");
             let angle = |v: f64| if in_degrees { v.to_radians() } else { v };
             ([x, y, z], exact::roll_pitch_yaw([r, p, q].map(angle)))
         }),

@@ -75,6 +75,10 @@ fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
             return;
         };
         match value(&text, 0) {
+            Some(_) if entries.contains_key(&key) => {
+                let message = format!("`{key}` occurs twice");
+                files.report(&place, message, "keep one of them");
+            }
             Some(value) => drop(entries.insert(key, (place, value))),
             None => files.report(
                 &place,

@@ -89,8 +89,7 @@ fn edges<'e>(files: &Files, root: &'e Element, links: &Links<'e>) -> Vec<Edge<'e
             let link = end.required(files, "link")?;
             if !links.contains_key(link) {
                 let message = format!("there is no link `{link}`");
-                let near =
-                    overact_description::diagnostic::did_you_mean(link, links.keys().copied());
+                let near = files.did_you_mean(link, links.keys().copied());
                 let help = near.unwrap_or_else(|| "name a <link>".to_owned());
                 files.report(&end.place, message, help);
                 return None;
@@ -195,6 +194,10 @@ pub(super) fn axis(files: &Files, of: &Element) -> Option<Vector3<f64>> {
     let Some(element) = of.child("axis") else {
         return Some(Vector3::x());
     };
+    if element.get("xyz").is_none() {
+        let reason = "absent: the axis is x in the model";
+        files.record(Use::Reported, &element.place, "axis", Some("xyz"), reason);
+    }
     let xyz = element.numbers(files, "xyz").unwrap_or([1.0, 0.0, 0.0]);
     let found = exact::direction(xyz);
     if found.is_none() {

@@ -96,11 +96,18 @@ fn body(files: &Files, link: &Element, parent: usize, placement: Pose) -> Body {
 }
 
 fn inertia(files: &Files, inertial: &Element) -> Inertia {
-    for tag in ["mass", "inertia"] {
-        if inertial.child(tag).is_none() {
+    let reason = "absent: zero in the model";
+    for (tag, values) in [
+        ("mass", &["value"][..]),
+        ("inertia", &["ixx", "iyy", "izz"]),
+    ] {
+        let Some(own) = inertial.child(tag) else {
             let place = &inertial.place;
-            let reason = "absent: zero in the model";
             files.record(Use::Reported, place, "inertial", Some(tag), reason);
+            continue;
+        };
+        for value in values.iter().filter(|value| own.get(value).is_none()) {
+            files.record(Use::Reported, &own.place, tag, Some(value), reason);
         }
     }
     let mass = inertial
@@ -140,7 +147,7 @@ impl Tree {
         if found.is_none() {
             let message = format!("there is no link or joint `{name}`");
             let names = self.bodies.keys().map(String::as_str);
-            let help = overact_description::diagnostic::did_you_mean(name, names);
+            let help = files.did_you_mean(name, names);
             files.report(
                 place,
                 message,

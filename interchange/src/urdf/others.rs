@@ -3,7 +3,7 @@
 use super::Tree;
 use crate::{
     account::Use,
-    files::{Files, Place},
+    files::{Files, Place, is_standard_input},
 };
 use std::path::Path;
 
@@ -13,6 +13,9 @@ const LARGEST: u64 = 1 << 20;
 /// Reports YAML files of other names in the folder that close loops of this robot.
 pub(super) fn report(files: &Files, file: usize, tree: &Tree) {
     let path = files.path(file);
+    if is_standard_input(&path) {
+        return;
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
     let here = if folder.as_os_str().is_empty() {
         Path::new(".")
