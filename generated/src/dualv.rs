@@ -2197,7 +2197,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
@@ -2265,7 +2265,7 @@ impl DualV {
                         &mut output[0],
                         [3, 15],
                         at,
-                        ::overact::lanes::signed(g1_vx_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[0], [4, 15], at, g1_vx_leg);
                     ::overact::simd::put(
@@ -2302,7 +2302,7 @@ impl DualV {
                         &mut output[0],
                         [10, 15],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(
                         &mut output[0],
@@ -2320,7 +2320,7 @@ impl DualV {
                         &mut output[0],
                         [13, 15],
                         at,
-                        ::overact::lanes::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put(&mut output[0], [14, 15], at, minus_g2_vx_leg);
                     ::overact::simd::put(&mut output[1], [0, 15], at, zz_1_leg_on_vy);
@@ -2335,7 +2335,7 @@ impl DualV {
                         &mut output[1],
                         [3, 15],
                         at,
-                        ::overact::lanes::signed(g1_vy_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[1], [4, 15], at, g1_vy_leg);
                     ::overact::simd::put(
@@ -2372,7 +2372,7 @@ impl DualV {
                         &mut output[1],
                         [10, 15],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(
                         &mut output[1],
@@ -2390,7 +2390,7 @@ impl DualV {
                         &mut output[1],
                         [13, 15],
                         at,
-                        ::overact::lanes::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put(&mut output[1], [14, 15], at, minus_g2_vy_leg);
                     ::overact::simd::put(
@@ -2415,7 +2415,7 @@ impl DualV {
                         &mut output[2],
                         [3, 15],
                         at,
-                        -::overact::lanes::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [4, 15], at, -minus_g1_wz_leg);
                     ::overact::simd::put(
@@ -2452,7 +2452,7 @@ impl DualV {
                         &mut output[2],
                         [10, 15],
                         at,
-                        -::overact::lanes::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [11, 15], at, gq2_wz_leg);
                     ::overact::simd::put(
@@ -2465,7 +2465,7 @@ impl DualV {
                         &mut output[2],
                         [13, 15],
                         at,
-                        ::overact::lanes::signed(gq3_wz_leg, qd_3_leg, at),
+                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [14, 15], at, gq3_wz_leg);
                 }
@@ -6202,7 +6202,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -6266,7 +6266,7 @@ impl DualV {
                         &mut output[0],
                         [12, 1],
                         at,
-                        ::overact::lanes::signed(g1_vx_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[0], [16, 1], at, g1_vx_leg);
                     ::overact::simd::put(
@@ -6291,7 +6291,7 @@ impl DualV {
                         &mut output[0],
                         [32, 1],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(&mut output[0], [36, 1], at, -minus_gq2_vx_leg);
                     ::overact::simd::put(
@@ -6304,7 +6304,7 @@ impl DualV {
                         &mut output[0],
                         [44, 1],
                         at,
-                        ::overact::lanes::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put_of_first(
                         &mut output[0],
@@ -6329,7 +6329,7 @@ impl DualV {
                         &mut output[1],
                         [12, 1],
                         at,
-                        ::overact::lanes::signed(g1_vy_leg, rate_1_leg, at),
+                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[1], [16, 1], at, g1_vy_leg);
                     ::overact::simd::put(
@@ -6354,7 +6354,7 @@ impl DualV {
                         &mut output[1],
                         [32, 1],
                         at,
-                        ::overact::lanes::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(&mut output[1], [36, 1], at, -minus_gq2_vy_leg);
                     ::overact::simd::put(
@@ -6367,7 +6367,7 @@ impl DualV {
                         &mut output[1],
                         [44, 1],
                         at,
-                        ::overact::lanes::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put_of_first(
                         &mut output[1],
@@ -6392,7 +6392,7 @@ impl DualV {
                         &mut output[2],
                         [12, 1],
                         at,
-                        -::overact::lanes::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [16, 1], at, -minus_g1_wz_leg);
                     ::overact::simd::put(
@@ -6417,7 +6417,7 @@ impl DualV {
                         &mut output[2],
                         [32, 1],
                         at,
-                        -::overact::lanes::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
                     ::overact::simd::put(&mut output[2], [36, 1], at, gq2_wz_leg);
                     ::overact::simd::put(
@@ -6430,7 +6430,7 @@ impl DualV {
                         &mut output[2],
                         [44, 1],
                         at,
-                        ::overact::lanes::signed(gq3_wz_leg, qd_3_leg, at),
+                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
                     );
                     ::overact::simd::put_of_first(
                         &mut output[2],
@@ -10504,7 +10504,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -10554,14 +10554,14 @@ impl DualV {
                     let t4_leg = own_parameters[4]
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[2] * rate_1_leg
-                        + ::overact::lanes::signed(own_parameters[3], rate_1_leg, at)
+                        + ::overact::simd::signed(own_parameters[3], rate_1_leg, at)
                         + rate_dot_1_leg
                             * (own_parameters[6] + L_AB_SQUARED * own_parameters[5]
                                 + own_parameters[7]);
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[10]
                         - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_parameters[9],
                                 minus_qd_2_leg,
                                 at,
@@ -10575,7 +10575,7 @@ impl DualV {
                         - own_parameters[11] * minus_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::lanes::signed(own_parameters[13], qd_3_leg, at)
+                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
                         + own_parameters[14];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -11705,7 +11705,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -11742,7 +11742,7 @@ impl DualV {
                         + L_AB_SQUARED * rate_1_squared_leg;
                     let t4_leg = own_base_parameters[1] * INV_L_AB;
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::lanes::signed(
+                        + ::overact::simd::signed(
                             own_base_parameters[3],
                             rate_1_leg,
                             at,
@@ -11750,7 +11750,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_base_parameters[6],
                                 minus_qd_2_leg,
                                 at,
@@ -11763,7 +11763,7 @@ impl DualV {
                         * minus_rate_dot_2_leg + minus_a_on_f1_leg * t4_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::lanes::signed(own_base_parameters[10], qd_3_leg, at)
+                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
                         + own_base_parameters[11];
                     let force_on_u2_leg = tau_2_leg - minus_moment2_z_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -12766,7 +12766,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13179,7 +13179,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13614,7 +13614,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13660,7 +13660,7 @@ impl DualV {
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - l_ab_squared_rate_1_squared_leg * c2_leg);
                     let t2_leg = own_parameters[4]
-                        + ::overact::lanes::signed(own_parameters[0], rate_1_leg, at)
+                        + ::overact::simd::signed(own_parameters[0], rate_1_leg, at)
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[3] * rate_1_leg
                         - minus_bias_rate_dot_1_leg
@@ -13669,7 +13669,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[10]
                         - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_parameters[9],
                                 minus_qd_2_leg,
                                 at,
@@ -13683,7 +13683,7 @@ impl DualV {
                         - own_parameters[11] * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::lanes::signed(own_parameters[13], qd_3_leg, at)
+                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
                         + own_parameters[14];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -13850,7 +13850,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -13885,7 +13885,7 @@ impl DualV {
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::lanes::signed(
+                        + ::overact::simd::signed(
                             own_base_parameters[3],
                             rate_1_leg,
                             at,
@@ -13893,7 +13893,7 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_base_parameters[6],
                                 minus_qd_2_leg,
                                 at,
@@ -13907,7 +13907,7 @@ impl DualV {
                         - own_base_parameters[8] * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::lanes::signed(own_base_parameters[10], qd_3_leg, at)
+                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
                         + own_base_parameters[11];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
@@ -14088,7 +14088,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -14154,14 +14154,14 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_parameters[8]
                         - (own_parameters[6] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_parameters[7],
                                 minus_qd_2_leg,
                                 at,
                             ));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_parameters[9] * qd_3_leg
-                        + ::overact::lanes::signed(own_parameters[10], qd_3_leg, at)
+                        + ::overact::simd::signed(own_parameters[10], qd_3_leg, at)
                         + own_parameters[11];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let force2_x_leg = own_parameters[4] * minus_bias_rate_dot_2_leg
@@ -14169,7 +14169,7 @@ impl DualV {
                     let minus_force2_y_leg = own_parameters[3]
                         * minus_bias_rate_dot_2_leg
                         + own_parameters[4] * rate_2_squared_leg;
-                    let t6_leg = ::overact::lanes::signed(
+                    let t6_leg = ::overact::simd::signed(
                         own_parameters[12],
                         rate_1_leg,
                         at,
@@ -14423,7 +14423,7 @@ impl DualV {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
@@ -14486,20 +14486,20 @@ impl DualV {
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[5]
                         - (own_base_parameters[3] * minus_qd_2_leg
-                            + ::overact::lanes::signed(
+                            + ::overact::simd::signed(
                                 own_base_parameters[4],
                                 minus_qd_2_leg,
                                 at,
                             ));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let tau_3_leg = own_base_parameters[6] * qd_3_leg
-                        + ::overact::lanes::signed(own_base_parameters[7], qd_3_leg, at)
+                        + ::overact::simd::signed(own_base_parameters[7], qd_3_leg, at)
                         + own_base_parameters[8];
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
                     let tau_1_leg = own_base_parameters[9] * rate_1_leg
-                        + ::overact::lanes::signed(
+                        + ::overact::simd::signed(
                             own_base_parameters[10],
                             rate_1_leg,
                             at,

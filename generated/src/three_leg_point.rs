@@ -7438,7 +7438,7 @@ impl ThreeLegPoint {
                         &LEGS,
                         at,
                     );
-                    let h_leg = ::overact::lanes::sqrt(h_squared_leg);
+                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let c12_leg = INV_L_1 * l2_x_leg;
@@ -7484,7 +7484,7 @@ impl ThreeLegPoint {
                     let moment2_z_leg = L_1 * (t5_leg - t6_leg)
                         - own_parameters[5] * minus_bias_rate_dot_2_leg;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let minus_tau_2_leg = ::overact::lanes::signed(
+                    let minus_tau_2_leg = ::overact::simd::signed(
                         own_parameters[6],
                         minus_qd_2_leg,
                         at,
@@ -7498,7 +7498,7 @@ impl ThreeLegPoint {
                     let t7_leg = own_parameters[9]
                         + L_1 * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
                         + own_parameters[7] * rate_1_leg
-                        + ::overact::lanes::signed(own_parameters[8], rate_1_leg, at)
+                        + ::overact::simd::signed(own_parameters[8], rate_1_leg, at)
                         + bias_rate_dot_1_leg * masses_leg_1_1;
                     let force_on_u1_leg = minus_tau_2_leg + t7_leg;
                     let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;

@@ -105,7 +105,7 @@ impl<'a> Writer<'a> {
         Self {
             inputs,
             float: Float::F64,
-            math: quote!(::overact::lanes),
+            math: quote!(::overact::simd),
             of_legs: quote!(, at),
         }
     }
