@@ -11742,11 +11742,8 @@ impl DualV {
                         + L_AB_SQUARED * rate_1_squared_leg;
                     let t4_leg = own_base_parameters[1] * INV_L_AB;
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(
-                            own_base_parameters[3],
-                            rate_1_leg,
-                            at,
-                        ) + own_base_parameters[4];
+                        + ::overact::simd::signed(own_base_parameters[3], rate_1_leg, at)
+                        + own_base_parameters[4];
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg
@@ -13885,11 +13882,8 @@ impl DualV {
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
                     let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(
-                            own_base_parameters[3],
-                            rate_1_leg,
-                            at,
-                        ) + own_base_parameters[4];
+                        + ::overact::simd::signed(own_base_parameters[3], rate_1_leg, at)
+                        + own_base_parameters[4];
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
                     let tau_2_leg = own_base_parameters[7]
                         - (own_base_parameters[5] * minus_qd_2_leg

@@ -7,7 +7,7 @@
 ///
 /// # Operations
 ///
-/// Additions, multiplications (those with a sign and by constants, too) and divisions of each function, all that it calls included; beside them √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. What an iteration takes is said for each of its steps.
+/// Additions, multiplications (including those by signs and constants) and divisions of each function and of all functions that it calls; then √ square roots, sc sine-cosine pairs, at arc tangents, sg signs of velocities, gd guards. Iterations have the counts of one step.
 ///
 /// | function | once | each step |
 /// |---|---|---|
@@ -19,39 +19,39 @@
 ///
 /// | name | symbol | meaning |
 /// |---|---|---|
-/// | `c_phi` | cos φ | of the platform's angle |
-/// | `s_phi` | sin φ | of the platform's angle |
-/// | `p_x_leg3` | p | from the platform's origin to the leg's end, base axes, m |
-/// | `d_x_leg1` | D | from the leg's first joint to its end, in the leg's plane, m |
+/// | `c_phi` | cos φ | cosine of the platform angle |
+/// | `s_phi` | sin φ | sine of the platform angle |
+/// | `p_x_leg3` | p | vector from the platform's origin to the leg's end, base axes, m |
+/// | `d_x_leg1` | D | vector from the leg's first joint to its end, in the leg's plane, m |
 /// | `rho_squared_leg1` | ρ² | D · D, m² |
 /// | `h_squared_leg1` | h² | l₁²/ρ² - a², the square of h |
-/// | `h_leg1` | h | the elbow stands at a D ± h D⊥, eq. (7) solved |
-/// | `l1_x_leg1` | l₁ e₁ | the proximal link, in the leg's plane, m |
-/// | `l2_x_leg1` | l₂ e₂ | the distal link, in the leg's plane, m |
-/// | `det_leg1` | det J_k | determinant, or pivot, of the leg's Jacobian J_k, eq. (13), but for a constant |
+/// | `h_leg1` | h | the elbow is at a D ± h D⊥, the solution of eq. (7) |
+/// | `l1_x_leg1` | l₁ e₁ | vector along the proximal link, in the leg's plane, m |
+/// | `l2_x_leg1` | l₂ e₂ | vector along the distal link, in the leg's plane, m |
+/// | `det_leg1` | det J_k | determinant or pivot of the leg's Jacobian J_k, eq. (13), up to a constant factor |
 /// | `k1_leg1` | k_i | common factor of one of the leg's wrenches |
 /// | `rate_1_leg2` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
 /// | `rate_1_squared_leg1` | u_i² | square of a joint rate |
-/// | `rate_dot_1_leg2` | u̇_i | derivative of that rate, eq. (10) |
-/// | `g1_vx_leg1` | ∂u_i/∂v | a row of J_k⁻¹ J_tk, eq. (9): the reduced Jacobian |
-/// | `qd_2_leg1` | q̇_i | rate of a joint, rad/s or m/s, eq. (9) |
+/// | `rate_dot_1_leg2` | u̇_i | derivative of this rate, eq. (10) |
+/// | `g1_vx_leg1` | ∂u_i/∂v | row of the reduced Jacobian J_k⁻¹ J_tk, eq. (9) |
+/// | `qd_2_leg1` | q̇_i | joint rate, rad/s or m/s, eq. (9) |
 /// | `v_end_x_leg1` | Ṗ | velocity of the leg's end, m/s |
 /// | `a_end_x_leg1` | P̈ | acceleration of the leg's end, m/s² |
-/// | `v_arm_x_leg3` | ω × p | velocity of the leg's end beside the platform's origin |
-/// | `a_arm_x_leg1` | ω̇ × p + ω × (ω × p) | acceleration of the leg's end beside the platform's origin |
-/// | `a_on_f2_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, less bias terms b of links that are constant on it |
-/// | `moment2_z_leg1` | m | moment of a body's inertial parameters about its origin |
-/// | `tau_1_leg2` | τ_j | friction, offset and rotor inertia of a joint, eq. (5) |
+/// | `v_arm_x_leg3` | ω × p | velocity of the leg's end relative to the platform's origin |
+/// | `a_arm_x_leg1` | ω̇ × p + ω × (ω × p) | acceleration of the leg's end relative to the platform's origin |
+/// | `a_on_f2_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, minus the bias terms b that do not depend on the pose |
+/// | `moment2_z_leg1` | m | inertial moment of a body about its origin |
+/// | `tau_1_leg2` | τ_j | torque of friction, offset and rotor inertia of a joint, eq. (5) |
 /// | `force_on_u1_leg1` | s_i | generalised force of a leg on u_i; Γ¹ = Σ (∂u_i/∂v)ᵀ s_i, eq. (30) |
 /// | `s_1_1` | S | (J_p^inv)ᵀ J_p^inv, eq. (22) |
-/// | `schur_2_3` | S' | S after elimination of the columns before |
+/// | `schur_2_3` | S' | Schur complement of S after eliminating the previous columns |
 /// | `pivot_2` | d_k | pivot of S = L diag(d) Lᵀ |
-/// | `inv_pivot_1` | 1/d_k | its reciprocal |
+/// | `inv_pivot_1` | 1/d_k | reciprocal pivot |
 /// | `l_2_1` | L | entry of L |
 ///
-/// `minus_a` is -a; `a_b` a product, `a_plus_b` and `a_minus_b` sums, `a_per_b` a quotient, `inv_a` 1/a,
-/// `a_squared` a²; `zz_1_leg1_on_vx` is the entry of that parameter's column in the row of that coordinate;
-/// `t1_leg1` has no name of its own. Platform's names have no leg, or `platform`.
+/// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
+/// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
+/// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -67,7 +67,7 @@ pub struct DualV;
     nonstandard_style,
     unused,
     unused_qualifications,
-    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
+    reason = "straight-line code with the names of the derivation, in any scope"
 )]
 impl DualV {
     /// The robot's name.
@@ -95,27 +95,27 @@ impl DualV {
     ];
     /// Names of the independent coordinates, in the order of the twist.
     pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
-    /// Names of the pose's numbers.
+    /// Names of the pose coordinates.
     pub const POSE_COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
     pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
         0, 3, 6, 9,
     ];
-    /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
+    /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
     pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true, true, true,
     ];
-    /// Kept actuators of case 2.
+    /// Kept actuators of the actuator projection (case 2).
     pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
     pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
-    /// Joint positions of the home configuration, which fixes the working mode (m, rad).
+    /// Joint positions of the home configuration, which defines the working mode (m, rad).
     pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.353104842321743, 1.5754853789017922, -0.7869975676342108, 0.7884878112680508,
         -1.5754853789017937, 3.928590221224005, -0.7884878112680508, 1.5754853789017937,
         -0.7869975676342119, 3.9300804648578436, -1.5754853789017924, -2.3545950859555824,
     ];
-    /// Values of the base parameters, in which all others are regrouped, and of the payload's: constants in the functions (SI).
+    /// Values of the base parameters and of the payload parameters (SI), which the functions contain as constants.
     pub const PARAMETER_VALUES: [(
         &'static ::core::primitive::str,
         ::core::primitive::f64,
@@ -157,7 +157,7 @@ impl DualV {
     /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 4 arc tangents, 8 guards, 2 negations, 88 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn actuator_positions(
         pose: &[::core::primitive::f64; 3],
     ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
@@ -232,7 +232,7 @@ impl DualV {
             ) + 3.9300804648578436,
         ])
     }
-    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
+    /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
     /// From the platform's pose and motion.
     /// - `pose`: x = `[x, y, phi]` (m, rad), in the base frame
@@ -244,7 +244,7 @@ impl DualV {
     /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 481 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
         pose: &[::core::primitive::f64; 3],
         twist: &[::core::primitive::f64; 3],
@@ -586,7 +586,7 @@ impl DualV {
     /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
-    /// An input that is not finite or too large, a pose out of reach, or a singular configuration.
+    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_torques(
         pose: &[::core::primitive::f64; 3],
         torques: &[::core::primitive::f64; 4],
