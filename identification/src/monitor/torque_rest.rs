@@ -12,7 +12,7 @@ const REST_SAMPLES: usize = 20;
 const USUAL: f64 = 0.99;
 
 /// Smallest ratio of an unusual rest's length to usual ones.
-const UNUSUAL: f64 = 20.0;
+const UNUSUAL: f64 = 10.0;
 
 /// Equal torques in a row.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -30,7 +30,8 @@ pub(super) struct TorqueRests {
     current: TorqueRest,
     low: f64,
     high: f64,
-    /// Lengths of all rests, also of a single sample.
+    /// Number of rests, also of a single sample, and their lengths.
+    count: usize,
     lengths: Histogram,
     /// The rest with the largest motion.
     longest: Option<TorqueRest>,
@@ -58,6 +59,7 @@ impl TorqueRests {
         if samples == 0 {
             return;
         }
+        self.count += 1;
         self.lengths.take(samples as f64);
         let moved = self.high - self.low;
         let is_more = self.longest.is_none_or(|known| moved > known.moved);
@@ -71,8 +73,13 @@ impl TorqueRests {
     }
 
     /// The rest with the largest motion, if it is unusually long for this signal.
+    ///
+    /// A single rest is a constant signal.
     pub(super) fn unusual(&self) -> Option<TorqueRest> {
-        let usual = self.lengths.quantile(USUAL);
+        let usual = match self.count {
+            1 => 1.0,
+            _ => self.lengths.quantile(USUAL),
+        };
         self.longest
             .filter(|one| one.samples as f64 >= UNUSUAL * usual)
     }

@@ -9,7 +9,7 @@
 mod agreement;
 mod contract;
 mod finite;
-mod forms;
+mod function_forms;
 mod known;
 mod newton_euler;
 mod parasitic;

@@ -33,7 +33,7 @@ const FEWEST_PERIODS: f64 = 2.0;
 const LEAST_CUTOFF: f64 = 12.0;
 
 /// Largest ratio of the torques' band to the cutoff of the position filters.
-const WIDEST_BAND: f64 = 2.0;
+const WIDEST_BAND: f64 = 3.0;
 
 /// Runs these checks.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {

@@ -110,7 +110,7 @@ fn told(run: &str, suspicion: Suspicion) -> Check {
         DataFault::FrozenTorque => (
             CheckKind::FrozenTorque,
             Grade::DoNotUse,
-            "twenty times the usual length of equal torques",
+            "ten times the usual length of equal torques",
         ),
         DataFault::Standstill => (
             CheckKind::Standstill,
