@@ -3,8 +3,8 @@
 use crate::{
     arrays::{Rows, common_samples, output},
     errors,
-    function_form::{Form, Owner, follow},
     function::{Function, names},
+    function_form::{Form, Owner, follow},
     identification::{self, Identified},
     operations,
     simulation::{self, Made, Wishes},
