@@ -175,7 +175,7 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
         errors.push(
             Diagnostic::new(Code::TREE_WITHOUT_MOTOR, "a robot without a platform needs a motor at every joint", span)
                 .label(format!("{n} of {r} joints are actuated"))
-                .help("write `actuated = true` at this joint(write a joint of several axes as separate joints first), or describe the platform that closes the loop"),
+                .help("write `actuated = true` at this joint (write a joint of several axes as separate joints first), or describe the platform that closes the loop"),
         );
     } else if n < r {
         let rough = rough_home(description);
