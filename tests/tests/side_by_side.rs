@@ -273,6 +273,6 @@ fn main() {
     // Of the others many states are out of reach; this one reaches everywhere.
     assert!(failed.iter().all(|failed| *failed >= 200), "{failed:?}");
     compare!(spherical_4rrr_lanes, spherical_4rrr_straight, Spherical4Rrr);
-    println!("agree in {} lanes", <overact::simd::Many as overact::simd::Vector>::WIDTH);
+    println!("agree in {} lanes", <overact::simd::Wide as overact::simd::Vector>::WIDTH);
 }
 "#;
