@@ -33,18 +33,24 @@ pub(super) struct Tested {
 }
 
 impl Tested {
-    /// Detection limit of the fault, with `size` as the detectable size.
+    /// The fault; not for a payload.
+    pub(super) fn hypothesis(&self, scores: &Scores) -> FaultHypothesis {
+        self.group.fault_hypothesis(scores)
+    }
+
+    /// Detection limit of the fault, without a name, with `size` as the detectable size.
     pub(super) fn detectable(
         &self,
-        (context, scores): (&Context<'_>, &Scores),
-        (name, unit): (String, &'static str),
+        context: &Context<'_>,
+        scores: &Scores,
+        unit: &'static str,
         size: f64,
     ) -> Detectable {
         let all = self.shift_deviations(context, scores);
         let most = all.iter().find(|(by, _)| by.is_finite());
         let base = context.estimates_of(Stage::Base).next();
         Detectable {
-            name,
+            name: String::new(),
             unit,
             is_length: false,
             deviation: self.wald.deviation,
@@ -146,7 +152,8 @@ pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
 pub(super) fn worst_harm(
     context: &Context<'_>,
     scores: &Scores,
-    (all, most_significant): (&[Tested], &Tested),
+    all: &[Tested],
+    most_significant: &Tested,
     level: f64,
 ) -> Harm {
     let likely = all.iter().filter(|one| {

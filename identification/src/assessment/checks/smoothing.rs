@@ -72,11 +72,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                     origin(1)
                 ),
             )
-            .detecting(vec![whole.detectable(
-                (context, scores),
-                (String::new(), UNIT),
-                visible,
-            )])
+            .detecting(vec![whole.detectable(context, scores, UNIT, visible)])
             .shown_by(parabola(
                 wald,
                 "Residual for smoothed torques",

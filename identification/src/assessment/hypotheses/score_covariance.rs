@@ -38,10 +38,11 @@ pub(super) struct ScoreCovariance {
 }
 
 impl OrthogonalColumns<'_> {
-    /// Contribution of a run; the columns are zero unless `inside`.
+    /// Contribution of the run with this number; the columns are zero unless `inside`.
     pub(super) fn contribution(
         &self,
-        (number, run): (usize, &RunScores),
+        number: usize,
+        run: &RunScores,
         inside: bool,
     ) -> RunContribution {
         let count = 2 * run.cosines + 1;
@@ -61,7 +62,7 @@ impl OrthogonalColumns<'_> {
             let all = run.scores().column(m);
             let mut score = DVector::zeros(width);
             if inside {
-                let cross = run.cross_products(self.layout, m, (selected, &columns));
+                let cross = run.cross_products(self.layout, m, selected, &columns);
                 own -= cross.tr_mul(self.solved);
                 fitted += cross;
                 let block = run.own(self.layout, self.group.block, m);
