@@ -34,7 +34,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .shown_by(parabola(
                 wald,
                 "Residual for other sampling frequencies",
-                ("error of the sampling frequency", "%", 100.0),
+                "error of the sampling frequency",
+                "%",
+                100.0,
             ));
         if wald.probability >= level {
             let words = format!(

@@ -154,7 +154,9 @@ impl TestLimits {
             .shown_by(parabola(
                 wald,
                 "Residual for torques that are shifted in time",
-                ("delay of the torques", "ms", 1e3),
+                "delay of the torques",
+                "ms",
+                1e3,
             ))
     }
 }

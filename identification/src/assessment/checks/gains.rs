@@ -121,7 +121,9 @@ fn failed_check(worst: &Tested, harm: &Harm, actuator: &str) -> Check {
         .shown_by(parabola(
             &worst.wald,
             &format!("Residual for other gains of {actuator}"),
-            ("error of the gain", "%", 100.0),
+            "error of the gain",
+            "%",
+            100.0,
         ))
 }
 

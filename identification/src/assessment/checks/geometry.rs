@@ -125,7 +125,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let check = Check::new(kind, About::Model, words)
         .measured(ratio(worst), "standard deviations")
         .against(worst.wald.quantile(level), origin(tests))
-        .shown_by(parabola(&worst.wald, &title, (axis, unit, 1.0)))
+        .shown_by(parabola(&worst.wald, &title, axis, unit, 1.0))
         .with_harm(&harm);
     let limits = detection_limits(context, scores, &found, level).into_iter();
     let check = check.detecting(limits.map(|(_, limit)| limit).collect());

@@ -110,7 +110,9 @@ impl TestLimits {
             .shown_by(parabola(
                 wald,
                 "Residual for smoothed dry friction",
-                ("half of the filter's mean square delay", "ms²", 1e6),
+                "half of the filter's mean square delay",
+                "ms²",
+                1e6,
             ))
     }
 

@@ -76,7 +76,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .shown_by(parabola(
                 wald,
                 "Residual for smoothed torques",
-                ("half of the filter's mean square delay", "ms²", 1e6),
+                "half of the filter's mean square delay",
+                "ms²",
+                1e6,
             ))
     };
     if wald.probability_beyond(harmless) >= level {

@@ -40,7 +40,7 @@ impl ModelColumns {
         let gram = Scaled::new(&gram)?;
         let inverse = gram.solve(&DMatrix::identity(selected.len(), selected.len()));
         let means = scores.means.iter();
-        let left = means.map(|(_, mean)| mean.left(&selected, &inverse));
+        let left = means.map(|own| own.mean.left(&selected, &inverse));
         Some(Self {
             count,
             left: left.collect(),

@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use super::{
     columns::{FaultHypothesis, Layout, fault_hypotheses},
     model_columns::ModelColumns,
-    pairs::{Correlation, correlations},
     pass::Pass,
     scaled::{Scaled, independent_columns},
     sections::{Frame, RunScores},
@@ -55,12 +54,19 @@ pub(crate) struct Scores {
     pub(super) late: Vec<usize>,
     /// Scores of each run.
     pub(super) runs: Vec<RunScores>,
-    /// Periodic motions, each with the runs that have it.
-    pub(super) means: Vec<(Vec<usize>, Mean)>,
+    /// Periodic motions.
+    pub(super) means: Vec<MotionMean>,
     /// Ratio of the estimate's band to that of the equations.
     pub(crate) narrower: usize,
     /// Cached tests with the estimate's own columns.
     pub(super) own: CachedTests,
+}
+
+/// Mean residual of a periodic motion, and the runs that have it.
+#[derive(Debug, Clone)]
+pub(super) struct MotionMean {
+    pub(super) runs: Vec<usize>,
+    pub(super) mean: Mean,
 }
 
 /// Products and results of the tests with the estimate's own columns, computed on demand.
@@ -150,8 +156,8 @@ impl ScoreTest<'_> {
     }
 }
 
-/// The periodic motions, each with the runs that have it.
-fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
+/// The periodic motions.
+fn means(runs: &[RunScores]) -> Vec<MotionMean> {
     let (mut all, mut owners) = (Vec::new(), Vec::<Vec<usize>>::new());
     for (number, run) in runs.iter().enumerate() {
         if run.folds.is_empty() {
@@ -168,7 +174,10 @@ fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
             rows.column(last).clone_owned(),
         )
     };
-    let mean = |(runs, folds): (Vec<usize>, Folds)| Some((runs, Mean::new(&folds, split)?));
+    let mean = |(runs, folds): (Vec<usize>, Folds)| {
+        let mean = Mean::new(&folds, split)?;
+        Some(MotionMean { runs, mean })
+    };
     owners.into_iter().zip(all).filter_map(mean).collect()
 }
 
@@ -218,22 +227,6 @@ fn late(layout: &Layout, runs: &[RunScores], selected: &[usize], base: usize) ->
 }
 
 impl Scores {
-    /// Correlations of the residuals of all actuator pairs, as far as the motion determines them.
-    pub(crate) fn correlations(&self) -> Vec<Correlation> {
-        // If all actuators are kept, the lines are those of the actuators.
-        let lines = self.runs.first().map_or(0, |run| run.lines);
-        let equations: usize = self.runs.iter().map(|run| run.equations).sum();
-        let instants = equations as f64 / lines.max(1) as f64;
-        let periodic_variance = |(first, second): (usize, usize)| {
-            let means = self.means.iter().map(|(_, mean)| mean);
-            let sums = means.map(|mean| mean.product(first, second));
-            let [sum, scatter] = sums.fold([0.0; 2], |all, own| [all[0] + own[0], all[1] + own[1]]);
-            [sum / instants.powi(2), scatter / instants.powi(4)]
-        };
-        let runs = self.runs.iter().map(|run| (&run.pairs, run.cosines));
-        correlations(runs, &periodic_variance)
-    }
-
     /// Mean of λ² e² over all equations for white torque noise.
     ///
     /// `variances` are those of each run and actuator at the full rate. Decimation keeps the
