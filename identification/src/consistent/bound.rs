@@ -1,42 +1,10 @@
 //! Distance from a bound, with its multiplier.
 
-/// Lower or upper bound of an unknown.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Bound {
-    /// Number of the unknown within its group.
-    pub(super) place: usize,
-    limit: f64,
-    /// 1 for a lower bound, -1 for an upper one.
-    sign: f64,
-}
-
-impl Bound {
-    pub(super) const fn lower(place: usize, limit: f64) -> Self {
-        Self {
-            place,
-            limit,
-            sign: 1.0,
-        }
-    }
-
-    pub(super) const fn upper(place: usize, limit: f64) -> Self {
-        Self {
-            place,
-            limit,
-            sign: -1.0,
-        }
-    }
-
-    /// Whether it bounds the unknown at all.
-    pub(super) const fn is_finite(self) -> bool {
-        self.limit.is_finite()
-    }
-}
-
 /// Distance of an unknown from a bound.
 pub(super) struct BoundDistance {
     /// Number of the unknown within its group.
     pub(super) place: usize,
+    /// 1 for a lower bound, -1 for an upper one.
     sign: f64,
     pub(super) distance: f64,
     multiplier: f64,
@@ -45,10 +13,8 @@ pub(super) struct BoundDistance {
 }
 
 impl BoundDistance {
-    /// sign (value - limit) on the path of a weight; `None` if it is not positive.
-    pub(super) fn new(bound: Bound, value: f64, weight: f64) -> Option<Self> {
-        let Bound { place, limit, sign } = bound;
-        let distance = sign * (value - limit);
+    /// Distance sign (value - limit) on the path of a weight; `None` if it is not positive.
+    pub(super) fn new(place: usize, sign: f64, distance: f64, weight: f64) -> Option<Self> {
         (distance > 0.0).then(|| Self {
             place,
             sign,

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    bound::{Bound, BoundDistance},
+    bound::BoundDistance,
     cones::{BodyCone, Cone, FreeCone, PositiveCone},
     equations::Equations,
     pseudo_inertia::{Inertia, Metric},
@@ -33,11 +33,10 @@ impl Block {
             Kind::Free { scale } => Box::new(FreeCone::new(*scale, own[0], cost)),
         };
         let bounds = group.bounds.iter();
-        let bounds =
-            bounds.flat_map(|(k, [low, high])| [Bound::lower(*k, *low), Bound::upper(*k, *high)]);
+        let bounds = bounds.flat_map(|(k, [low, high])| [(*k, 1.0, *low), (*k, -1.0, *high)]);
+        let bounds = bounds.filter(|(_, _, limit)| limit.is_finite());
         let distances = bounds
-            .filter(|bound| bound.is_finite())
-            .map(|bound| BoundDistance::new(bound, own[bound.place], weight));
+            .map(|(k, sign, limit)| BoundDistance::new(k, sign, sign * (own[k] - limit), weight));
         Some(Self {
             first: group.first,
             len: group.len(),
