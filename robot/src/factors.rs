@@ -24,15 +24,8 @@ impl Robot {
         equations: bool,
         progress: &dyn Fn(Progress<'_>),
     ) -> Result<Vec<RunFactors>, Error> {
-        self.check_factors()?;
-        let runs = (logs, self.source().text.as_str(), origin);
-        Ok(factors::factor_runs(
-            self.model(),
-            runs,
-            settings,
-            equations,
-            progress,
-        )?)
+        let factory = self.factory(settings)?;
+        Ok(factory.runs(logs, origin, equations, progress)?)
     }
 
     /// Factory for R factors of runs one by one, also of many robots.
@@ -66,8 +59,8 @@ impl Robot {
         self.check_prior()?;
         let essential = self.description().identification.essential;
         let own = essential_or_not(settings, essential);
-        let runs = (gathered.runs.as_slice(), gathered.left_out.as_slice());
-        let mut found = factors::identify_factors(self.model(), runs, &own, skip_bad, progress)?;
+        let mut found =
+            factors::identify_factors(self.model(), gathered, &own, skip_bad, progress)?;
         if !essential {
             without_essential_estimates(&mut found.estimates);
         }

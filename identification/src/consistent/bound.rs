@@ -4,6 +4,7 @@
 pub(super) struct BoundDistance {
     /// Number of the unknown within its group.
     pub(super) place: usize,
+    /// 1 for a lower bound, -1 for an upper one.
     sign: f64,
     pub(super) distance: f64,
     multiplier: f64,
@@ -12,13 +13,8 @@ pub(super) struct BoundDistance {
 }
 
 impl BoundDistance {
-    /// sign (value - limit) on the path of a weight; `None` if it is not positive.
-    pub(super) fn new(
-        (place, limit, sign): (usize, f64, f64),
-        value: f64,
-        weight: f64,
-    ) -> Option<Self> {
-        let distance = sign * (value - limit);
+    /// Distance sign (value - limit) on the path of a weight; `None` if it is not positive.
+    pub(super) fn new(place: usize, sign: f64, distance: f64, weight: f64) -> Option<Self> {
         (distance > 0.0).then(|| Self {
             place,
             sign,

@@ -166,7 +166,7 @@ pub(super) struct PositiveCone {
 impl PositiveCone {
     /// A coefficient on the path of a weight; `None` if it is not positive.
     pub(super) fn new(prior: f64, own: f64, weight: f64) -> Option<Self> {
-        let bound = BoundDistance::new((0, 0.0, 1.0), own, weight)?;
+        let bound = BoundDistance::new(0, 1.0, own, weight)?;
         Some(Self { prior, bound })
     }
 }

@@ -111,27 +111,62 @@ pub struct ConsistentBody {
     pub definiteness: f64,
 }
 
-/// Consistent estimate of a system; `None` if the search fails.
-#[must_use]
-pub(crate) fn consistent(
-    (columns, base): (&ColumnSet, &BaseParameters),
-    system: &System,
-    estimate: &Estimate,
-    prior: &Prior,
-) -> Option<Consistent> {
-    let (reduced, b) = observed(system, estimate, base.columns.len());
-    let values = Values::new(prior, &columns.named()).with_estimate(columns, base, estimate);
-    let unknowns = Unknowns::new(columns, prior, &values);
-    let a = &reduced * regroupings(base, &unknowns);
-    let values = values.with_density(&unknowns, &a, &b);
-    let unknowns = Unknowns::new(columns, prior, &values);
-    let solution = solve(&unknowns, &a, &b)?;
-    Some(told(
-        (columns, base),
-        system,
-        estimate,
-        (&unknowns, &solution),
-    ))
+/// Search for a consistent estimate of a system.
+pub(crate) struct ConsistencySearch<'a> {
+    /// Columns of the model, and the base parameters among them.
+    pub(crate) columns: &'a ColumnSet,
+    pub(crate) base: &'a BaseParameters,
+    pub(crate) system: &'a System,
+    /// Estimate of the base parameters.
+    pub(crate) estimate: &'a Estimate,
+}
+
+impl ConsistencySearch<'_> {
+    /// The consistent estimate; `None` if the search fails.
+    pub(crate) fn run(&self, prior: &Prior) -> Option<Consistent> {
+        let &Self {
+            columns,
+            base,
+            system,
+            estimate,
+        } = self;
+        let (reduced, b) = observed(system, estimate, base.columns.len());
+        let values = Values::new(prior, &columns.named()).with_estimate(columns, base, estimate);
+        let unknowns = Unknowns::new(columns, prior, &values);
+        let a = &reduced * regroupings(base, &unknowns);
+        let values = values.with_density(&unknowns, &a, &b);
+        let unknowns = Unknowns::new(columns, prior, &values);
+        let solution = solve(&unknowns, &a, &b)?;
+        Some(self.consistent(&unknowns, &solution))
+    }
+
+    /// The estimate of a solution, with its residuals.
+    fn consistent(&self, unknowns: &Unknowns, solution: &Solution) -> Consistent {
+        let values = regroupings(self.base, unknowns) * &solution.values;
+        let values: Vec<f64> = values.iter().copied().collect();
+        let all: Vec<usize> = (0..values.len()).collect();
+        let lines = line_errors(self.system, &all, &values);
+        let (residual_norm, measured_norm) = overall(&lines);
+        let priors = priors(unknowns);
+        let parameter = |(column, &unknown): (&Column, &usize)| ConsistentParameter {
+            name: column.name.clone(),
+            unit: column.unit.to_owned(),
+            value: solution.values[unknown],
+            prior: priors[unknown],
+            determined: solution.determined[unknown],
+        };
+        let pairs = self.columns.as_slice().iter().zip(&unknowns.of_column);
+        Consistent {
+            model: self.estimate.model,
+            parameters: pairs.map(parameter).collect(),
+            bodies: bodies(unknowns, solution),
+            base_values: values,
+            residual_norm,
+            relative_error_percent: percent(residual_norm, measured_norm),
+            base_relative_error_percent: self.estimate.relative_error_percent,
+            lines,
+        }
+    }
 }
 
 /// Measured directions of the base parameters in units of the noise: rows and right-hand side.
@@ -174,38 +209,6 @@ fn regroupings(base: &BaseParameters, unknowns: &Unknowns) -> DMatrix<f64> {
         }
     }
     matrix
-}
-
-fn told(
-    (columns, base): (&ColumnSet, &BaseParameters),
-    system: &System,
-    estimate: &Estimate,
-    (unknowns, solution): (&Unknowns, &Solution),
-) -> Consistent {
-    let values = regroupings(base, unknowns) * &solution.values;
-    let values: Vec<f64> = values.iter().copied().collect();
-    let all: Vec<usize> = (0..values.len()).collect();
-    let lines = line_errors(system, &all, &values);
-    let (residual_norm, measured_norm) = overall(&lines);
-    let priors = priors(unknowns);
-    let parameter = |(column, &unknown): (&Column, &usize)| ConsistentParameter {
-        name: column.name.clone(),
-        unit: column.unit.to_owned(),
-        value: solution.values[unknown],
-        prior: priors[unknown],
-        determined: solution.determined[unknown],
-    };
-    let pairs = columns.as_slice().iter().zip(&unknowns.of_column);
-    Consistent {
-        model: estimate.model,
-        parameters: pairs.map(parameter).collect(),
-        bodies: bodies(unknowns, solution),
-        base_values: values,
-        residual_norm,
-        relative_error_percent: percent(residual_norm, measured_norm),
-        base_relative_error_percent: estimate.relative_error_percent,
-        lines,
-    }
 }
 
 fn priors(unknowns: &Unknowns) -> Vec<f64> {

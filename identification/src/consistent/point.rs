@@ -22,7 +22,7 @@ struct Block {
 }
 
 impl Block {
-    fn new(group: &Group, values: &DVector<f64>, (weight, cost): (f64, f64)) -> Option<Self> {
+    fn new(group: &Group, values: &DVector<f64>, weight: f64, cost: f64) -> Option<Self> {
         let own = values.rows(group.first, group.len());
         let cone: Box<dyn Cone> = match &group.kind {
             Kind::Body { prior } => {
@@ -33,15 +33,15 @@ impl Block {
             Kind::Free { scale } => Box::new(FreeCone::new(*scale, own[0], cost)),
         };
         let bounds = group.bounds.iter();
-        let distances = bounds.flat_map(|(k, [low, high])| [(*k, *low, 1.0), (*k, *high, -1.0)]);
-        let distances = distances.filter(|(_, limit, _)| limit.is_finite());
+        let bounds = bounds.flat_map(|(k, [low, high])| [(*k, 1.0, *low), (*k, -1.0, *high)]);
+        let bounds = bounds.filter(|(_, _, limit)| limit.is_finite());
+        let distances = bounds
+            .map(|(k, sign, limit)| BoundDistance::new(k, sign, sign * (own[k] - limit), weight));
         Some(Self {
             first: group.first,
             len: group.len(),
             cone,
-            distances: distances
-                .map(|distance| BoundDistance::new(distance, own[distance.0], weight))
-                .collect::<Option<_>>()?,
+            distances: distances.collect::<Option<_>>()?,
         })
     }
 }
@@ -64,20 +64,21 @@ pub(super) struct Step {
 }
 
 impl Point {
-    /// A point on the central path of the first weight; `None` outside cones and bounds.
+    /// A point on the central path of a weight; `None` outside cones and bounds.
     ///
-    /// The second weight is that of the divergence without its logarithms.
+    /// `cost` is the weight of the divergence without its logarithms.
     pub(super) fn new(
         unknowns: &Unknowns,
         values: &DVector<f64>,
-        weights: (f64, f64),
+        weight: f64,
+        cost: f64,
     ) -> Option<Self> {
         let groups = unknowns.groups.iter();
-        let blocks = groups.map(|group| Block::new(group, values, weights));
+        let blocks = groups.map(|group| Block::new(group, values, weight, cost));
         Some(Self {
             blocks: blocks.collect::<Option<_>>()?,
             len: unknowns.len(),
-            cost: weights.1,
+            cost,
         })
     }
 
@@ -112,7 +113,8 @@ impl Point {
     /// One step towards the point of a weight.
     pub(super) fn advance(
         &mut self,
-        (a, b): (&DMatrix<f64>, &DVector<f64>),
+        a: &DMatrix<f64>,
+        b: &DVector<f64>,
         weight: f64,
     ) -> Option<Step> {
         let equations = self.equations(a)?;

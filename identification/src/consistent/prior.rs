@@ -28,9 +28,9 @@ impl Prior {
             .iter()
             .filter(|(_, inertia)| divergence(inertia, inertia).is_none());
         let bodies = impossible.map(|(suffix, _)| self.impossible_body(suffix));
-        let bounds = self.bounds.iter().filter_map(|(name, bounds)| {
+        let bounds = self.bounds.iter().filter_map(|(name, &[low, high])| {
             let known = parameters.iter().find(|(own, _)| own == name);
-            impossible_bounds(name, *bounds, known.map(|(_, symbol)| *symbol))
+            impossible_bounds(name, low, high, known.map(|(_, symbol)| *symbol))
         });
         bodies.chain(bounds).collect()
     }
@@ -56,7 +56,8 @@ impl Prior {
 /// The problem of a parameter's bounds, if there is one.
 fn impossible_bounds(
     name: &str,
-    [low, high]: [f64; 2],
+    low: f64,
+    high: f64,
     known: Option<StandardParameter>,
 ) -> Option<Problem> {
     let bounded =

@@ -50,11 +50,11 @@ pub(super) struct Solution {
 pub(super) fn solve(unknowns: &Unknowns, a: &DMatrix<f64>, b: &DVector<f64>) -> Option<Solution> {
     let values = start(unknowns);
     let worst = (a * &values - b).norm_squared() / (2.0 * unknowns.len() as f64);
-    let mut point = Point::new(unknowns, &values, (worst.max(LAST_WEIGHT), LAST_WEIGHT))?;
+    let mut point = Point::new(unknowns, &values, worst.max(LAST_WEIGHT), LAST_WEIGHT)?;
     let (mut fall, mut last) = (FALL, f64::INFINITY);
     for _ in 0..STEPS {
         let weight = (fall * point.weight()).max(LAST_WEIGHT);
-        let step = point.advance((a, b), weight)?;
+        let step = point.advance(a, b, weight)?;
         fall = if step.part < FAR { SLOW_FALL } else { FALL };
         // The steps have reached rounding errors.
         let is_full = weight <= LAST_WEIGHT && step.part >= 1.0;
@@ -78,7 +78,7 @@ fn determined(
 ) -> Option<DVector<f64>> {
     let none = DMatrix::zeros(0, a.ncols());
     let variances = |values: &DVector<f64>, a: &DMatrix<f64>| {
-        let point = Point::new(unknowns, values, (LAST_WEIGHT, LAST_WEIGHT))?;
+        let point = Point::new(unknowns, values, LAST_WEIGHT, LAST_WEIGHT)?;
         Some(point.equations(a)?.variances())
     };
     let (before, after) = (variances(&start(unknowns), &none)?, variances(values, a)?);

@@ -3,7 +3,7 @@
 use overact::Model;
 use serde::Serialize;
 
-use super::{excluded_run::ExcludedRun, restore::restored, run::RunFactors};
+use super::{excluded_run::ExcludedRun, gather::CollectedRuns, restore::restored, run::RunFactors};
 use crate::{
     error::Error,
     identify::{BaseParameter, Progress, estimates_of},
@@ -47,14 +47,12 @@ pub enum Deviations {
 
 /// Estimates parameters from the factors of runs.
 ///
-/// `left_out` lists what was excluded before.
-///
 /// # Errors
 /// Factors that do not fit the model, or data that determine no parameter. Without `skip_bad`, also
 /// runs that lack a model other than the actuator projection.
 pub fn identify_factors(
     model: &dyn Model,
-    (runs, left_out): (&[RunFactors], &[ExcludedRun]),
+    collected: &CollectedRuns,
     settings: &Settings,
     skip_bad: bool,
     progress: &dyn Fn(Progress<'_>),
@@ -64,13 +62,13 @@ pub fn identify_factors(
         let mut usable = run.models.iter().filter(|own| own.parts.is_ok());
         usable.all(|own| !own.stretches.is_empty())
     };
+    let mut runs = collected.runs.clone();
     let deviations = if runs.iter().all(has_equations) {
         Deviations::Equations
     } else {
         Deviations::Parts
     };
     // Use the stretches of all runs or of none.
-    let mut runs = runs.to_vec();
     if deviations == Deviations::Parts {
         let models = runs.iter_mut().flat_map(|run| &mut run.models);
         models.for_each(|own| own.stretches.clear());
@@ -89,7 +87,7 @@ pub fn identify_factors(
         runs: prepared.runs,
         estimates,
         deviations,
-        left_out: [left_out, &missing].concat(),
+        left_out: [&collected.left_out[..], &missing].concat(),
         warnings,
         settings,
     })

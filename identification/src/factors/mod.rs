@@ -50,7 +50,7 @@ pub use crate::estimation::intervals::distributions::student_tail;
 pub use estimate::{Deviations, FactorEstimation, identify_factors};
 pub use excluded_run::{ExcludedRun, Reason};
 pub use gather::{CollectedRuns, gather};
-pub use observe::{Factory, Origin, factor_runs, settings_hash};
+pub use observe::{Factory, Origin, settings_hash};
 pub use pool::{Pool, PoolError};
 pub use pooled::{Comparison, Pooled, PooledParameter, compare};
 pub use read::{Damaged, ReadFactors, read_factors};

@@ -63,8 +63,6 @@ pub struct Factory<'a> {
     settings_hash: String,
     /// Columns for each payload.
     known: Mutex<Vec<(Load, Arc<Columns>)>>,
-    /// Number of values of successive equations that a run may keep; `None` to keep none.
-    budget: Option<usize>,
 }
 
 /// Payload of a run: none, an unnamed one, or a named one.
@@ -86,7 +84,6 @@ impl<'a> Factory<'a> {
             settings,
             settings_hash: settings_hash(description, settings),
             known: Mutex::new(Vec::new()),
-            budget: None,
         })
     }
 
@@ -97,23 +94,88 @@ impl<'a> Factory<'a> {
     /// A log that does not fit, or is unusable.
     pub fn run(&self, log: &Log, serial: &str, time_us: Option<i64>) -> Result<RunFactors, Error> {
         kinematics::check(self.model, log, self.settings)?;
-        self.factors(log, (serial, time_us), &|_| ())
+        self.factors(log, serial, time_us, None, &|_| ())
     }
 
+    /// Factors of runs; with `equations` also successive equations, if they are few.
+    ///
+    /// # Errors
+    /// As [`prepare`](crate::prepare); the problems of all runs together.
+    pub fn runs(
+        &self,
+        logs: &[Log],
+        origin: &Origin,
+        equations: bool,
+        progress: &dyn Fn(Progress<'_>),
+    ) -> Result<Vec<RunFactors>, Error> {
+        let budget = equations.then(|| LARGEST_STRETCHES / logs.len().max(1));
+        PayloadUse::of(&self.model.info(), logs)?;
+        let checks = logs
+            .iter()
+            .filter_map(|log| kinematics::check(self.model, log, self.settings).err());
+        Error::check(checks.flat_map(|error| error.problems).collect())?;
+        let (mut runs, mut problems) = (Vec::new(), Vec::new());
+        for (number, log) in logs.iter().enumerate() {
+            let time = origin.times_us.get(number).copied().flatten();
+            match self.factors(log, &origin.serial, time, budget, progress) {
+                Ok(run) => runs.push(run),
+                Err(error) => problems.extend(error.problems),
+            }
+        }
+        Error::check(problems)?;
+        Ok(runs)
+    }
+
+    /// Factors of a run that fits.
+    ///
+    /// `budget` is the number of values of successive equations to keep; `None` to keep none.
     fn factors(
         &self,
         log: &Log,
-        origin: (&str, Option<i64>),
+        serial: &str,
+        time_us: Option<i64>,
+        budget: Option<usize>,
         progress: &dyn Fn(Progress<'_>),
     ) -> Result<RunFactors, Error> {
         let columns = self.columns(log, progress)?;
-        let about = About {
-            settings_hash: &self.settings_hash,
-            origin,
-            budget: self.budget,
+        let info = self.model.info();
+        let projections = Projection::usual(&info, &self.settings.kept_actuators);
+        let observer = Observer {
+            model: self.model,
+            columns: &columns.all,
+            base: &columns.chosen,
+            projections: &projections,
+            settings: self.settings,
         };
-        let made = columns.factors((self.model, log), self.settings, &about, progress);
-        made.map_err(|error| assessment::explained(self.model, log, error))
+        let run = log.name();
+        let report = |done, samples| progress(Progress::Run { run, done, samples });
+        let (systems, observation) = observer
+            .run(0, (log, None), (budget.unwrap_or(0), None), &report)
+            .map_err(|error| assessment::explained(self.model, log, error))?;
+        let models = projections
+            .iter()
+            .zip(systems)
+            .map(|(projection, observed)| {
+                let lines = projection.line_names(&info);
+                kept(projection, lines, observed, budget.is_some())
+            });
+        let names = columns
+            .chosen
+            .iter()
+            .filter_map(|&at| columns.all.as_slice().get(at));
+        let mut run = RunFactors {
+            robot: info.name.to_owned(),
+            serial: serial.to_owned(),
+            time_us,
+            settings_hash: self.settings_hash.clone(),
+            content: String::new(),
+            summary: RunSummary::new(log, &observation),
+            flags: flags(self.model, log, observation),
+            columns: names.map(|column| column.name.clone()).collect(),
+            models: models.collect(),
+        };
+        run.content = content(&run);
+        Ok(run)
     }
 
     /// Columns of a run, computed once for each payload.
@@ -130,44 +192,6 @@ impl<'a> Factory<'a> {
         known.push((load, Arc::clone(&columns)));
         Ok(columns)
     }
-}
-
-/// Factors of runs; with `equations` also successive equations, if they are few.
-///
-/// # Errors
-/// As [`prepare`](crate::prepare); the problems of all runs together.
-pub fn factor_runs(
-    model: &dyn Model,
-    (logs, description, origin): (&[Log], &str, &Origin),
-    settings: &Settings,
-    equations: bool,
-    progress: &dyn Fn(Progress<'_>),
-) -> Result<Vec<RunFactors>, Error> {
-    let mut factory = Factory::new(model, description, settings)?;
-    factory.budget = equations.then(|| LARGEST_STRETCHES / logs.len().max(1));
-    PayloadUse::of(&model.info(), logs)?;
-    let checks = logs
-        .iter()
-        .filter_map(|log| kinematics::check(model, log, settings).err());
-    Error::check(checks.flat_map(|error| error.problems).collect())?;
-    let (mut runs, mut problems) = (Vec::new(), Vec::new());
-    for (number, log) in logs.iter().enumerate() {
-        let time = origin.times_us.get(number).copied().flatten();
-        match factory.factors(log, (&origin.serial, time), progress) {
-            Ok(run) => runs.push(run),
-            Err(error) => problems.extend(error.problems),
-        }
-    }
-    Error::check(problems)?;
-    Ok(runs)
-}
-
-/// Metadata of a run.
-struct About<'a> {
-    settings_hash: &'a str,
-    /// Serial number and time.
-    origin: (&'a str, Option<i64>),
-    budget: Option<usize>,
 }
 
 /// Columns of runs with the same payload.
@@ -209,55 +233,12 @@ impl Columns {
         let all = all.with_friction_signs(model, settings)?;
         Ok(Self { all, chosen })
     }
-
-    fn factors(
-        &self,
-        (model, log): (&dyn Model, &Log),
-        settings: &Settings,
-        about: &About<'_>,
-        progress: &dyn Fn(Progress<'_>),
-    ) -> Result<RunFactors, Error> {
-        let info = model.info();
-        let projections = Projection::usual(&info, &settings.kept_actuators);
-        let observer = Observer {
-            model,
-            columns: &self.all,
-            base: &self.chosen,
-            projections: &projections,
-            settings,
-        };
-        let run = log.name();
-        let report = |done, samples| progress(Progress::Run { run, done, samples });
-        let (systems, observation) =
-            observer.run(0, (log, None), (about.budget.unwrap_or(0), None), &report)?;
-        let models = projections.iter().zip(systems);
-        let models = models.map(|(projection, observed)| {
-            let lines = projection.line_names(&info);
-            kept((projection, lines), observed, about.budget.is_some())
-        });
-        let names = self
-            .chosen
-            .iter()
-            .filter_map(|&at| self.all.as_slice().get(at));
-        let mut run = RunFactors {
-            robot: info.name.to_owned(),
-            serial: about.origin.0.to_owned(),
-            time_us: about.origin.1,
-            settings_hash: about.settings_hash.to_owned(),
-            content: String::new(),
-            summary: RunSummary::new(log, &observation),
-            flags: flags((model, log), observation),
-            columns: names.map(|column| column.name.clone()).collect(),
-            models: models.collect(),
-        };
-        run.content = content(&run);
-        Ok(run)
-    }
 }
 
 /// Stored equations of a projection.
 fn kept(
-    (projection, lines): (&Projection, Vec<String>),
+    projection: &Projection,
+    lines: Vec<String>,
     observed: Result<Observed, Error>,
     equations: bool,
 ) -> ModelFactors {
@@ -285,7 +266,7 @@ fn kept(
 }
 
 /// Suspicions about the raw numbers of a run.
-fn flags((model, log): (&dyn Model, &Log), observation: RunObservation) -> Vec<String> {
+fn flags(model: &dyn Model, log: &Log, observation: RunObservation) -> Vec<String> {
     let checks = assessment::suspicious(model, log.name(), observation.monitor);
     let failed = checks.iter().filter(|check| !check.passed);
     failed.map(Check::located).collect()

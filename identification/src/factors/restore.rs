@@ -80,9 +80,8 @@ pub(super) fn restored(
         }
         systems.push(system);
     }
-    let summaries = runs.iter().map(|run| run.summary.clone()).collect();
-    let prepared =
-        Prepared::of_systems((columns, base, payload), (projections, systems), summaries);
+    let mut prepared = Prepared::new(columns, base, payload, projections, systems);
+    prepared.runs = runs.iter().map(|run| run.summary.clone()).collect();
     Ok((prepared, left_out))
 }
 

@@ -25,14 +25,22 @@ const NAMES: usize = 5;
 const WEIGHED: &str =
     "weigh a payload, give its mass in [identification.known], and record runs with and without it";
 
+/// Column of a known parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct KnownColumn {
+    pub(super) column: usize,
+    /// Value of the parameter (SI units).
+    pub(super) value: f64,
+}
+
 /// Columns of a model, split into those of known and of unknown parameters.
 #[derive(Debug)]
 pub(super) struct Split {
     pub(super) columns: ColumnSet,
     /// Base parameters of the unknown columns.
     pub(super) base: BaseParameters,
-    /// Columns of known parameters, with their values (SI units).
-    pub(super) known: Vec<(usize, f64)>,
+    /// Columns of known parameters.
+    pub(super) known: Vec<KnownColumn>,
 }
 
 impl Split {
@@ -55,16 +63,16 @@ impl Split {
         )?
         .with_payloads(&payload_names(runs));
         let known = found(model, &columns, settings)?;
-        let places: Vec<usize> = known.iter().map(|(column, _)| *column).collect();
+        let places: Vec<usize> = known.iter().map(|own| own.column).collect();
         let all = (&columns, payload);
         let (base, combinations) = base_parameters_with_known(model, all, &places, settings.seed)?;
         let fixes = known
             .iter()
             .zip(&combinations)
-            .any(|((_, value), others)| *value != 0.0 && others.is_none());
+            .any(|(own, others)| own.value != 0.0 && others.is_none());
         if !fixes {
-            let problem = |((column, value), others): (&(usize, f64), &Combination)| {
-                scaleless(&columns, payload, (*column, *value), others.as_deref())
+            let problem = |(own, others): (&KnownColumn, &Combination)| {
+                scaleless(&columns, payload, *own, others.as_deref())
             };
             let problems = known.iter().zip(&combinations).map(problem).collect();
             Error::check(problems)?;
@@ -83,13 +91,16 @@ fn found(
     model: &dyn Model,
     columns: &ColumnSet,
     settings: &Settings,
-) -> Result<Vec<(usize, f64)>, Error> {
+) -> Result<Vec<KnownColumn>, Error> {
     let info = model.info();
     let all = columns.as_slice();
     let (mut known, mut problems) = (Vec::new(), Vec::new());
     for (name, value) in &settings.known {
         if let Some(column) = all.iter().position(|one| one.name == *name) {
-            known.push((column, *value));
+            known.push(KnownColumn {
+                column,
+                value: *value,
+            });
         } else if info.payload_parameters.iter().any(|one| one.name == name) {
             problems.push(
                 Problem::new(Code::GAINS, format!(
@@ -114,18 +125,18 @@ fn found(
 fn scaleless(
     columns: &ColumnSet,
     payload: PayloadUse,
-    (column, value): (usize, f64),
+    known: KnownColumn,
     others: Option<&[usize]>,
 ) -> Problem {
     let name = |column: &usize| {
         let column = columns.as_slice().get(*column);
         column.map_or_else(String::new, |one| format!("`{}`", one.name))
     };
-    let own = name(&column);
+    let own = name(&known.column);
     let others = others.unwrap_or_default();
     let problem =
         |why: String| Problem::new(Code::GAINS, format!("gains are not determined: {why}"));
-    if value == 0.0 {
+    if known.value == 0.0 {
         return problem(format!(
             "{own} is known to be zero, which does not determine the scale"
         ))
@@ -142,7 +153,7 @@ fn scaleless(
         "{own} is known, but its column is a combination of those of {}, which are not",
         names.join(", ")
     );
-    let is_load = columns.indices(true).contains(&column);
+    let is_load = columns.indices(true).contains(&known.column);
     match payload {
         PayloadUse::Regrouped if is_load => {
             problem(why).help("all runs carry the payload: also record some without it")

@@ -71,9 +71,8 @@ impl Observer<'_> {
             moments: vec![DMatrix::zeros(r, r); n],
         };
         let (mut samples, mut problems) = (0, Vec::new());
-        for (number, log) in runs.iter().enumerate() {
-            let budget = LARGEST_STRETCHES / runs.len();
-            match self.run((number, budget), log, &mut equations, progress) {
+        for number in 0..runs.len() {
+            match self.run(runs, number, &mut equations, progress) {
                 Ok(count) => samples += count,
                 Err(error) => problems.extend(error.problems),
             }
@@ -92,11 +91,12 @@ impl Observer<'_> {
     /// Adds the equations of a run, and returns the number of its samples.
     fn run(
         &self,
-        (number, budget): (usize, usize),
-        log: &Log,
+        runs: &[Log],
+        number: usize,
         equations: &mut Equations,
         progress: &dyn Fn(&str, usize, usize),
     ) -> Result<usize, Error> {
+        let (log, budget) = (&runs[number], LARGEST_STRETCHES / runs.len());
         let sizes = self.model.info().sizes;
         let (r, n) = (sizes.dof, sizes.actuators);
         let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
@@ -153,7 +153,7 @@ impl Observer<'_> {
         self.model
             .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
             .map_err(at)?;
-        let known = self.split.known.iter().map(|(column, _)| *column);
+        let known = self.split.known.iter().map(|own| own.column);
         let base = self.split.base.columns.iter().copied();
         let picked: Vec<usize> = base.chain(known).collect();
         let evaluated = self
@@ -203,7 +203,7 @@ impl Observer<'_> {
             let (own, known) = row.split_at(unknown);
             all.extend_from_slice(own);
             all.extend(factors.zip(torques).map(|(factor, torque)| factor * torque));
-            let values = self.split.known.iter().map(|(_, value)| value);
+            let values = self.split.known.iter().map(|own| own.value);
             all.push(known.iter().zip(values).map(|(a, b)| a * b).sum());
         }
         all

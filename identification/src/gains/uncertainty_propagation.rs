@@ -21,7 +21,6 @@ use crate::{
         conditioning::{KeptActuators, home_scales},
     },
     regression::{
-        Chunk,
         chunk::projected,
         observation::Observer,
         projection::Projection,
@@ -46,7 +45,7 @@ pub(crate) fn propagate_gain_uncertainty(
         |projection: &Projection| System::new(projection.clone(), &info, parameters + drives - 1);
     let mut systems: Vec<System> = observer.projections.iter().map(new).collect();
     for (number, log) in runs.iter().enumerate() {
-        run(observer, (number, log), &mut systems)?;
+        run(observer, number, log, &mut systems)?;
     }
     let lines = systems.into_iter().map(|own| own.lines).collect();
     Ok(PropagatedUncertainty::new(
@@ -59,7 +58,8 @@ pub(crate) fn propagate_gain_uncertainty(
 /// Adds the equations of a run.
 fn run(
     observer: &Observer<'_>,
-    (number, log): (usize, &Log),
+    number: usize,
+    log: &Log,
     systems: &mut [System],
 ) -> Result<(), Error> {
     let (model, settings) = (observer.model, observer.settings);
@@ -88,7 +88,7 @@ fn run(
                 if failed[projection].is_some() {
                     continue;
                 }
-                let rows = joined(chunk, &drives[projection][line], (projection, line), n);
+                let rows = joined(&chunk.lines[projection][line], &drives[projection][line], n);
                 let velocities = motion.velocities.iter().copied();
                 let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
                 sink.push(&plan, (&rows, None), velocities);
@@ -103,9 +103,8 @@ fn run(
     Ok(())
 }
 
-/// Rows of a line of a projection, with the contributions of `n` drives instead of Y.
-fn joined(chunk: &Chunk, drives: &[f64], (projection, line): (usize, usize), n: usize) -> Vec<f64> {
-    let rows = &chunk.lines[projection][line];
+/// Rows of a line, with the contributions of `n` drives instead of Y.
+fn joined(rows: &[f64], drives: &[f64], n: usize) -> Vec<f64> {
     let width = rows.len() / (drives.len() / n).max(1);
     let mut all = Vec::with_capacity(rows.len() + drives.len());
     for (row, own) in rows.chunks_exact(width).zip(drives.chunks_exact(n)) {

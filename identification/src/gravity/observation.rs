@@ -15,7 +15,6 @@ use crate::{
         conditioning::{KeptActuators, home_scales},
     },
     regression::{
-        Chunk,
         chunk::projected,
         observation,
         projection::Projection,
@@ -65,10 +64,8 @@ impl Observer<'_> {
         let new = |one: &Projection| Ok(System::new(one.clone(), &info, self.extended.len()));
         let mut systems: Vec<Result<System, Error>> = projections.iter().map(new).collect();
         let mut problems = Vec::new();
-        for (number, log) in runs.iter().enumerate() {
-            let budget = LARGEST_STRETCHES / runs.len();
-            let told = |done| progress(log.name(), done, log.samples());
-            if let Err(error) = self.run(&observer, (number, budget), log, &mut systems, &told) {
+        for number in 0..runs.len() {
+            if let Err(error) = self.run(&observer, runs, number, &mut systems, progress) {
                 problems.extend(error.problems);
             }
         }
@@ -80,11 +77,12 @@ impl Observer<'_> {
     fn run(
         &self,
         observer: &observation::Observer<'_>,
-        (number, budget): (usize, usize),
-        log: &Log,
+        runs: &[Log],
+        number: usize,
         systems: &mut [Result<System, Error>],
-        progress: &dyn Fn(usize),
+        progress: &dyn Fn(&str, usize, usize),
     ) -> Result<(), Error> {
+        let (log, budget) = (&runs[number], LARGEST_STRETCHES / runs.len());
         let sizes = self.model.info().sizes;
         let (r, n) = (sizes.dof, sizes.actuators);
         let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
@@ -116,15 +114,17 @@ impl Observer<'_> {
                     return;
                 }
                 for (place, (chunk, fields)) in chunks.iter().zip(&fields).enumerate() {
-                    let rows = joined(chunk, &fields[projection][line], (projection, line));
+                    let (rows, fields) =
+                        (&chunk.lines[projection][line], &fields[projection][line]);
+                    let rows = joined(rows, fields, chunk.samples());
                     let velocities = motion.velocities.iter().copied();
                     let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
                     sink.push(&plan, (&rows, None), velocities);
                 }
             });
-            progress(motions.done());
+            progress(log.name(), motions.done(), log.samples());
         }
-        progress(log.samples());
+        progress(log.name(), log.samples(), log.samples());
         let mut sinks = sinks.into_iter();
         for (system, failure) in systems.iter_mut().zip(failed) {
             let own: Vec<LineSink> = sinks.by_ref().take(r).collect();
@@ -192,10 +192,8 @@ impl Observer<'_> {
     }
 }
 
-/// Rows of a line of a projection, with the field columns before Y.
-fn joined(chunk: &Chunk, fields: &[f64], (projection, line): (usize, usize)) -> Vec<f64> {
-    let rows = &chunk.lines[projection][line];
-    let samples = chunk.samples();
+/// Rows of a line, with the field columns before Y.
+fn joined(rows: &[f64], fields: &[f64], samples: usize) -> Vec<f64> {
     let (width, more) = (rows.len() / samples, fields.len() / samples);
     let mut all = Vec::with_capacity(rows.len() + fields.len());
     for sample in 0..samples {

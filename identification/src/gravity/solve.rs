@@ -6,10 +6,10 @@ use overact::Code;
 use super::{columns::Extended, direction::Frame, observation::combined};
 use crate::{
     error::{Error, Problem},
-    estimation::estimate::fit,
+    estimation::estimate::{Estimation, fit},
     regression::{
         elimination::eliminate,
-        factor::{DATA_RANK_TOLERANCE, Factor},
+        factor::{DATA_RANK_TOLERANCE, Factor, Reduced},
         system::System,
     },
     settings::Settings,
@@ -81,10 +81,9 @@ pub(super) fn solve(
     let mut frame = start.clone();
     let mut change = f64::INFINITY;
     for _ in 0..OUTER {
-        let weights = weighted(extended, system, (&frame, &base), settings)?.0;
+        let weights = weighted(extended, system, &frame, &base, settings)?.weights;
         let reduced = Factor::reduced_together(&system.lines, &weights, &all);
-        let whole = (&reduced.triangle, &reduced.rhs);
-        let next = with_weights(extended, whole, &base, frame.clone());
+        let next = with_weights(extended, &reduced, &base, frame.clone());
         change = (next.direction - frame.direction).norm();
         frame = next;
         if change < TOLERANCE {
@@ -100,9 +99,9 @@ pub(super) fn solve(
             .help(help)
             .into());
     }
-    let (weights, deviation) = weighted(extended, system, (&frame, &base), settings)?;
-    let reduced = Factor::reduced_together(&system.lines, &weights, &all);
-    let own = fitted(extended, (&reduced.triangle, &reduced.rhs), &base, &frame);
+    let estimation = weighted(extended, system, &frame, &base, settings)?;
+    let reduced = Factor::reduced_together(&system.lines, &estimation.weights, &all);
+    let own = fitted(extended, &reduced, &base, &frame);
     Ok(Solution {
         frame,
         columns: own.columns,
@@ -110,8 +109,8 @@ pub(super) fn solve(
         slopes: own.slopes,
         free: own.free,
         normal: own.normal,
-        weights,
-        deviation,
+        weights: estimation.weights,
+        deviation: estimation.residual_deviation,
     })
 }
 
@@ -123,31 +122,26 @@ fn base(extended: &Extended, frame: &Frame) -> Vec<usize> {
     eliminate(&(&extended.random * turned), &all, 1e-9).kept
 }
 
-/// Weights of the lines and standard deviation of the residual, from the parameter estimate.
+/// Estimate of the parameters for a direction, with the weights of the lines.
 fn weighted(
     extended: &Extended,
     system: &System,
-    (frame, base): (&Frame, &[usize]),
+    frame: &Frame,
+    base: &[usize],
     settings: &Settings,
-) -> Result<(Vec<f64>, f64), Error> {
+) -> Result<Estimation, Error> {
     let columns = extended.at(&frame.gravity()).select_columns(base);
     let own = combined(system, &columns);
     let ones = vec![1.0; own.lines.len()];
     let merged = Factor::merged(&own.lines, &ones);
     let all: Vec<usize> = (0..base.len()).collect();
     let kept = eliminate(merged.matrix(), &all, DATA_RANK_TOLERANCE).kept;
-    let estimation = fit(&own, &kept, settings)?;
-    Ok((estimation.weights, estimation.residual_deviation))
+    fit(&own, &kept, settings)
 }
 
 /// Best direction for given weights.
-fn with_weights(
-    extended: &Extended,
-    whole: (&DMatrix<f64>, &DVector<f64>),
-    base: &[usize],
-    mut frame: Frame,
-) -> Frame {
-    let mut here = fitted(extended, whole, base, &frame);
+fn with_weights(extended: &Extended, reduced: &Reduced, base: &[usize], mut frame: Frame) -> Frame {
+    let mut here = fitted(extended, reduced, base, &frame);
     let mut damping = 0.0;
     for _ in 0..INNER {
         let diagonal = here.normal.diagonal();
@@ -158,7 +152,7 @@ fn with_weights(
         let length = step.norm();
         let step = step * (LARGEST_STEP / length).min(1.0);
         let turned = frame.turned(&step);
-        let there = fitted(extended, whole, base, &turned);
+        let there = fitted(extended, reduced, base, &turned);
         if there.square <= here.square {
             (frame, here) = (turned, there);
             damping = if damping < 1e-6 { 0.0 } else { damping / 10.0 };
@@ -176,12 +170,8 @@ fn with_weights(
 }
 
 /// Best parameters for a direction, from the weighted R factor and right-hand side.
-fn fitted(
-    extended: &Extended,
-    (triangle, rhs): (&DMatrix<f64>, &DVector<f64>),
-    base: &[usize],
-    frame: &Frame,
-) -> Fit {
+fn fitted(extended: &Extended, reduced: &Reduced, base: &[usize], frame: &Frame) -> Fit {
+    let Reduced { triangle, rhs, .. } = reduced;
     let columns = extended.at(&frame.gravity()).select_columns(base);
     let mut matrix = triangle * &columns;
     let all: Vec<usize> = (0..base.len()).collect();

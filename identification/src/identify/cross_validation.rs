@@ -39,9 +39,9 @@ pub(super) struct Predictor {
 
 impl Predictor {
     /// Parameters of an estimate.
-    pub(super) fn of_estimate((projection, estimate): &(usize, Estimate)) -> Self {
+    pub(super) fn of_estimate(projection: usize, estimate: &Estimate) -> Self {
         Self {
-            projection: *projection,
+            projection,
             model: estimate.model,
             stage: estimate.stage,
             columns: estimate.columns(),
@@ -58,9 +58,9 @@ impl Predictor {
     }
 
     /// Base parameters of a consistent estimate.
-    pub(super) fn of_consistent((projection, own): &(usize, Consistent)) -> Self {
+    pub(super) fn of_consistent(projection: usize, own: &Consistent) -> Self {
         Self {
-            projection: *projection,
+            projection,
             model: own.model,
             stage: Stage::Consistent,
             columns: (0..own.base_values.len()).collect(),
@@ -119,7 +119,7 @@ impl ValidationRunResults {
         match validation {
             Ok(validation) => {
                 let validation =
-                    CrossValidation::new((own.model, own.stage), payload, validation.clone());
+                    CrossValidation::new(own.model, own.stage, payload, validation.clone());
                 self.validations.push(validation);
                 self.owners.push(own.projection);
             }

@@ -3,7 +3,6 @@
 use overact::Code;
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::{prepare::Prepared, progress::Progress};
@@ -11,7 +10,7 @@ use crate::{
     error::{Error, Problem},
     estimation::{
         correlation::Noise,
-        essential::{Removal, essential},
+        essential::essential,
         estimate::{Estimation, estimate},
         instruments::{Instrumental, regressor::ErrorsInRegressor},
         intervals::Intervals,
@@ -72,18 +71,19 @@ pub fn estimate_projection(
     let system = prepared.systems.get(projection).ok_or_else(unknown)?;
     let system = system.as_ref().map_err(Clone::clone)?;
     let mut warnings = Vec::new();
-    let (selected, names) = on_data(prepared, system, &mut warnings)?;
-    let base = estimate(system, &selected, settings)?;
-    let more = covariance_before(prepared, projection, (&selected, &base.weights));
+    let selection = on_data(prepared, system, &mut warnings)?;
+    let Selection { columns, names } = &selection;
+    let base = estimate(system, columns, settings)?;
+    let more = prepared.covariance_before(projection, columns, &base.weights);
     let (rest, intervals) = rayon::join(
-        || essential(system, &selected, &names, &base, settings),
-        || Intervals::new(system, &selected, &base).widened(more.as_ref()),
+        || essential(system, columns, names, &base, settings),
+        || Intervals::new(system, columns, &base).widened(more.as_ref()),
     );
     let rest = rest?;
     warnings.extend(quality_warnings(system, &base));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
     let told = (&intervals, rest.folds.as_ref());
-    let chosen = recommended(system, (&selected, &names), &base, told, settings)?;
+    let chosen = recommended(system, (columns, names), &base, told, settings)?;
     let chosen_noise = Noise::new(system, &chosen.selected, &chosen.estimation);
     let context = Context {
         prepared,
@@ -97,33 +97,39 @@ pub fn estimate_projection(
         },
         weighted: settings.weighted,
     };
-    let (instrumental, errors_in_regressor) =
-        context.with_instruments((&selected, &names), &base, settings);
+    let (instrumental, errors_in_regressor) = context.with_instruments(&selection, &base, settings);
+    let recommended = Selection {
+        columns: chosen.selected,
+        names: chosen.names,
+    };
+    let essential = Selection {
+        columns: rest.selected,
+        names: rest.names,
+    };
     Ok(ProjectionEstimates {
-        ordinary: context.by_ordinary((&selected, &names), settings)?,
+        ordinary: context.by_ordinary(&selection, settings)?,
         instrumental,
         errors_in_regressor,
-        base: context.estimate(
-            Stage::Base,
-            (base, rest.noise),
-            &selected,
-            &names,
-            (Vec::new(), None),
-        ),
-        recommended: context.estimate(
-            Stage::Recommended,
-            (chosen.estimation, chosen_noise),
-            &chosen.selected,
-            &chosen.names,
-            (Vec::new(), Some(chosen.stop)),
-        ),
-        essential: context.estimate(
-            Stage::Essential,
-            (rest.estimation, rest_noise),
-            &rest.selected,
-            &rest.names,
-            (rest.removals, Some(rest.stop)),
-        ),
+        base: context.estimate(Stage::Base, base, rest.noise.as_ref(), &selection),
+        recommended: Estimate {
+            stop: Some(chosen.stop),
+            ..context.estimate(
+                Stage::Recommended,
+                chosen.estimation,
+                chosen_noise.as_ref(),
+                &recommended,
+            )
+        },
+        essential: Estimate {
+            removals: rest.removals,
+            stop: Some(rest.stop),
+            ..context.estimate(
+                Stage::Essential,
+                rest.estimation,
+                rest_noise.as_ref(),
+                &essential,
+            )
+        },
         warnings,
     })
 }
@@ -158,6 +164,12 @@ fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BT
         .collect()
 }
 
+/// Columns of an estimate, by index among the base parameters, with their names.
+struct Selection {
+    columns: Vec<usize>,
+    names: Vec<String>,
+}
+
 /// Data that all estimates of a projection share.
 struct Context<'a> {
     prepared: &'a Prepared,
@@ -170,14 +182,13 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Combines an estimation with names, true values and the elimination path.
+    /// Combines an estimation with names and true values, without removals.
     fn estimate(
         &self,
         stage: Stage,
-        (estimation, noise): (Estimation, Option<Noise>),
-        selected: &[usize],
-        names: &[String],
-        (removals, stop): (Vec<Removal>, Option<String>),
+        estimation: Estimation,
+        noise: Option<&Noise>,
+        selection: &Selection,
     ) -> Estimate {
         Estimate {
             model: self.system.projection.model(),
@@ -186,9 +197,10 @@ impl Context<'_> {
             estimator: Estimator::LeastSquares,
             weighted: self.weighted,
             parameters: self.parameters(
-                (&estimation, &self.intervals),
-                &self.correlated(&estimation, noise.as_ref(), selected),
-                (selected, names),
+                &estimation,
+                &self.intervals,
+                &self.correlated(&estimation, noise, &selection.columns),
+                selection,
             ),
             residual_norm: estimation.residual_norm,
             relative_error_percent: estimation.relative_error_percent,
@@ -198,17 +210,18 @@ impl Context<'_> {
             lines: estimation.lines,
             weights: estimation.weights,
             partition: self.system.partition.clone(),
-            removals,
-            stop,
+            removals: Vec::new(),
+            stop: None,
         }
     }
 
     /// Base parameters by ordinary least squares, if weighting is on and there are several lines.
     fn by_ordinary(
         &self,
-        (selected, names): (&[usize], &[String]),
+        selection: &Selection,
         settings: &Settings,
     ) -> Result<Option<Estimate>, Error> {
+        let selected = &selection.columns;
         if !settings.weighted || self.system.lines.len() < 2 {
             return Ok(None);
         }
@@ -217,33 +230,30 @@ impl Context<'_> {
             ..settings.clone()
         };
         let estimation = estimate(self.system, selected, &settings)?;
-        let more = covariance_before(
-            self.prepared,
-            self.projection,
-            (selected, &estimation.weights),
-        );
+        let more = self
+            .prepared
+            .covariance_before(self.projection, selected, &estimation.weights);
         let intervals = Intervals::new(self.system, selected, &estimation);
         let intervals = intervals.widened(more.as_ref());
         let white = estimation.standard_deviations.iter();
         let pairs = white.zip(intervals.deviations());
         let correlated: Vec<f64> = pairs.map(|(white, own)| white.max(own)).collect();
-        let parameters = self.parameters((&estimation, &intervals), &correlated, (selected, names));
-        let way = (Vec::new(), None);
         Ok(Some(Estimate {
             estimator: Estimator::OrdinaryLeastSquares,
             weighted: false,
-            parameters,
-            ..self.estimate(Stage::Base, (estimation, None), selected, names, way)
+            parameters: self.parameters(&estimation, &intervals, &correlated, selection),
+            ..self.estimate(Stage::Base, estimation, None, selection)
         }))
     }
 
     /// Instrumental-variable estimate, if possible, and its comparison with least squares.
     fn with_instruments(
         &self,
-        (selected, names): (&[usize], &[String]),
+        selection: &Selection,
         base: &Estimation,
         settings: &Settings,
     ) -> (Option<Estimate>, ErrorsInRegressor) {
+        let selected = &selection.columns;
         let instrument_runs = &self.prepared.instrument_runs;
         let why = instrument_runs.missing.as_ref().map(ToString::to_string);
         let model = self.system.projection.model();
@@ -264,14 +274,16 @@ impl Context<'_> {
         };
         let named: Vec<(String, String)> = selected
             .iter()
-            .zip(names)
+            .zip(&selection.names)
             .map(|(column, name)| (name.clone(), self.unit(*column).to_owned()))
             .collect();
         let honest = self.intervals.deviations();
         let told = told.compared((self.system, selected), (base, &honest), &found, &named);
         let estimation = found.estimation.clone();
         // Both estimates are close, so the effect of gains is that on least squares.
-        let more = covariance_before(self.prepared, self.projection, (selected, &base.weights));
+        let more = self
+            .prepared
+            .covariance_before(self.projection, selected, &base.weights);
         let own = found.intervals.clone();
         let own = own.map(|own| own.widened(more.as_ref()));
         let intervals = own.as_ref().unwrap_or(&self.intervals);
@@ -280,14 +292,8 @@ impl Context<'_> {
         let correlated: Vec<f64> = pairs.map(|(white, own)| white.max(own)).collect();
         let estimate = Estimate {
             estimator: Estimator::InstrumentalVariables,
-            parameters: self.parameters((&estimation, intervals), &correlated, (selected, names)),
-            ..self.estimate(
-                Stage::Base,
-                (estimation, None),
-                selected,
-                names,
-                (Vec::new(), None),
-            )
+            parameters: self.parameters(&estimation, intervals, &correlated, selection),
+            ..self.estimate(Stage::Base, estimation, None, selection)
         };
         (Some(estimate), told)
     }
@@ -305,8 +311,10 @@ impl Context<'_> {
             || self.without_noise(estimation, selected),
             |noise| noise.deviations(selected, estimation),
         );
-        let place = (selected, estimation.weights.as_slice());
-        let Some(more) = covariance_before(self.prepared, self.projection, place) else {
+        let Some(more) =
+            self.prepared
+                .covariance_before(self.projection, selected, &estimation.weights)
+        else {
             return own;
         };
         let more = more.diagonal();
@@ -344,14 +352,17 @@ impl Context<'_> {
     /// Combines estimates, names and true values.
     fn parameters(
         &self,
-        (estimation, intervals): (&Estimation, &Intervals),
+        estimation: &Estimation,
+        intervals: &Intervals,
         correlated: &[f64],
-        (selected, names): (&[usize], &[String]),
+        selection: &Selection,
     ) -> Vec<ParameterEstimate> {
         let parameter = |(place, (&column, name)): (usize, (&usize, &String))| {
             let value = estimation.values[place];
             let true_value = self.truth.get(&column).copied();
-            let interval_95 = intervals.of(column, selected.len()).unwrap_or([value; 2]);
+            let interval_95 = intervals
+                .of(column, selection.columns.len())
+                .unwrap_or([value; 2]);
             ParameterEstimate {
                 name: name.clone(),
                 unit: self.unit(column).to_owned(),
@@ -369,25 +380,14 @@ impl Context<'_> {
                     .map(|truth| 100.0 * (value - truth) / truth.abs()),
             }
         };
-        selected
+        selection
+            .columns
             .iter()
-            .zip(names)
+            .zip(&selection.names)
             .enumerate()
             .map(parameter)
             .collect()
     }
-}
-
-/// Covariance from the uncertainty of previous identifications, if there is any.
-fn covariance_before(
-    prepared: &Prepared,
-    projection: usize,
-    estimate: (&[usize], &[f64]),
-) -> Option<DMatrix<f64>> {
-    prepared
-        .propagated_uncertainty
-        .as_ref()?
-        .covariance(projection, estimate)
 }
 
 /// Base parameters that the data separate, with their names; warns of the others.
@@ -395,7 +395,7 @@ fn on_data(
     prepared: &Prepared,
     system: &System,
     warnings: &mut Vec<String>,
-) -> Result<(Vec<usize>, Vec<String>), Error> {
+) -> Result<Selection, Error> {
     let base = &prepared.base;
     let ones = vec![1.0; system.lines.len()];
     let all = Factor::merged(&system.lines, &ones);
@@ -428,7 +428,10 @@ fn on_data(
         .iter()
         .map(|&column| name(column).to_owned())
         .collect();
-    Ok((found.kept, names))
+    Ok(Selection {
+        columns: found.kept,
+        names,
+    })
 }
 
 /// The problem of data without motion, or with all motion excluded.

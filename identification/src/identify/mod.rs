@@ -36,7 +36,7 @@ use crate::{
         self, Context, RunMonitor,
         assumptions::{PreviouslyIdentified, assumptions, rests_on, unseen},
         check::{Check, Grade},
-        hypotheses::{PositionRange, scores},
+        hypotheses::{PositionRange, ScoreTest},
         verdict::verdicts,
     },
     data::Dataset,
@@ -101,7 +101,7 @@ pub fn identify_after(
     match before {
         PriorStage::Nothing => {}
         PriorStage::Gains(gains) => {
-            prepared = prepared.with_gains((model, dataset.runs), gains, settings)?;
+            prepared = prepared.with_gains(model, dataset.runs, gains, settings)?;
         }
         PriorStage::Gravity(direction) => prepared = prepared.with_gravity(direction),
     }
@@ -113,8 +113,12 @@ pub fn identify_after(
     let (errors_in_regressor, beside) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
     let (consistent, inconsistent) = consistent_all(&prepared, &estimates, &settings.prior);
-    let least_squares = estimates.iter().map(Predictor::of_estimate);
-    let others = consistent.iter().map(Predictor::of_consistent);
+    let least_squares = estimates
+        .iter()
+        .map(|(projection, one)| Predictor::of_estimate(*projection, one));
+    let others = consistent
+        .iter()
+        .map(|(projection, own)| Predictor::of_consistent(*projection, own));
     let held_out = cross_validate(
         model,
         &prepared,
@@ -130,21 +134,20 @@ pub fn identify_after(
         closure_residual: observation.closure_residual,
     });
     let watched: Vec<RunMonitor> = identified.chain(held_out.watched).collect();
+    let position_ranges = position_ranges(&watched[..dataset.runs.len()]);
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
-    let scores_of = |(_, base): &(usize, Estimate), times: usize| {
-        let columns = (&prepared.columns, prepared.base.columns.as_slice());
-        let position_ranges = position_ranges(&watched[..dataset.runs.len()]);
-        let runs = (dataset.runs, dataset.variants);
-        scores(
-            model,
-            runs,
-            columns,
-            (base, &position_ranges),
-            (settings, &prepared.returns, times),
-        )
-    };
-    let scores = base.map(|base| scores_of(base, 1)).transpose()?;
-    let narrow = || base.map(|base| scores_of(base, 2)).transpose();
+    let test = base.map(|(_, estimate)| ScoreTest {
+        model,
+        dataset,
+        columns: &prepared.columns,
+        base: &prepared.base.columns,
+        estimate,
+        position_ranges: &position_ranges,
+        returns: &prepared.returns,
+        settings,
+    });
+    let scores = test.as_ref().map(|test| test.scores(1)).transpose()?;
+    let narrow = || test.as_ref().map(|test| test.scores(2)).transpose();
     let column_noise = prepared.column_noise(model, dataset.runs, settings)?;
     let ranges = prepared.ranges(model);
     let checks = assessment::checks(&Context {

@@ -6,7 +6,7 @@ use overact::Model;
 use super::{instruments::InstrumentRuns, progress::Progress};
 use crate::{
     assessment,
-    consistent::{Consistent, consistent},
+    consistent::{ConsistencySearch, Consistent},
     data::{
         Log,
         periods::{Return, returns},
@@ -64,11 +64,13 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// From systems made elsewhere, without other results from the logs.
-    pub(crate) fn of_systems(
-        (columns, base, payload): (ColumnSet, BaseParameters, PayloadUse),
-        (projections, systems): (Vec<Projection>, Vec<Result<System, Error>>),
-        runs: Vec<RunSummary>,
+    /// Systems of the projections, without runs.
+    pub(crate) fn new(
+        columns: ColumnSet,
+        base: BaseParameters,
+        payload: PayloadUse,
+        projections: Vec<Projection>,
+        systems: Vec<Result<System, Error>>,
     ) -> Self {
         Self {
             columns,
@@ -76,7 +78,7 @@ impl Prepared {
             payload,
             projections,
             systems,
-            runs,
+            runs: Vec::new(),
             observations: Vec::new(),
             points: Vec::new(),
             instrument_runs: InstrumentRuns::default(),
@@ -88,7 +90,8 @@ impl Prepared {
     /// Adds the uncertainty of gains by which the torques of the runs were multiplied.
     pub(super) fn with_gains(
         mut self,
-        (model, runs): (&dyn Model, &[Log]),
+        model: &dyn Model,
+        runs: &[Log],
         gains: &Gains,
         settings: &Settings,
     ) -> Result<Self, Error> {
@@ -101,6 +104,19 @@ impl Prepared {
         };
         self.propagated_uncertainty = Some(propagate_gain_uncertainty(&observer, runs, gains)?);
         Ok(self)
+    }
+
+    /// Covariance of an estimate of the columns `selected` from previous identifications.
+    ///
+    /// `None` without them, or for dependent columns. `weights` are those of the lines.
+    pub(super) fn covariance_before(
+        &self,
+        projection: usize,
+        selected: &[usize],
+        weights: &[f64],
+    ) -> Option<DMatrix<f64>> {
+        let propagated_uncertainty = self.propagated_uncertainty.as_ref()?;
+        propagated_uncertainty.covariance(projection, (selected, weights))
     }
 
     /// Effect of position noise on the columns of each projection.
@@ -187,7 +203,13 @@ impl Prepared {
         prior: &Prior,
     ) -> Option<Consistent> {
         let system = self.systems.get(projection)?.as_ref().ok()?;
-        consistent((&self.columns, &self.base), system, base, prior)
+        let search = ConsistencySearch {
+            columns: &self.columns,
+            base: &self.base,
+            system,
+            estimate: base,
+        };
+        search.run(prior)
     }
 }
 
@@ -259,16 +281,11 @@ pub fn prepare(
         runs: runs
             .map(|(log, observation)| RunSummary::new(log, observation))
             .collect(),
-        projections: projections.to_vec(),
-        columns,
-        base,
-        payload,
-        systems,
         observations,
         points,
         instrument_runs,
         returns,
-        propagated_uncertainty: None,
+        ..Prepared::new(columns, base, payload, projections.to_vec(), systems)
     })
 }
 

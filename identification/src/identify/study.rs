@@ -96,19 +96,19 @@ pub fn study(
     let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let reference = outcomes[0].as_ref().map_err(Clone::clone)?.clone();
-    let estimated: Vec<(usize, Estimate)> = outcomes
+    let predictors: Vec<Predictor> = outcomes
         .iter()
         .enumerate()
-        .filter_map(|(number, outcome)| Some((number, outcome.as_ref().ok()?.essential.clone())))
+        .filter_map(|(number, outcome)| {
+            let outcome = outcome.as_ref().ok()?;
+            Some(Predictor::of_estimate(number, &outcome.essential))
+        })
         .collect();
     let held_out = cross_validate(
         model,
         &prepared,
         dataset.validation,
-        &estimated
-            .iter()
-            .map(Predictor::of_estimate)
-            .collect::<Vec<_>>(),
+        &predictors,
         settings,
         progress,
     )?;
@@ -119,7 +119,7 @@ pub fn study(
             Projection::Platform => Vec::new(),
             projection => projection.line_names(&info),
         };
-        rows.push(match outcome {
+        let row = match outcome {
             Ok(outcome) => {
                 let torques = held_out.validations.iter();
                 let own: Vec<&CrossValidation> = torques
@@ -127,13 +127,16 @@ pub fn study(
                     .filter(|(_, owner)| **owner == number)
                     .map(|(one, _)| one)
                     .collect();
-                choice(&prepared, number, names, (outcome, &reference), &own)
+                ranked(&prepared, number, outcome, &reference, &own)
             }
             Err(error) => RankedProjection {
-                kept_actuators: names,
                 error: Some(error.to_string()),
                 ..RankedProjection::default()
             },
+        };
+        rows.push(RankedProjection {
+            kept_actuators: names,
+            ..row
         });
     }
     let platform = rows.remove(0);
@@ -154,12 +157,12 @@ pub fn study(
     })
 }
 
-/// Quality of one projection.
-fn choice(
+/// Quality of one projection compared with a reference, without the names of its actuators.
+fn ranked(
     prepared: &Prepared,
     number: usize,
-    kept_actuators: Vec<String>,
-    (outcome, reference): (&ProjectionEstimates, &ProjectionEstimates),
+    outcome: &ProjectionEstimates,
+    reference: &ProjectionEstimates,
     torques: &[&CrossValidation],
 ) -> RankedProjection {
     let (base, essential) = (&outcome.base, &outcome.essential);
@@ -174,7 +177,7 @@ fn choice(
         .map(|error| error.relative_error_percent)
         .collect();
     RankedProjection {
-        kept_actuators,
+        kept_actuators: Vec::new(),
         trusted: partition
             .as_ref()
             .is_none_or(|one| one.crossings == 0 && one.largest <= limit),

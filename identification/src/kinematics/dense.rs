@@ -172,8 +172,8 @@ pub(super) fn eliminated(matrix: &mut [Lanes], r: usize) -> Lanes {
     let (mut determinant, mut is_zero) = ([1.0; LANES], [false; LANES]);
     for k in 0..r {
         for i in k + 1..r {
-            let larger = larger(matrix, r, (k, i));
-            exchange(matrix, r, (k, i), &larger);
+            let larger = larger(matrix, r, k, i);
+            exchange(matrix, r, k, i, &larger);
             for lane in 0..LANES {
                 let own = determinant[lane];
                 determinant[lane] = if larger[lane] { -own } else { own };
@@ -213,9 +213,9 @@ pub(super) fn invert<const LANES: usize>(
     let mut is_regular = [true; LANES];
     for k in 0..r {
         for i in k + 1..r {
-            let larger = larger(matrix, r, (k, i));
-            exchange(matrix, r, (k, i), &larger);
-            exchange(inverse, r, (k, i), &larger);
+            let larger = larger(matrix, r, k, i);
+            exchange(matrix, r, k, i, &larger);
+            exchange(inverse, r, k, i, &larger);
         }
         let diagonal = matrix[k * r + k];
         for lane in 0..LANES {
@@ -252,7 +252,8 @@ pub(super) fn invert<const LANES: usize>(
 fn larger<const LANES: usize>(
     matrix: &[[f64; LANES]],
     r: usize,
-    (k, i): (usize, usize),
+    k: usize,
+    i: usize,
 ) -> [bool; LANES] {
     let (above, below) = (&matrix[k * r + k], &matrix[i * r + k]);
     std::array::from_fn(|lane| below[lane].abs() > above[lane].abs())
@@ -263,7 +264,8 @@ fn larger<const LANES: usize>(
 fn exchange<const LANES: usize>(
     matrix: &mut [[f64; LANES]],
     r: usize,
-    (a, b): (usize, usize),
+    a: usize,
+    b: usize,
     wanted: &[bool; LANES],
 ) {
     for j in 0..r {

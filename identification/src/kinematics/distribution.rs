@@ -22,13 +22,15 @@ pub(crate) fn least_norm(jacobian: &[f64], r: usize) -> Option<Vec<f64>> {
 /// actuators do not determine the platform.
 pub(crate) fn least_torques<const N: usize>(
     jacobians: &[f64],
-    (n, r): (usize, usize),
+    n: usize,
+    r: usize,
     inputs: [&[f64]; N],
 ) -> [Vec<f64>; N] {
     let mut torques = inputs.map(|inputs| vec![0.0; inputs.len() / r * n]);
     with_avx2(LeastTorques {
         jacobians,
-        sizes: (n, r),
+        n,
+        r,
         inputs,
         torques: &mut torques,
     });
@@ -38,8 +40,8 @@ pub(crate) fn least_torques<const N: usize>(
 /// Vectorised computation of J (Jᵀ J)^-1 Γ¹.
 struct LeastTorques<'a, const N: usize> {
     jacobians: &'a [f64],
-    /// n and r.
-    sizes: (usize, usize),
+    n: usize,
+    r: usize,
     inputs: [&'a [f64]; N],
     torques: &'a mut [Vec<f64>; N],
 }
@@ -49,7 +51,7 @@ impl<const N: usize> NullaryFnOnce for LeastTorques<'_, N> {
 
     #[inline(always)]
     fn call(self) {
-        let (n, r) = self.sizes;
+        let (n, r) = (self.n, self.r);
         let (mut normal, mut inverse) = (vec![[0.0; LANES]; r * r], vec![[0.0; LANES]; r * r]);
         let mut solved = vec![0.0; r];
         for (group, rows) in self.jacobians.chunks(LANES * n * r).enumerate() {
@@ -201,7 +203,7 @@ mod tests {
         let both = [vec![0.0; n * r], jacobian.clone()].concat();
         let inputs = [gamma, gamma].concat();
         let twice: Vec<f64> = inputs.iter().map(|input| 2.0 * input).collect();
-        let [one, two] = least_torques(&both, (n, r), [&inputs, &twice]);
+        let [one, two] = least_torques(&both, n, r, [&inputs, &twice]);
         assert_eq!(one[..n], [0.0; 4]);
         for ((a, b), c) in plain.iter().zip(&one[n..]).zip(&two[n..]) {
             assert!((a - b).abs() < 1e-12 && (2.0 * a - c).abs() < 1e-12);

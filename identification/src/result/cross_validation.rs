@@ -46,7 +46,7 @@ pub struct CrossValidation {
 impl CrossValidation {
     /// Combines a validation with the model and stage of its estimate.
     #[must_use]
-    pub fn new((model, stage): (ModelKind, Stage), payload: bool, validation: Validation) -> Self {
+    pub fn new(model: ModelKind, stage: Stage, payload: bool, validation: Validation) -> Self {
         Self {
             run: validation.run,
             payload,

@@ -144,15 +144,17 @@ pub(crate) fn validate(
     let mut sums = Sums::new(&layout, stride);
     let mut closure_residual = 0.0_f64;
     let mut counted = observer.settings.validation_samples;
+    let prediction_rows = PredictionRows {
+        observer,
+        layout: &layout,
+        candidates,
+    };
     while let Some(motion) = motions.next()? {
         closure_residual = closure_residual.max(motion.closure_residual);
         let blocks = motion.samples.div_ceil(BLOCK);
         let chunks = observer.chunks(&motion, 0..blocks, &mut failed)?;
-        let row = |(index, chunk)| {
-            let place = (index * BLOCK, chunk);
-            rows(observer, &layout, &motion, place, candidates, &failed)
-        };
-        let rows = chunks.par_iter().enumerate().map(row);
+        let rows = |(index, chunk)| prediction_rows.of(&motion, index * BLOCK, chunk, &failed);
+        let rows = chunks.par_iter().enumerate().map(rows);
         let rows = rows.collect::<Result<Vec<Vec<f64>>, Error>>()?;
         let mut kept = Vec::new();
         rows.iter().for_each(|rows| stream.push(rows, &mut kept));
@@ -251,70 +253,79 @@ fn validation(
     }
 }
 
-/// Rows of a chunk, which starts with sample `first` of the motion.
-fn rows(
-    observer: &Observer<'_>,
-    layout: &Layout,
-    motion: &Motion,
-    (first, chunk): (usize, &Chunk),
-    candidates: &[Candidate<'_>],
-    failed: &[Option<Error>],
-) -> Result<Vec<f64>, Error> {
-    let info = observer.model.info();
-    let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let count = BLOCK.min(motion.samples - first);
-    let pose = slice(&motion.pose, info.sizes.pose, first, count);
-    let mut jacobians = vec![0.0; count * n * r];
-    observer
-        .model
-        .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-        .map_err(|error| motion.outside(first + error.sample, error.error))?;
-    let closures = if layout.closure() {
-        closures(observer.model, pose, count)
-    } else {
-        None
-    };
-    let torques = slice(&motion.torques, n, first, count);
-    let mut rows = vec![0.0; count * layout.width()];
-    for (sample, row) in rows.chunks_exact_mut(layout.width()).enumerate() {
-        let jacobian = slice(&jacobians, n * r, sample, 1);
-        let Some(distribution) = least_norm(jacobian, r) else {
-            let error = overact::Error::SingularPlatform {
-                actuators: overact::ActuatorGroup::All,
-                condition: f64::INFINITY,
-            };
-            return Err(motion.outside(first + sample, error).into());
+/// Rows of the measurements and predictions of a run.
+struct PredictionRows<'a> {
+    observer: &'a Observer<'a>,
+    layout: &'a Layout,
+    candidates: &'a [Candidate<'a>],
+}
+
+impl PredictionRows<'_> {
+    /// Rows of a chunk, which starts with sample `first` of the motion.
+    fn of(
+        &self,
+        motion: &Motion,
+        first: usize,
+        chunk: &Chunk,
+        failed: &[Option<Error>],
+    ) -> Result<Vec<f64>, Error> {
+        let (observer, layout) = (self.observer, self.layout);
+        let info = observer.model.info();
+        let (n, r) = (info.sizes.actuators, info.sizes.dof);
+        let count = BLOCK.min(motion.samples - first);
+        let pose = slice(&motion.pose, info.sizes.pose, first, count);
+        let mut jacobians = vec![0.0; count * n * r];
+        observer
+            .model
+            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+            .map_err(|error| motion.outside(first + error.sample, error.error))?;
+        let closures = if layout.closure() {
+            closures(observer.model, pose, count)
+        } else {
+            None
         };
-        let measured = slice(torques, n, sample, 1);
-        row[layout.measured()].copy_from_slice(measured);
-        if let Some(range) = layout.projected() {
-            let gamma = transposed_product(jacobian, measured, r);
-            product(&distribution, &gamma, &mut row[range]);
-        }
-        for (number, candidate) in candidates.iter().enumerate() {
-            if failed[candidate.projection].is_some() {
-                continue;
+        let torques = slice(&motion.torques, n, first, count);
+        let mut rows = vec![0.0; count * layout.width()];
+        for (sample, row) in rows.chunks_exact_mut(layout.width()).enumerate() {
+            let jacobian = slice(&jacobians, n * r, sample, 1);
+            let Some(distribution) = least_norm(jacobian, r) else {
+                let error = overact::Error::SingularPlatform {
+                    actuators: overact::ActuatorGroup::All,
+                    condition: f64::INFINITY,
+                };
+                return Err(motion.outside(first + sample, error).into());
+            };
+            let measured = slice(torques, n, sample, 1);
+            row[layout.measured()].copy_from_slice(measured);
+            if let Some(range) = layout.projected() {
+                let gamma = transposed_product(jacobian, measured, r);
+                product(&distribution, &gamma, &mut row[range]);
             }
-            let projection = &observer.projections[candidate.projection];
-            let lines = chunk.lines[candidate.projection].iter();
-            let equations = lines.map(|rows| slice(rows, observer.base.len() + 1, sample, 1));
-            let predicted = candidate.predict(equations, |line| layout.line(number, line), row);
-            let place = &mut row[layout.predicted_torques(number)];
-            if *projection == Projection::Joints {
-                place.copy_from_slice(&predicted);
-                continue;
-            }
-            let gamma = platform_input(projection, &info, jacobian, &predicted);
-            product(&distribution, &gamma, place);
-            if let (Some(range), Some(closures)) = (layout.closure_torques(number), &closures) {
-                let closure = slice(closures, n * n, sample, 1);
-                if let Some(other) = least_multipliers(jacobian, closure, r) {
-                    product(&other, &gamma, &mut row[range]);
+            for (number, candidate) in self.candidates.iter().enumerate() {
+                if failed[candidate.projection].is_some() {
+                    continue;
+                }
+                let projection = &observer.projections[candidate.projection];
+                let lines = chunk.lines[candidate.projection].iter();
+                let equations = lines.map(|rows| slice(rows, observer.base.len() + 1, sample, 1));
+                let predicted = candidate.predict(equations, |line| layout.line(number, line), row);
+                let place = &mut row[layout.predicted_torques(number)];
+                if *projection == Projection::Joints {
+                    place.copy_from_slice(&predicted);
+                    continue;
+                }
+                let gamma = platform_input(projection, &info, jacobian, &predicted);
+                product(&distribution, &gamma, place);
+                if let (Some(range), Some(closures)) = (layout.closure_torques(number), &closures) {
+                    let closure = slice(closures, n * n, sample, 1);
+                    if let Some(other) = least_multipliers(jacobian, closure, r) {
+                        product(&other, &gamma, &mut row[range]);
+                    }
                 }
             }
         }
+        Ok(rows)
     }
-    Ok(rows)
 }
 
 /// B_p of the closure at some poses, n × n each, if the model has it.

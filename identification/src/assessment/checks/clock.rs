@@ -30,11 +30,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let check = Check::new(CheckKind::Clock, About::Model, "")
             .measured(wald.size().abs() / wald.deviation, "standard deviations")
             .against(wald.quantile(level), origin(1))
-            .detecting(vec![one.detectable((context, scores), (String::new(), ""), wald.visible(level))])
+            .detecting(vec![one.detectable(context, scores, "", wald.visible(level))])
             .shown_by(parabola(
                 wald,
                 "Residual for other sampling frequencies",
-                ("error of the sampling frequency", "%", 100.0),
+                "error of the sampling frequency",
+                "%",
+                100.0,
             ));
         if wald.probability >= level {
             let words = format!(

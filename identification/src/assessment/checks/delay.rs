@@ -30,19 +30,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let mut whose = Vec::new();
-    let mut found: Vec<Tested> = Vec::new();
-    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
-        let actuator = match *hypothesis {
-            FaultHypothesis::Delay => None,
-            FaultHypothesis::DriveDelay(actuator) => Some(actuator),
-            _ => continue,
-        };
-        for one in tested(scores, std::iter::once(Group::hypothesis(place))) {
-            whose.push(actuator);
-            found.push(one);
-        }
-    }
+    let is_delay = |hypothesis: FaultHypothesis| {
+        matches!(
+            hypothesis,
+            FaultHypothesis::Delay | FaultHypothesis::DriveDelay(_)
+        )
+    };
+    let found = tested(scores, Group::hypotheses(scores, is_delay));
     let level = level(found.len());
     let intervals = context.dataset.runs.iter();
     let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
@@ -59,7 +53,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         level,
         harmless,
     };
-    let check = limits.check((context, scores), shown);
+    let check = limits.check(context, scores, shown);
     let wald = &shown.wald;
     let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
     let number = |value: f64| significant(value, 3);
@@ -72,10 +66,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         );
         return Ok(vec![Check { words, ..check }]);
     }
-    let place = found.iter().position(|one| std::ptr::eq(one, shown));
-    let actuator = place.and_then(|place| whose[place]);
-    let name = actuator.and_then(|actuator| context.model.info().actuators.get(actuator));
-    let harm = worst_harm(context, scores, (&found, shown), level);
+    let name = match shown.hypothesis(scores) {
+        FaultHypothesis::DriveDelay(actuator) => context.model.info().actuators.get(actuator),
+        _ => None,
+    };
+    let harm = worst_harm(context, scores, &found, shown, level);
     let whose = name.map_or_else(
         || String::from("the torques are"),
         |name| format!("only the torque of `{name}` is"),
@@ -137,7 +132,7 @@ struct TestLimits {
 
 impl TestLimits {
     /// The check of one delay, without words.
-    fn check(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
+    fn check(&self, context: &Context<'_>, scores: &Scores, one: &Tested) -> Check {
         let wald = &one.wald;
         let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
         let beyond = (size.abs() - 1e3 * self.harmless).max(0.0);
@@ -151,14 +146,17 @@ impl TestLimits {
                 ),
             )
             .detecting(vec![one.detectable(
-                of,
-                (String::new(), "s"),
+                context,
+                scores,
+                "s",
                 self.harmless + wald.visible(self.level),
             )])
             .shown_by(parabola(
                 wald,
                 "Residual for torques that are shifted in time",
-                ("delay of the torques", "ms", 1e3),
+                "delay of the torques",
+                "ms",
+                1e3,
             ))
     }
 }

@@ -33,59 +33,77 @@ pub(super) struct Tested {
 }
 
 impl Tested {
-    /// Detection limit of the fault, with `size` as the detectable size.
+    /// The fault; not for a payload.
+    pub(super) fn hypothesis(&self, scores: &Scores) -> FaultHypothesis {
+        self.group.fault_hypothesis(scores)
+    }
+
+    /// Detection limit of the fault, without a name, with `size` as the detectable size.
     pub(super) fn detectable(
         &self,
-        (context, scores): (&Context<'_>, &Scores),
-        (name, unit): (String, &'static str),
+        context: &Context<'_>,
+        scores: &Scores,
+        unit: &'static str,
         size: f64,
     ) -> Detectable {
-        let all = self.shift_deviations(context, scores);
-        let most = all.iter().find(|(by, _)| by.is_finite());
+        let all = self.shifts(context, scores);
+        let most = all.iter().find(|shift| shift.deviations.is_finite());
         let base = context.estimates_of(Stage::Base).next();
         Detectable {
-            name,
+            name: String::new(),
             unit,
             is_length: false,
             deviation: self.wald.deviation,
             size,
             parameter: base
                 .zip(most)
-                .map_or_else(String::new, |(base, (_, column))| self::name(base, *column)),
-            shift_deviations: most.map_or(0.0, |(by, _)| {
+                .map_or_else(String::new, |(base, shift)| name(base, shift.column)),
+            shift_deviations: most.map_or(0.0, |shift| {
                 let own = self.size.unwrap_or_else(|| self.wald.size());
-                by * size / own.abs().max(f64::MIN_POSITIVE)
+                shift.deviations * size / own.abs().max(f64::MIN_POSITIVE)
             }),
         }
     }
 
-    /// Shifts of base and recommended parameters of the first model, with their columns.
-    ///
-    /// In standard deviations, largest first.
-    fn shift_deviations(&self, context: &Context<'_>, scores: &Scores) -> Vec<(f64, usize)> {
+    /// Shifts of base and recommended parameters of the first model, largest first.
+    fn shifts(&self, context: &Context<'_>, scores: &Scores) -> Vec<ParameterShift> {
         let Some(base) = context.estimates_of(Stage::Base).next() else {
             return Vec::new();
         };
         let mut recommended = context.estimates_of(Stage::Recommended);
         let smaller = recommended.find(|one| one.model == base.model);
-        let of_size = |wald: &WaldTest| -> Vec<(usize, f64)> {
-            let factor = self.band_factor * self.size.map_or(1.0, |size| size / wald.size());
-            let shifts = wald.shifts.iter();
-            shifts.map(|(column, by)| (*column, by * factor)).collect()
-        };
-        let recommended_shifts = smaller.and_then(|one| {
-            let wald = scores.test(&self.group, &one.columns())?;
-            Some((one, of_size(&wald)))
-        });
-        let mut all = by_deviation(base, &of_size(&self.wald));
-        all.extend(
-            recommended_shifts
-                .iter()
-                .flat_map(|(one, shifts)| by_deviation(one, shifts)),
-        );
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut all = self.shifts_of(base, &self.wald);
+        if let Some(one) = smaller
+            && let Some(wald) = scores.test(&self.group, &one.columns())
+        {
+            all.extend(self.shifts_of(one, &wald));
+        }
+        all.sort_by(|a, b| b.deviations.total_cmp(&a.deviations));
         all
     }
+
+    /// Shifts of the parameters of an estimate, from the test with its columns.
+    fn shifts_of(&self, estimate: &Estimate, wald: &WaldTest) -> Vec<ParameterShift> {
+        let factor = self.band_factor * self.size.map_or(1.0, |size| size / wald.size());
+        let deviation = |column: usize| {
+            let own = estimate.parameters.iter().find(|one| one.column == column);
+            let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
+            half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
+        };
+        let shift = |&(column, by): &(usize, f64)| ParameterShift {
+            column,
+            deviations: (by * factor).abs() / deviation(column),
+        };
+        wald.shifts.iter().map(shift).collect()
+    }
+}
+
+/// Absolute shift of a parameter by a fault.
+struct ParameterShift {
+    /// Column of the parameter.
+    column: usize,
+    /// Shift in standard deviations of the parameter.
+    deviations: f64,
 }
 
 /// Effect of a fault on the parameters.
@@ -146,7 +164,8 @@ pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
 pub(super) fn worst_harm(
     context: &Context<'_>,
     scores: &Scores,
-    (all, most_significant): (&[Tested], &Tested),
+    all: &[Tested],
+    most_significant: &Tested,
     level: f64,
 ) -> Harm {
     let likely = all.iter().filter(|one| {
@@ -181,23 +200,23 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> H
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Harm::none();
     };
-    let all = tested.shift_deviations(context, scores);
-    let Some(&(worst, column)) = all.first() else {
+    let all = tested.shifts(context, scores);
+    let Some(worst) = all.first() else {
         return Harm::none();
     };
     let name = |column: usize| name(base, column);
     let mut harm = Harm {
         explained: tested.wald.explained,
-        worst,
-        parameter: name(column),
+        worst: worst.deviations,
+        parameter: name(worst.column),
         ..Harm::none()
     };
-    if worst <= HARMFUL {
+    if harm.worst <= HARMFUL {
         return harm;
     }
-    for (by, column) in all {
-        let name = name(column);
-        if by > SPOILING && !harm.spoiled.contains(&name) {
+    for shift in all {
+        let name = name(shift.column);
+        if shift.deviations > SPOILING && !harm.spoiled.contains(&name) {
             harm.spoiled.push(name);
         }
     }
@@ -275,19 +294,6 @@ impl Harm {
     }
 }
 
-/// Absolute parameter shifts of an estimate in standard deviations, each with its column.
-fn by_deviation(estimate: &Estimate, shifts: &[(usize, f64)]) -> Vec<(f64, usize)> {
-    let deviation = |column: usize| {
-        let own = estimate.parameters.iter().find(|one| one.column == column);
-        let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
-        half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
-    };
-    let shifts = shifts.iter();
-    shifts
-        .map(|(column, by)| (by.abs() / deviation(*column), *column))
-        .collect()
-}
-
 fn name(estimate: &Estimate, column: usize) -> String {
     let own = estimate.parameters.iter().find(|one| one.column == column);
     own.map_or_else(String::new, |one: &ParameterEstimate| one.name.clone())
@@ -295,10 +301,16 @@ fn name(estimate: &Estimate, column: usize) -> String {
 
 /// Plot of the squared residual over the size of a fault.
 ///
-/// It is a parabola with its minimum at the fitted size.
-pub(super) fn parabola(wald: &WaldTest, title: &str, axis: (&str, &str, f64)) -> Evidence {
+/// It is a parabola with its minimum at the fitted size. `label` names the size, and `scale`
+/// converts it to `unit`.
+pub(super) fn parabola(
+    wald: &WaldTest,
+    title: &str,
+    label: &str,
+    unit: &str,
+    scale: f64,
+) -> Evidence {
     const POINTS: usize = 41;
-    let (label, unit, scale) = axis;
     let (size, reach) = (wald.size(), 2.0 * wald.size().abs() + 6.0 * wald.deviation);
     let x: Vec<f64> = (0..POINTS)
         .map(|i| reach * (2.0 * i as f64 / (POINTS - 1) as f64 - 1.0))

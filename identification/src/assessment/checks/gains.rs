@@ -2,13 +2,13 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Tested, most_significant, parabola, tested, worst_harm},
+    fault_hypotheses::{Harm, Tested, most_significant, only, parabola, worst_harm},
     level::{level, origin},
 };
 use crate::{
     assessment::{
         check::{About, Check, CheckKind, Detectable},
-        hypotheses::{FaultHypothesis, Group, Scores},
+        hypotheses::FaultHypothesis,
     },
     error::Error,
     significant,
@@ -24,44 +24,45 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let names = context.model.info().actuators;
     let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
-    let (mut actuators, mut found, mut untold) = (Vec::new(), Vec::new(), Vec::new());
-    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
+    let (mut found, mut inseparable) = (Vec::new(), Vec::new());
+    for hypothesis in &scores.hypotheses {
         let FaultHypothesis::Gain(actuator) = *hypothesis else {
             continue;
         };
-        match tested(scores, std::iter::once(Group::hypothesis(place))).pop() {
-            Some(one) => {
-                actuators.push(actuator);
-                found.push(one);
-            }
-            None => untold.push(actuator),
+        match only(scores, *hypothesis) {
+            Some(one) => found.push(one),
+            None => inseparable.push(actuator),
         }
     }
     if found.is_empty() {
         return Ok(none_separable(names).into_iter().collect());
     }
-    let level = level(found.len() + untold.len());
-    let told = actuators.iter().zip(&found).map(|(actuator, one)| {
-        let own = (name(*actuator).to_owned(), "");
-        one.detectable((context, scores), own, one.wald.visible(level))
+    let count = found.len() + inseparable.len();
+    let level = level(count);
+    let drive = |one: &Tested| match one.hypothesis(scores) {
+        FaultHypothesis::Gain(actuator) => name(actuator),
+        _ => "",
+    };
+    let limits = found.iter().map(|one| Detectable {
+        name: drive(one).to_owned(),
+        ..one.detectable(context, scores, "", one.wald.visible(level))
     });
-    let hidden = untold
+    let hidden = inseparable
         .iter()
         .map(|actuator| Detectable::never(name(*actuator)));
-    let detectable: Vec<Detectable> = told.chain(hidden).collect();
+    let detectable: Vec<Detectable> = limits.chain(hidden).collect();
     let worst = most_significant(&found, level);
-    let said = worst.map_or_else(
+    let check = worst.map_or_else(
         || passed_check(&found, &detectable),
         |worst| {
-            let place = found.iter().position(|one| std::ptr::eq(one, worst));
-            let actuator = place.map_or("", |place| name(actuators[place]));
-            failed_check((context, scores), (&found, worst), actuator, level)
+            let harm = worst_harm(context, scores, &found, worst, level);
+            failed_check(worst, &harm, drive(worst))
         },
     );
     let limit = worst.or(found.first()).map(|one| one.wald.quantile(level));
-    let count = found.len() + untold.len();
     Ok(vec![
-        said.against(limit.unwrap_or_default(), origin(count))
+        check
+            .against(limit.unwrap_or_default(), origin(count))
             .detecting(detectable),
     ])
 }
@@ -100,13 +101,7 @@ fn passed_check(found: &[Tested], detectable: &[Detectable]) -> Check {
 }
 
 /// The failed check of one drive.
-fn failed_check(
-    (context, scores): (&Context<'_>, &Scores),
-    (found, worst): (&[Tested], &Tested),
-    actuator: &str,
-    level: f64,
-) -> Check {
-    let harm = worst_harm(context, scores, (found, worst), level);
+fn failed_check(worst: &Tested, harm: &Harm, actuator: &str) -> Check {
     let size = worst.wald.size();
     let by = match size {
         // The first-order test has no valid size for large errors.
@@ -122,11 +117,13 @@ fn failed_check(
     Check::new(CheckKind::WrongGain, About::Model, words)
         .of_actuator(actuator)
         .measured(size.abs() / worst.wald.deviation, "standard deviations")
-        .with_harm(&harm)
+        .with_harm(harm)
         .shown_by(parabola(
             &worst.wald,
             &format!("Residual for other gains of {actuator}"),
-            ("error of the gain", "%", 100.0),
+            "error of the gain",
+            "%",
+            100.0,
         ))
 }
 

@@ -21,49 +21,35 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let mut hypotheses: Vec<FaultHypothesis> = Vec::new();
-    let mut found: Vec<Tested> = Vec::new();
-    let mut tests = 0;
-    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
-        if let FaultHypothesis::Offset(_)
-        | FaultHypothesis::Scale(_)
-        | FaultHypothesis::Scales
-        | FaultHypothesis::Eccentric(..)
-        | FaultHypothesis::Play(_)
-        | FaultHypothesis::Length(_) = *hypothesis
-        {
-            for one in tested(scores, std::iter::once(Group::hypothesis(place))) {
-                tests += 1;
-                // Friction errors at reversals repeat with each period, and the standard deviation
-                // ignores that. They look like a slightly eccentric encoder, which is therefore
-                // reported only if harmful.
-                let is_small = matches!(hypothesis, FaultHypothesis::Eccentric(..))
-                    && harm(context, scores, &one).worst <= HARMFUL;
-                if is_small {
-                    continue;
-                }
-                hypotheses.push(*hypothesis);
-                found.push(one);
-            }
-        }
-    }
+    let is_geometric = |hypothesis: FaultHypothesis| {
+        matches!(
+            hypothesis,
+            FaultHypothesis::Offset(_)
+                | FaultHypothesis::Scale(_)
+                | FaultHypothesis::Scales
+                | FaultHypothesis::Eccentric(..)
+                | FaultHypothesis::Play(_)
+                | FaultHypothesis::Length(_)
+        )
+    };
+    let mut found = tested(scores, Group::hypotheses(scores, is_geometric));
+    let tests = found.len();
+    // Friction errors at reversals repeat with each period, and the standard deviation ignores
+    // that. They look like a slightly eccentric encoder, which is therefore reported only if
+    // harmful.
+    found.retain(|one| {
+        !matches!(one.hypothesis(scores), FaultHypothesis::Eccentric(..))
+            || harm(context, scores, one).worst > HARMFUL
+    });
     if found.is_empty() {
         return Ok(Vec::new());
     }
     let level = level(tests);
     let Some(worst) = most_significant(&found, level) else {
-        return Ok(vec![nothing(
-            (context, scores),
-            (&hypotheses, &found),
-            level,
-        )]);
+        return Ok(vec![passed_check(context, scores, &found, level)]);
     };
-    let place = found
-        .iter()
-        .position(|one| std::ptr::eq(one, worst))
-        .unwrap_or(0);
-    let hypothesis = hypotheses[place];
-    let harm = worst_harm(context, scores, (&found, worst), level);
+    let hypothesis = worst.hypothesis(scores);
+    let harm = worst_harm(context, scores, &found, worst, level);
     let (name, unit) = (name(context, hypothesis), unit(context, hypothesis));
     let size = significant(worst.wald.size().abs(), 3);
     let deviation = significant(worst.wald.deviation, 2);
@@ -139,10 +125,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let check = Check::new(kind, About::Model, words)
         .measured(ratio(worst), "standard deviations")
         .against(worst.wald.quantile(level), origin(tests))
-        .shown_by(parabola(&worst.wald, &title, (axis, unit, 1.0)))
+        .shown_by(parabola(&worst.wald, &title, axis, unit, 1.0))
         .with_harm(&harm);
-    let detectable = detectable((context, scores), (&hypotheses, &found), level).into_iter();
-    let check = check.detecting(detectable.map(|(_, one)| one).collect());
+    let limits = detection_limits(context, scores, &found, level).into_iter();
+    let check = check.detecting(limits.map(|(_, limit)| limit).collect());
     Ok(vec![match hypothesis {
         FaultHypothesis::Length(_) | FaultHypothesis::Scales => check,
         _ => check.of_actuator(&name),
@@ -150,14 +136,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 }
 
 /// The passed check, with its detection limits.
-fn nothing(
-    (context, scores): (&Context<'_>, &Scores),
-    (hypotheses, found): (&[FaultHypothesis], &[Tested]),
-    level: f64,
-) -> Check {
-    let detectable = detectable((context, scores), (hypotheses, found), level);
+fn passed_check(context: &Context<'_>, scores: &Scores, found: &[Tested], level: f64) -> Check {
+    let limits = detection_limits(context, scores, found, level);
     let visible = |of: fn(&FaultHypothesis) -> bool| -> String {
-        let own = detectable.iter().filter(|(hypothesis, _)| of(hypothesis));
+        let own = limits.iter().filter(|(hypothesis, _)| of(hypothesis));
         let each = own.map(|(_, one)| {
             let size = significant(one.size, 2);
             format!("`{}` {size} {}", one.name, one.unit)
@@ -184,30 +166,33 @@ fn nothing(
     Check::new(CheckKind::EncoderOffset, About::Model, words.join("; "))
         .measured(largest, "standard deviations")
         .against(threshold, origin(found.len()))
-        .detecting(detectable.into_iter().map(|(_, one)| one).collect())
+        .detecting(limits.into_iter().map(|(_, limit)| limit).collect())
 }
 
 /// Detection limit of each offset, scale and length.
-fn detectable(
-    (context, scores): (&Context<'_>, &Scores),
-    (hypotheses, found): (&[FaultHypothesis], &[Tested]),
+fn detection_limits(
+    context: &Context<'_>,
+    scores: &Scores,
+    found: &[Tested],
     level: f64,
 ) -> Vec<(FaultHypothesis, Detectable)> {
-    let both = hypotheses.iter().zip(found);
-    let sizes = both.filter(|(hypothesis, _)| {
+    let limit = |one: &Tested| {
+        let hypothesis = one.hypothesis(scores);
+        let (unit, visible) = (unit(context, hypothesis), one.wald.visible(level));
+        let limit = Detectable {
+            name: name(context, hypothesis),
+            is_length: matches!(hypothesis, FaultHypothesis::Length(_)),
+            ..one.detectable(context, scores, unit, visible)
+        };
+        (hypothesis, limit)
+    };
+    let has_limit = |one: &&Tested| {
         !matches!(
-            hypothesis,
+            one.hypothesis(scores),
             FaultHypothesis::Play(_) | FaultHypothesis::Eccentric(..)
         )
-    });
-    let one = |(&hypothesis, one): (&FaultHypothesis, &Tested)| {
-        let (name, unit) = (name(context, hypothesis), unit(context, hypothesis));
-        let visible = one.wald.visible(level);
-        let own = one.detectable((context, scores), (name, unit), visible);
-        let is_length = matches!(hypothesis, FaultHypothesis::Length(_));
-        (hypothesis, Detectable { is_length, ..own })
     };
-    sizes.map(one).collect()
+    found.iter().filter(has_limit).map(limit).collect()
 }
 
 fn ratio(one: &Tested) -> f64 {

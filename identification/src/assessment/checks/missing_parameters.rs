@@ -23,7 +23,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let (hypotheses, found) = all_tested(scores);
+    let found = tested(
+        scores,
+        Group::hypotheses(scores, |one| one.shape().is_some()),
+    );
     if found.is_empty() {
         return Ok(Vec::new());
     }
@@ -31,11 +34,8 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let ratio = |one: &Tested| one.wald.strength();
     let worst = most_significant(&found, level);
     let limit = worst.unwrap_or(&found[0]).wald.quantile(level);
-    let check = Check::new(CheckKind::MissingParameter, About::Model, "").shown_by(evidence(
-        &hypotheses,
-        &found,
-        limit,
-    ));
+    let check = Check::new(CheckKind::MissingParameter, About::Model, "")
+        .shown_by(evidence(scores, &found, limit));
     let Some(worst) = worst else {
         let largest = found.iter().map(ratio).fold(0.0, f64::max);
         let words = format!(
@@ -47,10 +47,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 .against(limit, origin(tests)),
         ]);
     };
-    let place = found.iter().position(|one| std::ptr::eq(one, worst));
-    let place = place.unwrap_or(0);
-    let mut harm = worst_harm(context, scores, (&found, worst), level);
-    let others = others((context, scores), (&hypotheses, &found, place), level);
+    let hypothesis = worst.hypothesis(scores);
+    let mut harm = worst_harm(context, scores, &found, worst, level);
+    let others = others(context, scores, &found, hypothesis, level);
     for (_, other) in &others {
         harm.with(context, other);
     }
@@ -60,12 +59,12 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         harm.words(),
         too(&others)
     );
-    let words = words(context, hypotheses[place], worst, rest);
+    let words = words(context, hypothesis, worst, rest);
     let check = Check { words, ..check }
         .measured(ratio(worst), "standard deviations")
         .against(limit, origin(tests))
         .with_harm(&harm);
-    let actuator = match hypotheses[place].0 {
+    let actuator = match hypothesis {
         FaultHypothesis::Torque(actuator, _) => context.model.info().actuators.get(actuator),
         _ => None,
     };
@@ -75,32 +74,20 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// All testable torque and force hypotheses, with their shapes.
-fn all_tested(scores: &Scores) -> (Vec<(FaultHypothesis, Shape)>, Vec<Tested>) {
-    let (mut hypotheses, mut found) = (Vec::new(), Vec::new());
-    for (place, hypothesis) in scores.hypotheses.iter().enumerate() {
-        if let FaultHypothesis::Torque(_, shape) | FaultHypothesis::Force(_, shape) = *hypothesis {
-            for one in tested(scores, std::iter::once(Group::hypothesis(place))) {
-                hypotheses.push((*hypothesis, shape));
-                found.push(one);
-            }
-        }
-    }
-    (hypotheses, found)
-}
-
 /// Describes the strongest hypothesis; `rest` is the consequence.
 fn words(
     context: &Context<'_>,
-    (hypothesis, shape): (FaultHypothesis, Shape),
+    hypothesis: FaultHypothesis,
     worst: &Tested,
     rest: String,
 ) -> String {
     let info = context.model.info();
-    let (what, name) = match hypothesis {
-        FaultHypothesis::Force(line, _) => ("force on", info.coordinates.get(line)),
-        FaultHypothesis::Torque(actuator, _) => ("torque of", info.actuators.get(actuator)),
-        _ => ("", None),
+    let (what, name, shape) = match hypothesis {
+        FaultHypothesis::Force(line, shape) => ("force on", info.coordinates.get(line), shape),
+        FaultHypothesis::Torque(actuator, shape) => {
+            ("torque of", info.actuators.get(actuator), shape)
+        }
+        _ => return String::new(),
     };
     let finding = Finding {
         what: format!("{what} {}", called(name.copied().unwrap_or_default())),
@@ -124,8 +111,10 @@ fn words(
 ///
 /// If all drives share a fault, chance decides which of them has the strongest result.
 fn others(
-    (context, scores): (&Context<'_>, &Scores),
-    (hypotheses, found, worst): (&[(FaultHypothesis, Shape)], &[Tested], usize),
+    context: &Context<'_>,
+    scores: &Scores,
+    found: &[Tested],
+    strongest: FaultHypothesis,
     level: f64,
 ) -> Vec<(String, Harm)> {
     let info = context.model.info();
@@ -134,17 +123,16 @@ fn others(
         FaultHypothesis::Force(line, _) => (1, line),
         _ => (2, 0),
     };
-    let mut places: Vec<(usize, usize)> = hypotheses.iter().map(|(one, _)| place(*one)).collect();
-    let own = places[worst];
+    let place_of = |one: &Tested| place(one.hypothesis(scores));
+    let mut places: Vec<(usize, usize)> = found.iter().map(place_of).collect();
     places.sort_unstable();
     places.dedup();
-    places.retain(|one| *one != own);
+    places.retain(|one| *one != place(strongest));
     let worst_of = |at: (usize, usize)| {
-        let all = hypotheses.iter().zip(found);
-        let beyond =
-            all.filter(|((one, _), tested)| place(*one) == at && tested.wald.probability < level);
-        let explained = |one: &Tested| one.wald.explained;
-        let (_, tested) = beyond.max_by(|a, b| explained(a.1).total_cmp(&explained(b.1)))?;
+        let beyond = found
+            .iter()
+            .filter(|one| place_of(one) == at && one.wald.probability < level);
+        let tested = beyond.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))?;
         let harm = harm(context, scores, tested);
         let names = match at.0 {
             0 => info.actuators,
@@ -238,16 +226,17 @@ impl Finding {
 }
 
 /// Plot of size by standard deviation for all hypotheses, grouped by shape.
-fn evidence(hypotheses: &[(FaultHypothesis, Shape)], found: &[Tested], limit: f64) -> Evidence {
+fn evidence(scores: &Scores, found: &[Tested], limit: f64) -> Evidence {
     let mut points: Vec<(Shape, Curve)> = Vec::new();
-    for ((hypothesis, shape), one) in hypotheses.iter().zip(found) {
-        let (FaultHypothesis::Torque(number, _) | FaultHypothesis::Force(number, _)) = *hypothesis
+    for one in found {
+        let (FaultHypothesis::Torque(number, shape) | FaultHypothesis::Force(number, shape)) =
+            one.hypothesis(scores)
         else {
             continue;
         };
-        let place = points.iter().position(|(own, _)| own == shape);
+        let place = points.iter().position(|(own, _)| *own == shape);
         let place = place.unwrap_or_else(|| {
-            points.push((*shape, Curve::new(shape.words(), &[], &[])));
+            points.push((shape, Curve::new(shape.words(), &[], &[])));
             points.len() - 1
         });
         let curve = &mut points[place].1;

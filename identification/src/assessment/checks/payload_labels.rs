@@ -35,7 +35,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     for (number, log) in runs.iter().enumerate() {
         let group = Group::payload(scores, number);
         for one in tested(scores, std::iter::once(group)) {
-            checks.push(of_run(context, scores, (log, runs.len()), &one, level));
+            checks.push(of_run(context, scores, log, &one, level));
         }
     }
     Ok(checks)
@@ -88,18 +88,13 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
     Some(Check::new(CheckKind::PayloadLabel, About::Model, words).found())
 }
 
-fn of_run(
-    context: &Context<'_>,
-    scores: &Scores,
-    (log, runs): (&Log, usize),
-    one: &Tested,
-    level: f64,
-) -> Check {
+/// The check of one run.
+fn of_run(context: &Context<'_>, scores: &Scores, log: &Log, one: &Tested, level: f64) -> Check {
     let wald = &one.wald;
     let check = Check::new(CheckKind::PayloadLabel, About::Model, "")
         .in_run(log.name())
         .measured(wald.probability, "probability")
-        .against(level, origin(runs));
+        .against(level, origin(context.dataset.runs.len()));
     let label = if log.payload() { "with" } else { "without" };
     if wald.probability >= level {
         let words = format!("the run is one {label} the payload, as labelled");

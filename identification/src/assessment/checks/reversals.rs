@@ -49,18 +49,18 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             .as_ref()
             .is_none_or(|one| explains(one) <= explains(found))
         {
-            return Ok(vec![limits.filtered((context, scores), found)]);
+            return Ok(vec![limits.filtered(context, scores, found)]);
         }
     }
     if let Some(bent) = &bent {
-        return Ok(vec![limits.bent((context, scores), bent)]);
+        return Ok(vec![limits.bent(context, scores, bent)]);
     }
     let shown = only(scores, FaultHypothesis::FrictionSmoothing)
         .map(wider)
         .or(all);
     let passed_check = shown.map(|one| {
         let visible = one.wald.visible(limits.level);
-        limits.check((context, scores), &one, format!(
+        limits.check(context, scores, &one, format!(
             "dry friction changes where velocities change sign; the detection limit is a mean of all signals over {} ms",
             time(visible)
         ))
@@ -96,39 +96,42 @@ struct TestLimits {
 
 impl TestLimits {
     /// A check with its words.
-    fn check(&self, of: (&Context<'_>, &Scores), one: &Tested, words: String) -> Check {
+    fn check(&self, context: &Context<'_>, scores: &Scores, one: &Tested, words: String) -> Check {
         let wald = &one.wald;
         Check::new(CheckKind::Reversals, About::Model, words)
             .measured(wald.size().abs() / wald.deviation, "standard deviations")
             .against(wald.quantile(self.level), origin(self.tests))
             .detecting(vec![one.detectable(
-                of,
-                (String::new(), UNIT),
+                context,
+                scores,
+                UNIT,
                 wald.visible(self.level),
             )])
             .shown_by(parabola(
                 wald,
                 "Residual for smoothed dry friction",
-                ("half of the filter's mean square delay", "ms²", 1e6),
+                "half of the filter's mean square delay",
+                "ms²",
+                1e6,
             ))
     }
 
     /// The failed check of a filter that all signals passed.
-    fn filtered(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
-        let mut harm = harm(of.0, of.1, one);
+    fn filtered(&self, context: &Context<'_>, scores: &Scores, one: &Tested) -> Check {
+        let mut harm = harm(context, scores, one);
         // The filter also rounds reversals.
-        harm.spoil(dry_friction(of.0));
+        harm.spoil(dry_friction(context));
         let words = format!(
             "positions and torques look equally filtered, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without it, or with a cutoff far above the motion",
             time(one.wald.size()),
             harm.words()
         );
-        self.check(of, one, words).with_harm(&harm)
+        self.check(context, scores, one, words).with_harm(&harm)
     }
 
     /// The failed check of dry friction that differs around reversals.
-    fn bent(&self, of: (&Context<'_>, &Scores), one: &Tested) -> Check {
-        let harm = harm(of.0, of.1, one);
+    fn bent(&self, context: &Context<'_>, scores: &Scores, one: &Tested) -> Check {
+        let harm = harm(context, scores, one);
         let words = if one.wald.size() > 0.0 {
             format!(
                 "dry friction is smoother than the signs of the velocities, as if all signals were means over {} ms; {}. Possible causes are one filter for positions and torques before logging, or presliding friction: log without filters, or skip equations near standstill (`standstill_velocity`)",
@@ -141,6 +144,6 @@ impl TestLimits {
                 harm.words()
             )
         };
-        self.check(of, one, words).with_harm(&harm)
+        self.check(context, scores, one, words).with_harm(&harm)
     }
 }

@@ -72,15 +72,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                     origin(1)
                 ),
             )
-            .detecting(vec![whole.detectable(
-                (context, scores),
-                (String::new(), UNIT),
-                visible,
-            )])
+            .detecting(vec![whole.detectable(context, scores, UNIT, visible)])
             .shown_by(parabola(
                 wald,
                 "Residual for smoothed torques",
-                ("half of the filter's mean square delay", "ms²", 1e6),
+                "half of the filter's mean square delay",
+                "ms²",
+                1e6,
             ))
     };
     if wald.probability_beyond(harmless) >= level {

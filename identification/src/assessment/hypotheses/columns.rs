@@ -54,6 +54,14 @@ pub(crate) enum FaultHypothesis {
 }
 
 impl FaultHypothesis {
+    /// Shape of a torque or force that the model may lack; `None` for other faults.
+    pub(crate) const fn shape(self) -> Option<Shape> {
+        match self {
+            Self::Torque(_, shape) | Self::Force(_, shape) => Some(shape),
+            _ => None,
+        }
+    }
+
     /// Number of columns.
     const fn width(self) -> usize {
         match self {
@@ -293,28 +301,34 @@ impl Sample<'_> {
     }
 }
 
-/// Motion of all actuators at all samples, samples × n.
-///
-/// The inputs are positions, velocities, accelerations and torques. Velocity signs follow the dry
-/// friction columns.
-pub(super) fn actuator_states(
-    (motion, reversal): (&Motion, Reversal),
-    [positions, velocities, accelerations, torques]: [&[f64]; 4],
-) -> Vec<ActuatorState> {
-    let n = positions.len() / motion.samples.max(1);
-    let actuator_state = |place: usize| {
-        let (velocity, acceleration) = (velocities[place], accelerations[place]);
-        let step = acceleration / motion.sampling_frequency;
-        ActuatorState {
-            position: positions[place],
-            velocity,
-            sign: reversal.sign(velocity, step).unwrap_or(0.0),
-            acceleration,
-            torque: torques[place],
-            time: motion.time(place / n),
-        }
-    };
-    (0..positions.len()).map(actuator_state).collect()
+/// Signals of all actuators, samples × n.
+pub(super) struct ActuatorSignals<'a> {
+    pub(super) positions: &'a [f64],
+    pub(super) velocities: &'a [f64],
+    pub(super) accelerations: &'a [f64],
+    pub(super) torques: &'a [f64],
+}
+
+impl ActuatorSignals<'_> {
+    /// States of all actuators at all samples, samples × n.
+    ///
+    /// Velocity signs follow the dry friction columns.
+    pub(super) fn states(&self, motion: &Motion, reversal: Reversal) -> Vec<ActuatorState> {
+        let n = self.positions.len() / motion.samples.max(1);
+        let state = |place: usize| {
+            let (velocity, acceleration) = (self.velocities[place], self.accelerations[place]);
+            let step = acceleration / motion.sampling_frequency;
+            ActuatorState {
+                position: self.positions[place],
+                velocity,
+                sign: reversal.sign(velocity, step).unwrap_or(0.0),
+                acceleration,
+                torque: self.torques[place],
+                time: motion.time(place / n),
+            }
+        };
+        (0..self.positions.len()).map(state).collect()
+    }
 }
 
 /// Derivatives of `width` interleaved signals by central differences.

@@ -1,6 +1,6 @@
 //! Columns that are tested together.
 
-use super::scores::Scores;
+use super::{columns::FaultHypothesis, scores::Scores};
 
 /// A group of columns: those of one hypothesis, or of the payload in one run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,11 +20,26 @@ impl Group {
         }
     }
 
+    /// All hypotheses that are `wanted`, in their order.
+    pub(crate) fn hypotheses(
+        scores: &Scores,
+        wanted: impl Fn(FaultHypothesis) -> bool,
+    ) -> impl Iterator<Item = Self> {
+        let all = scores.hypotheses.iter().enumerate();
+        let wanted = all.filter(move |(_, hypothesis)| wanted(**hypothesis));
+        wanted.map(|(number, _)| Self::hypothesis(number))
+    }
+
     /// The payload parameters in one run.
     pub(crate) fn payload(scores: &Scores, run: usize) -> Self {
         Self {
             block: scores.hypotheses.len(),
             run: Some(run),
         }
+    }
+
+    /// The hypothesis of the columns; not for a payload.
+    pub(crate) fn fault_hypothesis(&self, scores: &Scores) -> FaultHypothesis {
+        scores.hypotheses[self.block]
     }
 }

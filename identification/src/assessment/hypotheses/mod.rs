@@ -66,6 +66,6 @@ pub(crate) use group::Group;
 pub(crate) use misreading::Misreading;
 pub(crate) use pace::Pace;
 pub(crate) use pairs::Correlation;
-pub(crate) use scores::{Scores, scores};
+pub(crate) use scores::{ScoreTest, Scores};
 pub(crate) use shapes::{PositionRange, Shape};
 pub(crate) use wald_test::WaldTest;

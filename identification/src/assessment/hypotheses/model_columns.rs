@@ -2,8 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{columns::Layout, scaled::Scaled, sections::RunScores};
-use crate::estimation::periodic_variance::Mean;
+use super::{scaled::Scaled, scores::Scores};
 
 /// Columns of base parameters, and rates of the dry friction columns.
 #[derive(Debug, Clone)]
@@ -21,21 +20,17 @@ pub(super) struct ModelColumns {
 }
 
 impl ModelColumns {
-    /// The base parameter columns `selected`, followed by the friction rates `late`.
+    /// The base parameter columns `selected`, followed by the friction rates.
     ///
     /// `None` if these columns are linearly dependent.
-    pub(super) fn new(
-        layout: &Layout,
-        (runs, means): (&[RunScores], &[(Vec<usize>, Mean)]),
-        (selected, late): (&[usize], &[usize]),
-    ) -> Option<Self> {
+    pub(super) fn new(scores: &Scores, selected: &[usize]) -> Option<Self> {
         let count = selected.len();
-        let selected: Vec<usize> = selected.iter().chain(late).copied().collect();
-        let products: Vec<Vec<DMatrix<f64>>> = runs
+        let selected: Vec<usize> = selected.iter().chain(&scores.late).copied().collect();
+        let products: Vec<Vec<DMatrix<f64>>> = scores
+            .runs
             .iter()
             .map(|run| {
-                let both = (selected.as_slice(), selected.as_slice());
-                let over = |m| run.cross_products(layout, m, both);
+                let over = |m| run.cross_products(&scores.layout, m, &selected, &selected);
                 (0..=2 * run.cosines).map(over).collect()
             })
             .collect();
@@ -44,7 +39,8 @@ impl ModelColumns {
         let whole = Scaled::new(&gram.view((0, 0), (count, count)).clone_owned())?;
         let gram = Scaled::new(&gram)?;
         let inverse = gram.solve(&DMatrix::identity(selected.len(), selected.len()));
-        let left = means.iter().map(|(_, mean)| mean.left(&selected, &inverse));
+        let means = scores.means.iter();
+        let left = means.map(|own| own.mean.left(&selected, &inverse));
         Some(Self {
             count,
             left: left.collect(),

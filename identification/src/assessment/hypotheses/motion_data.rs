@@ -5,7 +5,7 @@ use std::ops::Range;
 use overact::Function;
 
 use super::{
-    columns::{FaultHypothesis, Sample, actuator_states, rates},
+    columns::{ActuatorSignals, FaultHypothesis, Sample, rates},
     misreading::Misreading,
     pass::Pass,
     prediction::{Prediction, dot},
@@ -71,8 +71,8 @@ impl<'a> MotionData<'a> {
         let positions = ask(Function::ActuatorPositions, &states[..1])?;
         let base = base(pass, motion)?;
         let explained = explained(pass, &base);
-        let inputs = measured(motion, jacobians, (n, sizes.dof));
-        let [torques, smooth] = torques_without_residual(motion, jacobians, (&inputs, &explained));
+        let inputs = measured(motion, jacobians, n, sizes.dof);
+        let [torques, smooth] = torques_without_residual(motion, jacobians, &inputs, &explained);
         let torque_rates = rates(&torques, n, frequency);
         let prediction = Prediction {
             model: pass.model,
@@ -81,17 +81,22 @@ impl<'a> MotionData<'a> {
             values: pass.frame.values,
         };
         let [velocities, accelerations] = prediction.actuators(motion, jacobians)?;
-        let signals: [&[f64]; 4] = [&positions, &velocities, &accelerations, &torques];
-        let actuators = actuator_states((motion, Reversal::new(pass.settings)), signals);
+        let signals = ActuatorSignals {
+            positions: &positions,
+            velocities: &velocities,
+            accelerations: &accelerations,
+            torques: &torques,
+        };
+        let actuators = signals.states(motion, Reversal::new(pass.settings));
         let torque_turns = rates(&torque_rates, n, frequency);
         let common_filter =
-            prediction.common_filter(motion, [&torques, &torque_turns], jacobians, &actuators)?;
+            prediction.common_filter(motion, &torques, &torque_turns, jacobians, &actuators)?;
         let hypotheses = pass.frame.hypotheses;
         let moved = hypotheses
             .iter()
             .any(|one| matches!(one, FaultHypothesis::Offset(_)));
         let misread = if moved {
-            prediction.misread(motion, (&torques, jacobians), &actuators, &Misreading::ALL)?
+            prediction.misread(motion, &torques, jacobians, &actuators)?
         } else {
             Vec::new()
         };
@@ -217,7 +222,7 @@ fn explained(pass: &Pass<'_>, base: &[Vec<Vec<f64>>]) -> Explained {
 }
 
 /// Measured inputs Γ¹, samples × r.
-fn measured(motion: &Motion, jacobians: &[f64], (n, r): (usize, usize)) -> Vec<f64> {
+fn measured(motion: &Motion, jacobians: &[f64], n: usize, r: usize) -> Vec<f64> {
     let mut inputs = vec![0.0; motion.samples * r];
     let torques = motion.torques.chunks_exact(n);
     let jacobians = jacobians.chunks_exact(n * r).zip(torques);
@@ -234,10 +239,11 @@ fn measured(motion: &Motion, jacobians: &[f64], (n, r): (usize, usize)) -> Vec<f
 fn torques_without_residual(
     motion: &Motion,
     jacobians: &[f64],
-    (inputs, explained): (&[f64], &Explained),
+    inputs: &[f64],
+    explained: &Explained,
 ) -> [Vec<f64>; 2] {
     let of_sample = |all: &[f64]| all.len() / motion.samples.max(1);
-    let sizes = (of_sample(&motion.torques), of_sample(inputs));
+    let (n, r) = (of_sample(&motion.torques), of_sample(inputs));
     let left = inputs.iter().zip(&explained.all).map(|(y, all)| y - all);
     let left: Vec<f64> = left.collect();
     let rough = left
@@ -245,7 +251,7 @@ fn torques_without_residual(
         .zip(&explained.dry)
         .map(|(left, dry)| left + dry);
     let rough: Vec<f64> = rough.collect();
-    let taken = least_torques(jacobians, sizes, [&left, &rough]);
+    let taken = least_torques(jacobians, n, r, [&left, &rough]);
     taken.map(|taken| {
         let both = motion.torques.iter().zip(taken);
         both.map(|(torque, taken)| torque - taken).collect()

@@ -18,7 +18,7 @@
 
 use nalgebra::{DMatrix, DMatrixView, DVector};
 
-use super::scaled::Scaled;
+use super::{scaled::Scaled, scores::Scores};
 use crate::estimation::intervals::distributions::fisher_tail;
 
 /// Largest standard deviation of a correlation that is reported.
@@ -93,79 +93,79 @@ impl Pairs {
     }
 }
 
-/// Correlations of all pairs that the motion determines; each run has its number of cosines.
-///
-/// Each pair is fitted separately, together with the variances σ_kk. For a pair,
-/// `periodic_variance` is the variance that periodic residuals add to the mean of a product. Its
-/// second value is the square of that by its degrees of freedom.
-pub(super) fn correlations<'a>(
-    runs: impl Iterator<Item = (&'a Pairs, usize)> + Clone,
-    periodic_variance: &dyn Fn((usize, usize)) -> [f64; 2],
-) -> Vec<Correlation> {
-    let Some((first, _)) = runs.clone().next() else {
-        return Vec::new();
-    };
-    let places = || first.pairs.iter().enumerate();
-    let own: Vec<usize> = places()
-        .filter(|(_, (k, l))| k == l)
-        .map(|(place, _)| place)
-        .collect();
-    let off_diagonal = places().filter(|(_, (k, l))| k != l);
-    off_diagonal
-        .filter_map(|(place, &actuators)| {
-            let mut chosen = own.clone();
-            chosen.push(place);
-            correlation(
-                actuators,
-                &chosen,
-                (runs.clone(), periodic_variance(actuators)),
-            )
-        })
-        .collect()
-}
-
-/// Correlation of a pair, which is the last of the `chosen` indices.
-fn correlation<'a>(
-    actuators: (usize, usize),
-    chosen: &[usize],
-    (runs, [periodic_variance, scatter]): (
-        impl Iterator<Item = (&'a Pairs, usize)> + Clone,
-        [f64; 2],
-    ),
-) -> Option<Correlation> {
-    let count = chosen.len();
-    let of = |run: &Pairs, m: usize| run.gram(m).select_rows(chosen).select_columns(chosen);
-    let (mut gram, mut score) = (DMatrix::zeros(count, count), DMatrix::zeros(count, 1));
-    for (run, _) in runs.clone() {
-        gram += of(run, 0);
-        score += run.scores.select_rows(chosen).columns(0, 1);
-    }
-    let factor = Scaled::new(&gram)?;
-    let sizes = factor.solve(&score).column(0).clone_owned();
-    let (mut variance, mut squares) = (0.0, 0.0);
-    for (run, cosines) in runs {
-        let scores = run.scores.select_rows(chosen);
-        let sums: Vec<DVector<f64>> = (1..=cosines)
-            .map(|b| scores.column(b) - of(run, b) * &sizes)
+impl Scores {
+    /// Correlations of the residuals of all actuator pairs, as far as the motion determines them.
+    ///
+    /// Each pair is fitted separately, together with the variances σ_kk.
+    pub(crate) fn correlations(&self) -> Vec<Correlation> {
+        let Some(run) = self.runs.first() else {
+            return Vec::new();
+        };
+        let places = || run.pairs.pairs.iter().enumerate();
+        let own: Vec<usize> = places()
+            .filter(|(_, (k, l))| k == l)
+            .map(|(place, _)| place)
             .collect();
-        let sums = factor.solve(&DMatrix::from_columns(&sums));
-        // The cosines of a covariance have the mean square 1.
-        let share = 2.0 * sums.row(count - 1).norm_squared() / cosines as f64;
-        variance += share;
-        squares += share * share / cosines as f64;
+        let off_diagonal = places().filter(|(_, (k, l))| k != l);
+        off_diagonal
+            .filter_map(|(place, &(first, second))| {
+                let mut chosen = own.clone();
+                chosen.push(place);
+                self.correlation(first, second, &chosen)
+            })
+            .collect()
     }
-    let by_chance = variance.sqrt();
-    (variance, squares) = (variance + periodic_variance, squares + scatter);
-    let scale = (sizes[actuators.0] * sizes[actuators.1]).sqrt();
-    let strength = sizes[count - 1].abs() / variance.sqrt();
-    let freedom = variance * variance / squares;
-    let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
-    let is_determined = by_chance <= LARGEST_DEVIATION * scale;
-    (sound && is_determined).then(|| Correlation {
-        actuators,
-        value: sizes[count - 1] / scale,
-        strength,
-        freedom,
-        probability: fisher_tail(strength * strength, 1.0, freedom),
-    })
+
+    /// Correlation of two actuators, whose pair is the last of the `chosen` indices.
+    fn correlation(&self, first: usize, second: usize, chosen: &[usize]) -> Option<Correlation> {
+        let count = chosen.len();
+        let of = |run: &Pairs, m: usize| run.gram(m).select_rows(chosen).select_columns(chosen);
+        let (mut gram, mut score) = (DMatrix::zeros(count, count), DMatrix::zeros(count, 1));
+        for run in &self.runs {
+            gram += of(&run.pairs, 0);
+            score += run.pairs.scores.select_rows(chosen).columns(0, 1);
+        }
+        let factor = Scaled::new(&gram)?;
+        let sizes = factor.solve(&score).column(0).clone_owned();
+        let (mut variance, mut squares) = (0.0, 0.0);
+        for run in &self.runs {
+            let scores = run.pairs.scores.select_rows(chosen);
+            let sums: Vec<DVector<f64>> = (1..=run.cosines)
+                .map(|b| scores.column(b) - of(&run.pairs, b) * &sizes)
+                .collect();
+            let sums = factor.solve(&DMatrix::from_columns(&sums));
+            // The cosines of a covariance have the mean square 1.
+            let share = 2.0 * sums.row(count - 1).norm_squared() / run.cosines as f64;
+            variance += share;
+            squares += share * share / run.cosines as f64;
+        }
+        let by_chance = variance.sqrt();
+        let [periodic_variance, scatter] = self.periodic_variance(first, second);
+        (variance, squares) = (variance + periodic_variance, squares + scatter);
+        let scale = (sizes[first] * sizes[second]).sqrt();
+        let strength = sizes[count - 1].abs() / variance.sqrt();
+        let freedom = variance * variance / squares;
+        let sound = scale > 0.0 && strength.is_finite() && freedom >= 1.0;
+        let is_determined = by_chance <= LARGEST_DEVIATION * scale;
+        (sound && is_determined).then(|| Correlation {
+            actuators: (first, second),
+            value: sizes[count - 1] / scale,
+            strength,
+            freedom,
+            probability: fisher_tail(strength * strength, 1.0, freedom),
+        })
+    }
+
+    /// Variance that periodic residuals add to the mean of a product of two actuators.
+    ///
+    /// The second value is its square by its degrees of freedom.
+    fn periodic_variance(&self, first: usize, second: usize) -> [f64; 2] {
+        // If all actuators are kept, the lines are those of the actuators.
+        let lines = self.runs.first().map_or(0, |run| run.lines);
+        let equations: usize = self.runs.iter().map(|run| run.equations).sum();
+        let instants = equations as f64 / lines.max(1) as f64;
+        let products = self.means.iter().map(|own| own.mean.product(first, second));
+        let [sum, scatter] = products.fold([0.0; 2], |all, own| [all[0] + own[0], all[1] + own[1]]);
+        [sum / instants.powi(2), scatter / instants.powi(4)]
+    }
 }

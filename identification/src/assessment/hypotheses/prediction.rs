@@ -159,21 +159,22 @@ impl<'a> Prediction<'a> {
         Ok(all)
     }
 
-    /// Derivative of Y - W χ with respect to position errors, samples × n × errors × r.
+    /// Derivative of Y - W χ with respect to all position errors, samples × n × errors × r.
     ///
     /// `torques` are those of the actuators; `jacobians` has n × r entries per sample.
     pub(super) fn misread(
         &self,
         motion: &Motion,
-        (torques, jacobians): (&[f64], &[f64]),
+        torques: &[f64],
+        jacobians: &[f64],
         actuators: &[ActuatorState],
-        errors: &[Misreading],
     ) -> Result<Vec<f64>, Error> {
+        let errors = Misreading::ALL;
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
         let rates: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
         let changes: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
-        let here = self.left(motion, &motion.pose, torques, (&rates, &changes))?;
+        let here = self.left(motion, &motion.pose, &rates, &changes, torques)?;
         let revolute = self.model.info().actuator_is_revolute;
         let count = errors.len();
         let mut all = vec![0.0; motion.samples * n * count * r];
@@ -198,7 +199,7 @@ impl<'a> Prediction<'a> {
                     self.model.displace(pose, &step);
                 }
             }
-            let there = self.left(motion, &poses, torques, (&rates, &changes))?;
+            let there = self.left(motion, &poses, &rates, &changes, torques)?;
             for (place, (a, b)) in here.iter().zip(&there).enumerate() {
                 let (sample, line) = (place / r, place % r);
                 all[(sample * n * count + number) * r + line] = (b - a) / STEP;
@@ -210,13 +211,14 @@ impl<'a> Prediction<'a> {
     /// Derivative of Y - W χ with respect to s when each signal x becomes x + s ẍ, samples × r.
     ///
     /// A filter that positions and torques pass has this effect, apart from its delay; see
-    /// `checks::smoothing`. Terms that are linear in the motion do not change. `torques` are the
-    /// actuator torques and their second derivatives. The result is zero if the change leaves the
+    /// `checks::smoothing`. Terms that are linear in the motion do not change. `torque_turns` are
+    /// the second derivatives of the torques. The result is zero if the change leaves the
     /// workspace.
     pub(super) fn common_filter(
         &self,
         motion: &Motion,
-        torques: [&[f64]; 2],
+        torques: &[f64],
+        torque_turns: &[f64],
         jacobians: &[f64],
         actuators: &[ActuatorState],
     ) -> Result<Vec<f64>, Error> {
@@ -239,20 +241,13 @@ impl<'a> Prediction<'a> {
                 self.model.displace(pose, &step);
             }
         }
-        let here = self.left(
-            motion,
-            &motion.pose,
-            torques[0],
-            (&velocities, &accelerations),
-        )?;
+        let here = self.left(motion, &motion.pose, &velocities, &accelerations, torques)?;
         let there = self.left(
             motion,
             &poses,
-            &smoothed(torques[0], torques[1]),
-            (
-                &smoothed(&velocities, &jerks),
-                &smoothed(&accelerations, &snaps),
-            ),
+            &smoothed(&velocities, &jerks),
+            &smoothed(&accelerations, &snaps),
+            &smoothed(torques, torque_turns),
         );
         let Ok(there) = there else {
             return Ok(vec![0.0; here.len()]);
@@ -266,8 +261,9 @@ impl<'a> Prediction<'a> {
         &self,
         motion: &Motion,
         poses: &[f64],
+        rates: &[f64],
+        changes: &[f64],
         torques: &[f64],
-        (rates, changes): (&[f64], &[f64]),
     ) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);

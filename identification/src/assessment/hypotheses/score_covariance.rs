@@ -5,8 +5,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{columns::Layout, group::Group, model_columns::ModelColumns, sections::RunScores};
-use crate::estimation::periodic_variance::{Mean, SumVariance};
+use super::{
+    columns::Layout, group::Group, model_columns::ModelColumns, scores::MotionMean,
+    sections::RunScores,
+};
+use crate::estimation::periodic_variance::SumVariance;
 
 /// Orthonormal columns of a group outside the model's columns: z⊥ = (z - W B) Mᵀ.
 pub(super) struct OrthogonalColumns<'a> {
@@ -38,10 +41,11 @@ pub(super) struct ScoreCovariance {
 }
 
 impl OrthogonalColumns<'_> {
-    /// Contribution of a run; the columns are zero unless `inside`.
+    /// Contribution of the run with this number; the columns are zero unless `inside`.
     pub(super) fn contribution(
         &self,
-        (number, run): (usize, &RunScores),
+        number: usize,
+        run: &RunScores,
         inside: bool,
     ) -> RunContribution {
         let count = 2 * run.cosines + 1;
@@ -61,7 +65,7 @@ impl OrthogonalColumns<'_> {
             let all = run.scores().column(m);
             let mut score = DVector::zeros(width);
             if inside {
-                let cross = run.cross_products(self.layout, m, (selected, &columns));
+                let cross = run.cross_products(self.layout, m, selected, &columns);
                 own -= cross.tr_mul(self.solved);
                 fitted += cross;
                 let block = run.own(self.layout, self.group.block, m);
@@ -90,7 +94,7 @@ impl OrthogonalColumns<'_> {
     pub(super) fn score_covariance(
         &self,
         contributions: &[RunContribution],
-        means: &[(Vec<usize>, Mean)],
+        means: &[MotionMean],
         sizes: &DVector<f64>,
     ) -> Option<ScoreCovariance> {
         let width = sizes.len();
@@ -132,16 +136,12 @@ impl OrthogonalColumns<'_> {
     /// Variances of the scores from periodic residuals, if the faults had these `sizes`.
     ///
     /// Empty if the group is confined to one of several runs of a motion.
-    fn sum_variances(
-        &self,
-        means: &[(Vec<usize>, Mean)],
-        sizes: &DVector<f64>,
-    ) -> Vec<SumVariance> {
+    fn sum_variances(&self, means: &[MotionMean], sizes: &DVector<f64>) -> Vec<SumVariance> {
         let width = sizes.len();
         let mut all = vec![SumVariance::default(); width];
         let turned = self.white.transpose();
         let model_part = -(self.solved * &turned);
-        for ((runs, mean), left) in means.iter().zip(&self.model_columns.left) {
+        for (MotionMean { runs, mean }, left) in means.iter().zip(&self.model_columns.left) {
             let mut combinations = DMatrix::zeros(self.layout.columns, width);
             for (row, column) in self.model_columns.selected.iter().enumerate() {
                 combinations.set_row(*column, &model_part.row(row));

@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use super::{
     columns::{FaultHypothesis, Layout, fault_hypotheses},
     model_columns::ModelColumns,
-    pairs::{Correlation, correlations},
     pass::Pass,
     scaled::{Scaled, independent_columns},
     sections::{Frame, RunScores},
@@ -17,7 +16,7 @@ use super::{
     wald_test::WaldTest,
 };
 use crate::{
-    data::{Log, Variant, periods::Return},
+    data::{Dataset, Log, periods::Return},
     error::Error,
     estimation::periodic_variance::Mean,
     filters::DECIMATION_PADDING,
@@ -55,12 +54,19 @@ pub(crate) struct Scores {
     pub(super) late: Vec<usize>,
     /// Scores of each run.
     pub(super) runs: Vec<RunScores>,
-    /// Periodic motions, each with the runs that have it.
-    pub(super) means: Vec<(Vec<usize>, Mean)>,
+    /// Periodic motions.
+    pub(super) means: Vec<MotionMean>,
     /// Ratio of the estimate's band to that of the equations.
     pub(crate) narrower: usize,
     /// Cached tests with the estimate's own columns.
     pub(super) own: CachedTests,
+}
+
+/// Mean residual of a periodic motion, and the runs that have it.
+#[derive(Debug, Clone)]
+pub(super) struct MotionMean {
+    pub(super) runs: Vec<usize>,
+    pub(super) mean: Mean,
 }
 
 /// Products and results of the tests with the estimate's own columns, computed on demand.
@@ -70,75 +76,88 @@ pub(super) struct CachedTests {
     pub(super) wald_tests: OnceLock<Vec<Option<WaldTest>>>,
 }
 
-/// Reads the runs and computes the scores with an estimate of all base parameters.
-///
-/// `position_ranges` belong to the actuators. The band is `times` narrower than usual, as far as
-/// enough equations remain.
-///
-/// # Errors
-/// As [`Motions::next`]; the runs have been read before.
-pub(crate) fn scores(
-    model: &dyn Model,
-    (runs, variants): (&[Log], &[Variant<'_>]),
-    (columns, base): (&ColumnSet, &[usize]),
-    (estimate, position_ranges): (&Estimate, &[PositionRange]),
-    (settings, returns, times): (&Settings, &[Option<Return>], usize),
-) -> Result<Scores, Error> {
-    let hypotheses = fault_hypotheses(model, variants.len(), estimate.model);
-    let payload = model.info().payload_parameters;
-    let friction = coulomb(columns, base);
-    let layout = Layout::new(base.len() + friction.len(), &hypotheses, payload.len());
-    let mut values = vec![0.0; layout.base];
-    for parameter in &estimate.parameters {
-        values[parameter.column] = parameter.value;
-    }
-    let most = (MOST_SAMPLES / runs.len().max(1)).max(settings.samples_needed());
-    let beginning = |log: &Log| log.beginning(most.min(log.samples()));
-    let runs: Vec<Log> = runs.iter().map(beginning).collect::<Result<_, _>>()?;
-    let sizes = (layout.base, model.info().sizes.dof);
-    let narrower = narrower(&runs, settings, sizes, NARROWER * times);
-    let pass = Pass {
-        model,
-        variants,
-        columns,
-        base,
-        friction: &friction,
-        kind: estimate.model,
-        frame: Frame {
-            hypotheses: &hypotheses,
-            layout: &layout,
-            position_ranges,
-            weights: &estimate.weights,
-            values: &values,
-        },
-        decimation: settings.decimation * narrower,
-        settings,
-    };
-    let phases = |number: usize| {
-        let motion = returns.get(number).copied().flatten();
-        motion.and_then(|motion| Phases::new(motion, pass.decimation))
-    };
-    let scores = runs
-        .par_iter()
-        .enumerate()
-        .map(|(number, log)| pass.run(log, phases(number)))
-        .collect::<Result<Vec<_>, Error>>()?;
-    let selected = estimate.columns();
-    Ok(Scores {
-        late: late(&layout, &scores, (&selected, base.len())),
-        payload: payload.iter().map(|one| one.name.to_owned()).collect(),
-        layout,
-        selected,
-        means: means(&scores),
-        narrower,
-        runs: scores,
-        hypotheses,
-        own: CachedTests::default(),
-    })
+/// Inputs of the scores: an estimate of all base parameters, and the runs.
+pub(crate) struct ScoreTest<'a> {
+    pub(crate) model: &'a dyn Model,
+    pub(crate) dataset: &'a Dataset<'a>,
+    /// Columns of the model, and the base parameters among them.
+    pub(crate) columns: &'a ColumnSet,
+    pub(crate) base: &'a [usize],
+    pub(crate) estimate: &'a Estimate,
+    /// Position ranges of the actuators.
+    pub(crate) position_ranges: &'a [PositionRange],
+    /// Periodic motion of each run, if it has one.
+    pub(crate) returns: &'a [Option<Return>],
+    pub(crate) settings: &'a Settings,
 }
 
-/// The periodic motions, each with the runs that have it.
-fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
+impl ScoreTest<'_> {
+    /// Reads the runs and computes the scores.
+    ///
+    /// The band is `times` narrower than usual, as far as enough equations remain.
+    ///
+    /// # Errors
+    /// As [`Motions::next`]; the runs have been read before.
+    pub(crate) fn scores(&self, times: usize) -> Result<Scores, Error> {
+        let (model, settings, estimate) = (self.model, self.settings, self.estimate);
+        let (runs, variants) = (self.dataset.runs, self.dataset.variants);
+        let hypotheses = fault_hypotheses(model, variants.len(), estimate.model);
+        let payload = model.info().payload_parameters;
+        let friction = coulomb(self.columns, self.base);
+        let base = self.base.len();
+        let layout = Layout::new(base + friction.len(), &hypotheses, payload.len());
+        let mut values = vec![0.0; layout.base];
+        for parameter in &estimate.parameters {
+            values[parameter.column] = parameter.value;
+        }
+        let most = (MOST_SAMPLES / runs.len().max(1)).max(settings.samples_needed());
+        let beginning = |log: &Log| log.beginning(most.min(log.samples()));
+        let runs: Vec<Log> = runs.iter().map(beginning).collect::<Result<_, _>>()?;
+        let lines = model.info().sizes.dof;
+        let narrower = narrower(&runs, settings, layout.base, lines, NARROWER * times);
+        let pass = Pass {
+            model,
+            variants,
+            columns: self.columns,
+            base: self.base,
+            friction: &friction,
+            kind: estimate.model,
+            frame: Frame {
+                hypotheses: &hypotheses,
+                layout: &layout,
+                position_ranges: self.position_ranges,
+                weights: &estimate.weights,
+                values: &values,
+            },
+            decimation: settings.decimation * narrower,
+            settings,
+        };
+        let phases = |number: usize| {
+            let motion = self.returns.get(number).copied().flatten();
+            motion.and_then(|motion| Phases::new(motion, pass.decimation))
+        };
+        let scores = runs
+            .par_iter()
+            .enumerate()
+            .map(|(number, log)| pass.run(log, phases(number)))
+            .collect::<Result<Vec<_>, Error>>()?;
+        let selected = estimate.columns();
+        Ok(Scores {
+            late: late(&layout, &scores, &selected, base),
+            payload: payload.iter().map(|one| one.name.to_owned()).collect(),
+            layout,
+            selected,
+            means: means(&scores),
+            narrower,
+            runs: scores,
+            hypotheses,
+            own: CachedTests::default(),
+        })
+    }
+}
+
+/// The periodic motions.
+fn means(runs: &[RunScores]) -> Vec<MotionMean> {
     let (mut all, mut owners) = (Vec::new(), Vec::<Vec<usize>>::new());
     for (number, run) in runs.iter().enumerate() {
         if run.folds.is_empty() {
@@ -155,19 +174,17 @@ fn means(runs: &[RunScores]) -> Vec<(Vec<usize>, Mean)> {
             rows.column(last).clone_owned(),
         )
     };
-    let mean = |(runs, folds): (Vec<usize>, Folds)| Some((runs, Mean::new(&folds, split)?));
+    let mean = |(runs, folds): (Vec<usize>, Folds)| {
+        let mean = Mean::new(&folds, split)?;
+        Some(MotionMean { runs, mean })
+    };
     owners.into_iter().zip(all).filter_map(mean).collect()
 }
 
 /// Ratio of the estimate's band to that of the equations, at most `most`.
 ///
 /// `columns` and `lines` are those of the model.
-fn narrower(
-    runs: &[Log],
-    settings: &Settings,
-    (columns, lines): (usize, usize),
-    most: usize,
-) -> usize {
+fn narrower(runs: &[Log], settings: &Settings, columns: usize, lines: usize, most: usize) -> usize {
     let kept = |log: &Log| log.samples() - settings.skip_start - settings.skip_end;
     if runs.iter().any(|log| kept(log) <= DECIMATION_PADDING) {
         return 1;
@@ -189,7 +206,7 @@ fn coulomb(columns: &ColumnSet, base: &[usize]) -> Vec<usize> {
 }
 
 /// The columns after the `base` ones that are independent of `selected` and of each other.
-fn late(layout: &Layout, runs: &[RunScores], (selected, base): (&[usize], usize)) -> Vec<usize> {
+fn late(layout: &Layout, runs: &[RunScores], selected: &[usize], base: usize) -> Vec<usize> {
     let late: Vec<usize> = (base..layout.base).collect();
     let sum = |rows: &[usize], columns: &[usize]| {
         let start = DMatrix::zeros(rows.len(), columns.len());
@@ -210,22 +227,6 @@ fn late(layout: &Layout, runs: &[RunScores], (selected, base): (&[usize], usize)
 }
 
 impl Scores {
-    /// Correlations of the residuals of all actuator pairs, as far as the motion determines them.
-    pub(crate) fn correlations(&self) -> Vec<Correlation> {
-        // If all actuators are kept, the lines are those of the actuators.
-        let lines = self.runs.first().map_or(0, |run| run.lines);
-        let equations: usize = self.runs.iter().map(|run| run.equations).sum();
-        let instants = equations as f64 / lines.max(1) as f64;
-        let periodic_variance = |(first, second): (usize, usize)| {
-            let means = self.means.iter().map(|(_, mean)| mean);
-            let sums = means.map(|mean| mean.product(first, second));
-            let [sum, scatter] = sums.fold([0.0; 2], |all, own| [all[0] + own[0], all[1] + own[1]]);
-            [sum / instants.powi(2), scatter / instants.powi(4)]
-        };
-        let runs = self.runs.iter().map(|run| (&run.pairs, run.cosines));
-        correlations(runs, &periodic_variance)
-    }
-
     /// Mean of λ² e² over all equations for white torque noise.
     ///
     /// `variances` are those of each run and actuator at the full rate. Decimation keeps the

@@ -31,6 +31,12 @@ struct Products {
     scores: DMatrix<f64>,
 }
 
+/// Weighted rows of all columns, and their residual.
+struct WeightedRows {
+    columns: DMatrix<f64>,
+    residual: DVector<f64>,
+}
+
 /// Scores of one run, as sums over cosines of its time.
 #[derive(Debug, Clone)]
 pub(super) struct RunScores {
@@ -87,13 +93,9 @@ impl Products {
         }
     }
 
-    /// Adds rows of all columns and their residual to a section.
-    fn add(
-        &mut self,
-        layout: &Layout,
-        section: usize,
-        (all, residual): (&DMatrix<f64>, &DVector<f64>),
-    ) {
+    /// Adds rows to a section.
+    fn add(&mut self, layout: &Layout, section: usize, rows: &WeightedRows) {
+        let all = &rows.columns;
         let size = layout.base * layout.columns;
         let cross = &mut self.cross.as_mut_slice()[section * size..(section + 1) * size];
         let mut cross = DMatrixViewMut::from_slice(cross, layout.base, layout.columns);
@@ -106,7 +108,7 @@ impl Products {
             own.gemm_tr(1.0, &columns, &columns, 1.0);
         }
         let mut scores = self.scores.column_mut(section);
-        scores.gemv_tr(1.0, all, residual, 1.0);
+        scores.gemv_tr(1.0, all, &rows.residual, 1.0);
     }
 
     /// Sums of the sections over cosines.
@@ -132,7 +134,8 @@ impl RunScores {
         &self,
         layout: &Layout,
         m: usize,
-        (rows, columns): (&[usize], &[usize]),
+        rows: &[usize],
+        columns: &[usize],
     ) -> DMatrix<f64> {
         let all = self.cross(layout, m);
         DMatrix::from_fn(rows.len(), columns.len(), |i, j| all[(rows[i], columns[j])])
@@ -232,10 +235,10 @@ impl<'a> Sink<'a> {
         if count == 0 {
             return;
         }
-        let taken: Vec<(DMatrix<f64>, DVector<f64>)> = lines
+        let taken: Vec<WeightedRows> = lines
             .iter()
             .enumerate()
-            .map(|(line, rows)| self.line(line, (rows, count), positions))
+            .map(|(line, rows)| self.line(line, rows, count, positions))
             .collect();
         self.fold(&taken);
         let mut first = 0;
@@ -243,9 +246,8 @@ impl<'a> Sink<'a> {
             let section = self.section(first);
             let same = (first..count).take_while(|sample| self.section(*sample) == section);
             let part = first..first + same.count();
-            let (rows, left) = together(&taken, part.clone());
-            self.products
-                .add(self.frame.layout, section, (&rows, &left));
+            let rows = together(&taken, part.clone());
+            self.products.add(self.frame.layout, section, &rows);
             first = part.end;
         }
         self.equations += count * lines.len();
@@ -253,9 +255,9 @@ impl<'a> Sink<'a> {
         for sample in 0..count {
             let (n, constants) = (self.constants.len(), &self.constants);
             let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| {
-                taken[line].0[(sample, constants[i])]
+                taken[line].columns[(sample, constants[i])]
             });
-            let residual = DVector::from_fn(lines.len(), |line, _| taken[line].1[sample]);
+            let residual = DVector::from_fn(lines.len(), |line, _| taken[line].residual[sample]);
             self.pairs.add(self.section(sample), &jacobian, &residual);
             self.squares.push(residual.norm_squared());
         }
@@ -263,7 +265,7 @@ impl<'a> Sink<'a> {
     }
 
     /// Adds rows of all lines at their phases of the motion.
-    fn fold(&mut self, lines: &[(DMatrix<f64>, DVector<f64>)]) {
+    fn fold(&mut self, lines: &[WeightedRows]) {
         let Some(phases) = self.phases else {
             return;
         };
@@ -271,8 +273,9 @@ impl<'a> Sink<'a> {
             let fold = |_| Fold::new(phases, self.frame.layout.columns + 1);
             self.folds = (0..lines.len()).map(fold).collect();
         }
-        for (fold, (rows, residual)) in self.folds.iter_mut().zip(lines) {
-            for (sample, (row, rest)) in rows.row_iter().zip(residual.iter()).enumerate() {
+        for (fold, line) in self.folds.iter_mut().zip(lines) {
+            let rows = line.columns.row_iter().zip(line.residual.iter());
+            for (sample, (row, rest)) in rows.enumerate() {
                 let row = row.iter().chain(std::iter::once(rest));
                 fold.add(self.taken + sample, row);
             }
@@ -286,13 +289,8 @@ impl<'a> Sink<'a> {
         section.min(sections - 1)
     }
 
-    /// Weighted rows of a line with all columns, and their residual.
-    fn line(
-        &self,
-        line: usize,
-        (rows, count): (&[f64], usize),
-        positions: &[f64],
-    ) -> (DMatrix<f64>, DVector<f64>) {
+    /// Weighted rows of a line at `count` samples.
+    fn line(&self, line: usize, rows: &[f64], count: usize, positions: &[f64]) -> WeightedRows {
         let layout = self.frame.layout;
         let weight = self.frame.weights.get(line).copied().unwrap_or(1.0);
         let all = DMatrix::from_row_slice(count, rows.len() / count, rows) * weight;
@@ -300,10 +298,10 @@ impl<'a> Sink<'a> {
         for (column, value) in self.frame.values.iter().enumerate() {
             residual.axpy(-value, &all.column(column), 1.0);
         }
-        let mut all = all.remove_column(layout.base);
-        all.resize_horizontally_mut(layout.columns, 0.0);
-        self.add_waves(&mut all, positions);
-        (all, residual)
+        let mut columns = all.remove_column(layout.base);
+        columns.resize_horizontally_mut(layout.columns, 0.0);
+        self.add_waves(&mut columns, positions);
+        WeightedRows { columns, residual }
     }
 
     /// Fills in the waves of decimated positions, multiplied by the column of a constant torque.
@@ -325,20 +323,20 @@ impl<'a> Sink<'a> {
     }
 }
 
-/// Rows and residual of some samples of all lines, stacked line by line.
-fn together(
-    lines: &[(DMatrix<f64>, DVector<f64>)],
-    instants: Range<usize>,
-) -> (DMatrix<f64>, DVector<f64>) {
-    let (count, columns) = (instants.len(), lines.first().map_or(0, |own| own.0.ncols()));
-    let mut rows = DMatrix::zeros(lines.len() * count, columns);
-    let mut left = DVector::zeros(lines.len() * count);
-    for (line, (all, residual)) in lines.iter().enumerate() {
+/// Rows of some samples of all lines, stacked line by line.
+fn together(lines: &[WeightedRows], instants: Range<usize>) -> WeightedRows {
+    let count = instants.len();
+    let width = lines.first().map_or(0, |own| own.columns.ncols());
+    let mut columns = DMatrix::zeros(lines.len() * count, width);
+    let mut residual = DVector::zeros(lines.len() * count);
+    for (line, own) in lines.iter().enumerate() {
         let place = line * count;
-        rows.rows_mut(place, count)
-            .copy_from(&all.rows_range(instants.clone()));
-        left.rows_mut(place, count)
-            .copy_from(&residual.rows_range(instants.clone()));
+        columns
+            .rows_mut(place, count)
+            .copy_from(&own.columns.rows_range(instants.clone()));
+        residual
+            .rows_mut(place, count)
+            .copy_from(&own.residual.rows_range(instants.clone()));
     }
-    (rows, left)
+    WeightedRows { columns, residual }
 }

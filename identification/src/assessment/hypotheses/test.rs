@@ -19,12 +19,12 @@ impl Scores {
     /// `None` if the data do not separate the group from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<WaldTest> {
         if selected != self.selected {
-            return self.tested(group, &self.model_columns(selected)?);
+            return self.tested(group, &ModelColumns::new(self, selected)?);
         }
         let model_columns = self
             .own
             .model_columns
-            .get_or_init(|| self.model_columns(selected));
+            .get_or_init(|| ModelColumns::new(self, selected));
         let model_columns = model_columns.as_ref()?;
         match group.run {
             // One request computes all hypotheses, since callers need them all.
@@ -41,15 +41,6 @@ impl Scores {
         }
     }
 
-    /// The base parameter columns `selected`, with the products that all tests share.
-    fn model_columns(&self, selected: &[usize]) -> Option<ModelColumns> {
-        ModelColumns::new(
-            &self.layout,
-            (&self.runs, &self.means),
-            (selected, &self.late),
-        )
-    }
-
     /// Tests a group with these columns in the model.
     fn tested(&self, group: &Group, model_columns: &ModelColumns) -> Option<WaldTest> {
         let layout = &self.layout;
@@ -60,7 +51,7 @@ impl Scores {
         let mut square = DMatrix::zeros(columns.len(), columns.len());
         for (number, run) in self.runs.iter().enumerate() {
             if inside(number) {
-                cross += run.cross_products(layout, 0, (selected, &columns));
+                cross += run.cross_products(layout, 0, selected, &columns);
                 square += run.own(layout, group.block, 0);
             }
         }
@@ -86,7 +77,7 @@ impl Scores {
         };
         let runs = self.runs.iter().enumerate();
         let contributions: Vec<RunContribution> = runs
-            .map(|(number, run)| orthogonal.contribution((number, run), inside(number)))
+            .map(|(number, run)| orthogonal.contribution(number, run, inside(number)))
             .collect();
         self.wald_test(
             &orthogonal,

@@ -71,7 +71,8 @@ impl Columns {
     /// Reads runs and factorises their equations.
     pub(super) fn fault_residual(
         &self,
-        (model, runs): (&dyn Model, &[Log]),
+        model: &dyn Model,
+        runs: &[Log],
         settings: &Settings,
         options: EquationOptions,
     ) -> Result<FaultResidual<'_>, Error> {

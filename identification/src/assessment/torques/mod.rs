@@ -45,10 +45,10 @@ pub(crate) fn explanation(
 ) -> Result<Option<Check>, Error> {
     let columns = Columns::new(model, settings)?;
     let fault_residual =
-        columns.fault_residual((model, runs), settings, EquationOptions::ONE_BY_ONE)?;
+        columns.fault_residual(model, runs, settings, EquationOptions::ONE_BY_ONE)?;
     let before = fault_residual.error(None);
     let of_one = of_one(model, runs, &fault_residual, before);
-    Ok(of_one.or_else(|| of_all((model, &columns), runs, settings, before)))
+    Ok(of_one.or_else(|| of_all(model, &columns, runs, settings, before)))
 }
 
 /// Relative residuals with the positions as they are, and after correcting a position fault.
@@ -67,7 +67,7 @@ pub(super) fn errors_with(
     let repaired: Vec<Log> = repaired.collect::<Result<_, _>>().ok()?;
     let error = |runs: &[Log]| {
         let fault_residual =
-            columns.fault_residual((model, runs), settings, EquationOptions::TOGETHER);
+            columns.fault_residual(model, runs, settings, EquationOptions::TOGETHER);
         Some(fault_residual.ok()?.error(None))
     };
     Some((error(runs)?, error(&repaired)?))
@@ -126,12 +126,13 @@ fn of_one(
         fault = heavy.next().unwrap_or(fault);
     }
     let told = told(model, runs, fault, &so(before, after));
-    Some(measured(told, (before, after), EXPLAINED))
+    Some(measured(told, before, after, EXPLAINED))
 }
 
 /// The fault of all positions or of gravity that explains the torques, in all runs alike.
 fn of_all(
-    (model, columns): (&dyn Model, &Columns),
+    model: &dyn Model,
+    columns: &Columns,
     runs: &[Log],
     settings: &Settings,
     before: f64,
@@ -147,7 +148,7 @@ fn of_all(
                 RunLevelFault::Weightless => EquationOptions::TOGETHER.without_gravity(1.0),
                 _ => EquationOptions::TOGETHER,
             };
-            let fault_residual = columns.fault_residual((model, &runs.ok()?), settings, options);
+            let fault_residual = columns.fault_residual(model, &runs.ok()?, settings, options);
             Some((fault, fault_residual.ok()?.error(None)))
         });
     let faults: Vec<(RunLevelFault, f64)> = faults.collect();
@@ -158,11 +159,11 @@ fn of_all(
     let (fault, after) = best.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let part = fault.explained(model, EXPLAINED);
     let told = fault.check(model, &so(before, after));
-    Some(measured(told, (before, after), part))
+    Some(measured(told, before, after, part))
 }
 
 /// A check with the residual after the correction, and the fraction allowed as threshold.
-fn measured(check: Check, (before, after): (f64, f64), part: f64) -> Check {
+fn measured(check: Check, before: f64, after: f64, part: f64) -> Check {
     let origin = format!("{:.0} % of the residual with the fault", 100.0 * part);
     check
         .measured(100.0 * after, "%")
