@@ -121,6 +121,7 @@
 /// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
 /// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
 /// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
+/// Parameters have the names in `PARAMETERS` and `BASE_PARAMETERS`; those of any leg end in `_leg`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -133,53 +134,53 @@ pub struct DualV;
 #[allow(
     clippy::all,
     clippy::pedantic,
+    non_local_definitions,
     nonstandard_style,
     unused,
     unused_qualifications,
     reason = "straight-line code with the names of the derivation, in any scope"
 )]
+const _: () = {
+use ::core::primitive::{bool, f64, str, usize};
+use ::core::result::Result::{Err, Ok};
+use ::core::result::Result;
+use ::overact::{
+    ActuatorGroup, Error, guard, math, simd, with_avx2, with_avx512, zeroed_then_fill,
+};
 impl DualV {
     /// The robot's name.
-    pub const NAME: &'static ::core::primitive::str = "DualV";
+    pub const NAME: &'static str = "DualV";
     /// Numbers in a pose.
-    pub const POSE: ::core::primitive::usize = 3;
+    pub const POSE: usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: ::core::primitive::usize = 3;
+    pub const DOF: usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: ::core::primitive::usize = 4;
+    pub const ACTUATORS: usize = 4;
     /// n_t, joints of all legs.
-    pub const JOINTS: ::core::primitive::usize = 12;
+    pub const JOINTS: usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static ::core::primitive::str; 4] = [
-        "leg1", "leg2", "leg3", "leg4",
-    ];
+    pub const LEGS: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 4] = [
-        "leg1", "leg2", "leg3", "leg4",
-    ];
+    pub const ACTUATOR_NAMES: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
+    pub const JOINT_NAMES: [&'static str; 12] = [
         "leg1.1", "leg1.2", "leg1.3", "leg2.1", "leg2.2", "leg2.3", "leg3.1", "leg3.2", "leg3.3",
         "leg4.1", "leg4.2", "leg4.3",
     ];
     /// Names of the independent coordinates, in the order of the twist.
-    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
+    pub const COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
     /// Names of the pose coordinates.
-    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
+    pub const POSE_COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
-        0, 3, 6, 9,
-    ];
+    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6, 9];
     /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
-        true, true, true, true,
-    ];
+    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true, true];
     /// Kept actuators of the actuator projection (case 2).
-    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
+    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which defines the working mode (m, rad).
-    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
         2.353104842321743, 1.5754853789017922, -0.7869975676342108, 0.7884878112680508,
         -1.5754853789017937, 3.928590221224005, -0.7884878112680508, 1.5754853789017937,
         -0.7869975676342119, 3.9300804648578436, -1.5754853789017924, -2.3545950859555824,
@@ -378,20 +379,18 @@ impl DualV {
     /// 61 operations (27 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 1 arc tangent, 5 guards, 1 negation, 71 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn pose_in_closed_form(
-        actuators: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(&[("actuators", actuators, 1e12)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn pose_in_closed_form(actuators: &[f64; 4]) -> Result<[f64; 3], Error> {
+        guard::within(&[("actuators", actuators, 1e12)])?;
         /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
+        const L_AB: f64 = 0.28;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// 2 r_p
-        const TWICE_R_P: ::core::primitive::f64 = 0.22;
+        const TWICE_R_P: f64 = 0.22;
         // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3),
-        (s1_leg4, c1_leg4)] = ::overact::math::sin_cos_all([
+        (s1_leg4, c1_leg4)] = math::sin_cos_all([
             actuators[0], actuators[1], actuators[2], actuators[3],
         ]);
         let t1 = 0.3950502153918333 + L_AB * c1_leg1;
@@ -400,10 +399,10 @@ impl DualV {
         let l_ab_s1_leg2_minus_l_ab_s1_leg1 = L_AB * s1_leg2 - l_ab_s1_leg1;
         let t3 = t2 * t2
             + l_ab_s1_leg2_minus_l_ab_s1_leg1 * l_ab_s1_leg2_minus_l_ab_s1_leg1;
-        ::overact::guard::platform(t3, 0.1563, ::overact::ActuatorGroup::All)?;
+        guard::platform(t3, 0.1563, ActuatorGroup::All)?;
         let t4 = (L_AB_SQUARED - 0.25 * t3) / t3;
-        ::overact::guard::reach(t4, 0.2516, "leg1")?;
-        let t5 = ::overact::math::sqrt(t4);
+        guard::reach(t4, 0.2516, "leg1")?;
+        let t5 = math::sqrt(t4);
         let t6 = t1 + 0.5 * t2 - l_ab_s1_leg2_minus_l_ab_s1_leg1 * t5;
         let t7 = L_AB * c1_leg3 - 0.3950502153918333;
         let t8 = 0.3950502153918333 + L_AB * c1_leg4 - t7;
@@ -411,9 +410,9 @@ impl DualV {
         let l_ab_s1_leg4_minus_l_ab_s1_leg3 = L_AB * s1_leg4 - l_ab_s1_leg3;
         let t9 = t8 * t8
             + l_ab_s1_leg4_minus_l_ab_s1_leg3 * l_ab_s1_leg4_minus_l_ab_s1_leg3;
-        ::overact::guard::platform(t9, 0.1563, ::overact::ActuatorGroup::All)?;
+        guard::platform(t9, 0.1563, ActuatorGroup::All)?;
         let t10 = (L_AB_SQUARED - 0.25 * t9) / t9;
-        let t11 = ::overact::math::sqrt(t10);
+        let t11 = math::sqrt(t10);
         let t12 = t7 + 0.5 * t8 - l_ab_s1_leg4_minus_l_ab_s1_leg3 * t11;
         let t13 = 0.10970563941232059 + l_ab_s1_leg1
             + 0.5 * l_ab_s1_leg2_minus_l_ab_s1_leg1 + t2 * t5;
@@ -421,13 +420,13 @@ impl DualV {
             + 0.5 * l_ab_s1_leg4_minus_l_ab_s1_leg3 + t8 * t11;
         let t15 = t12 - t6;
         let t16 = t14 - t13;
-        let t17 = ::overact::math::sqrt(0.0484 * (t16 * t16 + t15 * t15));
-        ::overact::guard::platform(t17, 0.0484, ::overact::ActuatorGroup::All)?;
-        ::overact::guard::reach(t10, 0.2516, "leg3")?;
+        let t17 = math::sqrt(0.0484 * (t16 * t16 + t15 * t15));
+        guard::platform(t17, 0.0484, ActuatorGroup::All)?;
+        guard::reach(t10, 0.2516, "leg3")?;
         let t18 = 1.0 / t17;
-        ::core::result::Result::Ok([
+        Ok([
             0.5 * (t6 + t12), 0.5 * (t13 + t14),
-            ::overact::math::atan2(TWICE_R_P * t15 * t18, -(TWICE_R_P * t16 * t18)),
+            math::atan2(TWICE_R_P * t15 * t18, -(TWICE_R_P * t16 * t18)),
         ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
@@ -440,20 +439,18 @@ impl DualV {
     /// 184 operations (82 additions, 98 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 12 arc tangents, 8 guards, 7 negations, 197 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn joints(
-        pose: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// 1 / l_ab
-        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        const INV_L_AB: f64 = 3.5714285714285716;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         /// 2 l_ab²
-        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const TWICE_L_AB_SQUARED: f64 = 0.1568;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
@@ -463,10 +460,10 @@ impl DualV {
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -480,10 +477,10 @@ impl DualV {
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -501,10 +498,10 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
@@ -518,10 +515,10 @@ impl DualV {
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
@@ -532,52 +529,52 @@ impl DualV {
         let s12_leg4 = INV_L_AB * l2_y_leg4;
         let c3_leg4 = c_phi * c12_leg4 + s_phi * s12_leg4;
         let s3_leg4 = s_phi * c12_leg4 - c_phi * s12_leg4;
-        ::core::result::Result::Ok([
-            ::overact::math::atan2(
+        Ok([
+            math::atan2(
                 -(2.5175667811089752 * l1_y_leg1 + 2.533171834572799 * l1_x_leg1),
                 2.533171834572799 * l1_y_leg1 - 2.5175667811089752 * l1_x_leg1,
             ) + 2.353104842321743,
-            ::overact::math::atan2(
+            math::atan2(
                 -(0.05980911892498931 * det_leg1 + 6.377480908260923 * t1_leg1),
                 12.754961816521845 * det_leg1 - 0.029904559462494654 * t1_leg1,
             ) + 1.5754853789017922,
-            ::overact::math::atan2(
+            math::atan2(
                 0.70597492766447 * s3_leg1 - 0.7082368258634582 * minus_c3_leg1,
                 -(0.70597492766447 * minus_c3_leg1 + 0.7082368258634582 * s3_leg1),
             ) - 0.7869975676342108,
-            ::overact::math::atan2(
+            math::atan2(
                 2.517566781108974 * l1_y_leg2 - 2.5331718345728005 * l1_x_leg2,
                 2.517566781108974 * l1_x_leg2 + 2.5331718345728005 * l1_y_leg2,
             ) + 0.7884878112680508,
-            ::overact::math::atan2(
+            math::atan2(
                 0.05980911892500914 * det_leg2 + 6.377480908260923 * t1_leg2,
                 12.754961816521845 * det_leg2 - 0.02990455946250457 * t1_leg2,
             ) - 1.5754853789017937,
-            ::overact::math::atan2(
+            math::atan2(
                 -(0.7059749276644692 * s3_leg2 + 0.7082368258634589 * minus_c3_leg2),
                 0.7059749276644692 * minus_c3_leg2 - 0.7082368258634589 * s3_leg2,
             ) + 3.928590221224005,
-            ::overact::math::atan2(
+            math::atan2(
                 2.517566781108974 * l1_y_leg3 + 2.5331718345728005 * l1_x_leg3,
                 2.517566781108974 * l1_x_leg3 - 2.5331718345728005 * l1_y_leg3,
             ) - 0.7884878112680508,
-            ::overact::math::atan2(
+            math::atan2(
                 -(0.05980911892500914 * det_leg3 + 6.377480908260923 * t1_leg3),
                 12.754961816521845 * det_leg3 - 0.02990455946250457 * t1_leg3,
             ) + 1.5754853789017937,
-            ::overact::math::atan2(
+            math::atan2(
                 0.7059749276644692 * s3_leg3 + 0.7082368258634589 * c3_leg3,
                 0.7059749276644692 * c3_leg3 - 0.7082368258634589 * s3_leg3,
             ) - 0.7869975676342119,
-            ::overact::math::atan2(
+            math::atan2(
                 2.5331718345727996 * l1_x_leg4 - 2.517566781108975 * l1_y_leg4,
                 -(2.517566781108975 * l1_x_leg4 + 2.5331718345727996 * l1_y_leg4),
             ) + 3.9300804648578436,
-            ::overact::math::atan2(
+            math::atan2(
                 0.05980911892499215 * det_leg4 + 6.377480908260923 * t1_leg4,
                 12.754961816521845 * det_leg4 - 0.029904559462496073 * t1_leg4,
             ) - 1.5754853789017924,
-            ::overact::math::atan2(
+            math::atan2(
                 0.7082368258634582 * c3_leg4 - 0.70597492766447 * s3_leg4,
                 -(0.70597492766447 * c3_leg4 + 0.7082368258634582 * s3_leg4),
             ) - 2.3545950859555824,
@@ -593,16 +590,14 @@ impl DualV {
     /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 4 arc tangents, 8 guards, 2 negations, 88 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn actuator_positions(
-        pose: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
@@ -612,19 +607,19 @@ impl DualV {
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         // --- leg3
@@ -634,35 +629,35 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-        ::core::result::Result::Ok([
-            ::overact::math::atan2(
+        Ok([
+            math::atan2(
                 -(2.5175667811089752 * l1_y_leg1 + 2.533171834572799 * l1_x_leg1),
                 2.533171834572799 * l1_y_leg1 - 2.5175667811089752 * l1_x_leg1,
             ) + 2.353104842321743,
-            ::overact::math::atan2(
+            math::atan2(
                 2.517566781108974 * l1_y_leg2 - 2.5331718345728005 * l1_x_leg2,
                 2.517566781108974 * l1_x_leg2 + 2.5331718345728005 * l1_y_leg2,
             ) + 0.7884878112680508,
-            ::overact::math::atan2(
+            math::atan2(
                 2.517566781108974 * l1_y_leg3 + 2.5331718345728005 * l1_x_leg3,
                 2.517566781108974 * l1_x_leg3 - 2.5331718345728005 * l1_y_leg3,
             ) - 0.7884878112680508,
-            ::overact::math::atan2(
+            math::atan2(
                 2.5331718345727996 * l1_x_leg4 - 2.517566781108975 * l1_y_leg4,
                 -(2.517566781108975 * l1_x_leg4 + 2.5331718345727996 * l1_y_leg4),
             ) + 3.9300804648578436,
@@ -679,21 +674,16 @@ impl DualV {
     /// 203 operations (83 additions, 109 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn pose_step(
-        pose: &[::core::primitive::f64; 3],
-        actuators: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
-            &[("pose", pose, 1e6), ("actuators", actuators, 1e12)],
-        )?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn pose_step(pose: &[f64; 3], actuators: &[f64; 4]) -> Result<[f64; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("actuators", actuators, 1e12)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         // --- sines and cosines
         let [(s_phi, c_phi), (s_actuator_1, c_actuator_1), (s_actuator_2, c_actuator_2),
-        (s_actuator_3, c_actuator_3), (s_actuator_4, c_actuator_4)] = ::overact::math::sin_cos_all([
+        (s_actuator_3, c_actuator_3), (s_actuator_4, c_actuator_4)] = math::sin_cos_all([
             pose[2], actuators[0], actuators[1], actuators[2], actuators[3],
         ]);
         // --- leg1
@@ -704,27 +694,27 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -733,52 +723,52 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+        guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
-        let missed_1 = ::overact::math::atan2(
+        let missed_1 = math::atan2(
             l1_x_leg1 * s_actuator_1 - l1_y_leg1 * c_actuator_1,
             l1_x_leg1 * c_actuator_1 + l1_y_leg1 * s_actuator_1,
         );
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
-        let missed_2 = ::overact::math::atan2(
+        let missed_2 = math::atan2(
             l1_x_leg2 * s_actuator_2 - l1_y_leg2 * c_actuator_2,
             l1_x_leg2 * c_actuator_2 + l1_y_leg2 * s_actuator_2,
         );
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
-        let missed_3 = ::overact::math::atan2(
+        let missed_3 = math::atan2(
             l1_x_leg3 * s_actuator_3 - l1_y_leg3 * c_actuator_3,
             l1_x_leg3 * c_actuator_3 + l1_y_leg3 * s_actuator_3,
         );
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-        let missed_4 = ::overact::math::atan2(
+        let missed_4 = math::atan2(
             l1_x_leg4 * s_actuator_4 - l1_y_leg4 * c_actuator_4,
             l1_x_leg4 * c_actuator_4 + l1_y_leg4 * s_actuator_4,
         );
@@ -798,7 +788,7 @@ impl DualV {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
         let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-        ::overact::guard::platform(pivot_2, 25.59, ::overact::ActuatorGroup::All)?;
+        guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t2 = g1_vy_leg1 * missed_1 - minus_g1_vy_leg2 * missed_2
             + g1_vy_leg3 * missed_3 - minus_g1_vy_leg4 * missed_4 - l_2_1 * t1;
@@ -821,12 +811,12 @@ impl DualV {
         let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
         let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-        ::overact::guard::platform(pivot_3, 0.3077, ::overact::ActuatorGroup::All)?;
+        guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
         let t4 = t3 / pivot_3;
         let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
         let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-        ::overact::guard::size(t6, 1e100)?;
-        ::core::result::Result::Ok([t6, t5, t4])
+        guard::size(t6, 1e100)?;
+        Ok([t6, t5, t4])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -838,16 +828,14 @@ impl DualV {
     /// 80 operations (30 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 6 negations, 74 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn inverse_jacobian(
-        pose: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 4], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -856,25 +844,25 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -883,25 +871,25 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -918,7 +906,7 @@ impl DualV {
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        ::core::result::Result::Ok([
+        Ok([
             [g1_vx_leg1, g1_vy_leg1, -minus_g1_wz_leg1],
             [-minus_g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
             [g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
@@ -936,16 +924,16 @@ impl DualV {
     /// 30 operations (8 additions, 18 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 32 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+    ) -> Result<[[f64; 3]; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_ab
-        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        const INV_L_AB: f64 = 3.5714285714285716;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
         let q1_plus_q2_leg2 = joints[3] + joints[4];
         let q1_plus_q2_leg3 = joints[6] + joints[7];
@@ -953,14 +941,14 @@ impl DualV {
         // --- sines and cosines
         let [(s12_leg1, c12_leg1), (s2_leg1, _), (s12_leg2, c12_leg2), (s2_leg2, _),
         (s12_leg3, c12_leg3), (s2_leg3, _), (s12_leg4, c12_leg4), (s2_leg4, _),
-        (s_phi, c_phi)] = ::overact::math::sin_cos_all([
+        (s_phi, c_phi)] = math::sin_cos_all([
             q1_plus_q2_leg1, joints[1], q1_plus_q2_leg2, joints[4], q1_plus_q2_leg3, joints[7],
             q1_plus_q2_leg4, joints[10], pose[2],
         ]);
-        ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-        ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+        guard::leg(s2_leg1, 1.0, "leg1")?;
+        guard::leg(s2_leg2, 1.0, "leg2")?;
+        guard::leg(s2_leg3, 1.0, "leg3")?;
+        guard::leg(s2_leg4, 1.0, "leg4")?;
         let k1_leg1 = INV_L_AB / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * k1_leg1;
         let k1_leg2 = INV_L_AB / s2_leg2;
@@ -979,7 +967,7 @@ impl DualV {
         let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
-        ::core::result::Result::Ok([
+        Ok([
             [g1_vx_leg1, g1_vy_leg1, -minus_g1_wz_leg1],
             [g1_vx_leg2, g1_vy_leg2, -minus_g1_wz_leg2], [g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
             [g1_vx_leg4, g1_vy_leg4, g1_wz_leg4],
@@ -995,17 +983,15 @@ impl DualV {
     /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 17 guards, 3 negations, 190 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn jacobian(
-        pose: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
-        ::overact::with_avx2(#[inline(always)] || {
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 4]; 3], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
+        with_avx2(#[inline(always)] || {
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const R_P: f64 = 0.11;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -1014,25 +1000,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -1041,30 +1027,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let half_d_y_leg1 = 0.5 * d_y_leg1;
             let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
@@ -1082,11 +1068,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let g1_vy_minus_g1_vx_l_2_1_leg1 = g1_vy_leg1 - g1_vx_leg1 * l_2_1;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
@@ -1107,13 +1089,9 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
-            ::overact::guard::size(l_2_1, 1e30)?;
-            ::overact::guard::size(l_3_1, 1e30)?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
+            guard::size(l_2_1, 1e30)?;
+            guard::size(l_3_1, 1e30)?;
             let inv_pivot_3 = 1.0 / pivot_3;
             let t1 = inv_pivot_3
                 * (minus_g1_wz_leg1 + g1_vx_leg1 * l_3_1
@@ -1136,7 +1114,7 @@ impl DualV {
                 * (minus_g1_vx_leg4 * l_3_1 - minus_g1_wz_leg4
                     - l_3_2 * g1_vy_minus_g1_vx_l_2_1_leg4);
             let t8 = inv_pivot_2 * g1_vy_minus_g1_vx_l_2_1_leg4 - l_3_2 * t7;
-            ::core::result::Result::Ok([
+            Ok([
                 [
                     g1_vx_leg1 * inv_pivot_1 - l_2_1 * t2 + l_3_1 * t1,
                     -(minus_g1_vx_leg2 * inv_pivot_1 + l_2_1 * t4 + l_3_1 * t3),
@@ -1159,14 +1137,14 @@ impl DualV {
     /// 28 operations (12 additions, 16 multiplications, 0 divisions), 8 trigonometric pairs, 8 negations, 28 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn legs_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 12]; 12], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+    ) -> Result<[[f64; 12]; 12], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
+        const L_AB: f64 = 0.28;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
         let q1_plus_q2_leg2 = joints[3] + joints[4];
         let q1_plus_q2_leg3 = joints[6] + joints[7];
@@ -1174,11 +1152,11 @@ impl DualV {
         // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s12_leg1, c12_leg1), (s1_leg2, c1_leg2),
         (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3),
-        (s1_leg4, c1_leg4), (s12_leg4, c12_leg4)] = ::overact::math::sin_cos_all([
+        (s1_leg4, c1_leg4), (s12_leg4, c12_leg4)] = math::sin_cos_all([
             joints[0], q1_plus_q2_leg1, joints[3], q1_plus_q2_leg2, joints[6], q1_plus_q2_leg3,
             joints[9], q1_plus_q2_leg4,
         ]);
-        ::core::result::Result::Ok([
+        Ok([
             [
                 -(L_AB * (s1_leg1 + s12_leg1)), -(L_AB * s12_leg1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0,
@@ -1228,19 +1206,19 @@ impl DualV {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 2 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 12], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+    ) -> Result<[[f64; 3]; 12], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let p_x_leg3 = R_P * s_phi;
-        ::core::result::Result::Ok([
+        Ok([
             [1.0, 0.0, -p_y_leg1], [0.0, 1.0, -p_x_leg3], [0.0, 0.0, 1.0], [1.0, 0.0, -p_y_leg1],
             [0.0, 1.0, -p_x_leg3], [0.0, 0.0, 1.0], [1.0, 0.0, p_y_leg1], [0.0, 1.0, p_x_leg3],
             [0.0, 0.0, 1.0], [1.0, 0.0, p_y_leg1], [0.0, 1.0, p_x_leg3], [0.0, 0.0, 1.0],
@@ -1257,20 +1235,20 @@ impl DualV {
     /// 46 operations (8 additions, 34 multiplications, 4 divisions), 9 trigonometric pairs, 4 guards, 2 negations, 48 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+    ) -> Result<[[f64; 3]; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_ab
-        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        const INV_L_AB: f64 = 3.5714285714285716;
         /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
+        const L_AB: f64 = 0.28;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
         let q1_plus_q2_leg2 = joints[3] + joints[4];
         let q1_plus_q2_leg3 = joints[6] + joints[7];
@@ -1278,14 +1256,14 @@ impl DualV {
         // --- sines and cosines
         let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3),
         (s12_leg4, c12_leg4), (s2_leg1, _), (s_phi, c_phi), (s2_leg2, _), (s2_leg3, _),
-        (s2_leg4, _)] = ::overact::math::sin_cos_all([
+        (s2_leg4, _)] = math::sin_cos_all([
             q1_plus_q2_leg1, q1_plus_q2_leg2, q1_plus_q2_leg3, q1_plus_q2_leg4, joints[1], pose[2],
             joints[4], joints[7], joints[10],
         ]);
-        ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-        ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+        guard::leg(s2_leg1, 1.0, "leg1")?;
+        guard::leg(s2_leg2, 1.0, "leg2")?;
+        guard::leg(s2_leg3, 1.0, "leg3")?;
+        guard::leg(s2_leg4, 1.0, "leg4")?;
         // --- leg1
         let k1_leg1 = INV_L_AB / s2_leg1;
         let g1_vy_leg1 = s12_leg1 * k1_leg1;
@@ -1308,7 +1286,7 @@ impl DualV {
         let g1_vy_leg4 = s12_leg4 * k1_leg4;
         let g1_vx_leg4 = c12_leg4 * k1_leg4;
         let g1_wz_leg4 = p_x_leg3 * g1_vy_leg4 + p_y_leg1 * g1_vx_leg4;
-        ::core::result::Result::Ok([
+        Ok([
             [
                 L_AB * c12_leg1, L_AB * s12_leg1, -(L_AB_SQUARED * s2_leg1 * minus_g1_wz_leg1),
             ],
@@ -1330,19 +1308,19 @@ impl DualV {
     /// 4 operations (0 additions, 4 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 4 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn closure_actuator_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+    ) -> Result<[[f64; 4]; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         // --- sines and cosines
-        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = ::overact::math::sin_cos_all([
+        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10],
         ]);
-        ::core::result::Result::Ok([
+        Ok([
             [-(L_AB_SQUARED * s2_leg1), 0.0, 0.0, 0.0], [0.0, -(L_AB_SQUARED * s2_leg2), 0.0, 0.0],
             [0.0, 0.0, -(L_AB_SQUARED * s2_leg3), 0.0], [0.0, 0.0, 0.0, -(L_AB_SQUARED * s2_leg4)],
         ])
@@ -1358,17 +1336,17 @@ impl DualV {
     /// 122 operations (54 additions, 60 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 116 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_velocities(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+    ) -> Result<[f64; 12], Error> {
+        guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -1377,14 +1355,14 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         let v_arm_x_leg3 = p_y_leg1 * twist[2];
@@ -1405,14 +1383,14 @@ impl DualV {
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
@@ -1431,14 +1409,14 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
@@ -1457,14 +1435,14 @@ impl DualV {
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -1477,7 +1455,7 @@ impl DualV {
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         let qd_3_leg4 = twist[2] - rate_2_leg4;
-        ::core::result::Result::Ok([
+        Ok([
             rate_1_leg1, -minus_qd_2_leg1, qd_3_leg1, -minus_rate_1_leg2, qd_2_leg2, qd_3_leg2,
             rate_1_leg3, -minus_qd_2_leg3, qd_3_leg3, -minus_rate_1_leg4, qd_2_leg4, qd_3_leg4,
         ])
@@ -1494,25 +1472,25 @@ impl DualV {
     /// 214 operations (90 additions, 116 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 4 negations, 208 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_accelerations(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[f64; 12], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -1521,12 +1499,12 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -1566,12 +1544,12 @@ impl DualV {
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -1603,12 +1581,12 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1642,12 +1620,12 @@ impl DualV {
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -1673,7 +1651,7 @@ impl DualV {
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
             let qdd_2_leg4 = minus_rate_dot_1_leg4 + rate_dot_2_leg4;
             let qdd_3_leg4 = acceleration[2] - rate_dot_2_leg4;
-            ::core::result::Result::Ok([
+            Ok([
                 rate_dot_1_leg1, -minus_qdd_2_leg1, qdd_3_leg1, -minus_rate_dot_1_leg2, qdd_2_leg2,
                 qdd_3_leg2, rate_dot_1_leg3, -minus_qdd_2_leg3, qdd_3_leg3, -minus_rate_dot_1_leg4,
                 qdd_2_leg4, qdd_3_leg4,
@@ -1691,20 +1669,20 @@ impl DualV {
     /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 174 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn twist_from_actuators(
-        pose: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        actuator_velocities: &[f64; 4],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[("pose", pose, 1e6), ("actuator_velocities", actuator_velocities, 1e9)],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const R_P: f64 = 0.11;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -1713,25 +1691,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -1740,30 +1718,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let t1 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -1785,11 +1763,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let t2 = g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
@@ -1818,16 +1792,12 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let t4 = t3 / pivot_3;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            ::overact::guard::size(t6, 1e100)?;
-            ::core::result::Result::Ok([t6, t5, t4])
+            guard::size(t6, 1e100)?;
+            Ok([t6, t5, t4])
         })
     }
     /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
@@ -1842,26 +1812,26 @@ impl DualV {
     /// 271 operations (107 additions, 153 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 17 guards, 274 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn acceleration_from_actuators(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        actuator_accelerations: &[f64; 4],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -1870,27 +1840,27 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -1899,32 +1869,32 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             // --- leg1
             let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -2022,11 +1992,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let t2 = g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
                 - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
@@ -2055,17 +2021,13 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let t4 = t3 / pivot_3;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
-            ::overact::guard::size(t5, 1e100)?;
+            guard::size(t5, 1e100)?;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            ::overact::guard::size(t6, 1e100)?;
-            ::core::result::Result::Ok([t6, t5, t4])
+            guard::size(t6, 1e100)?;
+            Ok([t6, t5, t4])
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -2083,13 +2045,13 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 64]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_into(
             pose,
             twist,
             acceleration,
@@ -2101,37 +2063,37 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 64]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 64]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            acceleration: &'a [::core::primitive::f64; 3],
-            output: &'a mut [[::core::primitive::f64; 64]; 3],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            acceleration: &'a [f64; 3],
+            output: &'a mut [[f64; 64]; 3],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<(), ::overact::Error>;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<(), Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, output } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
                 let place = output;
                 let mut output = [[0.0; 64]; 3];
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let my_platform_on_vx = s_phi * rate_3_squared_leg
                     - c_phi * acceleration[2];
@@ -2152,8 +2114,8 @@ impl DualV {
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -2166,42 +2128,28 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let minus_g2_vx_leg = l1_x_leg / det_leg;
                     let minus_gq2_vx_leg = d_x_leg / det_leg;
                     let g1_vx_leg = minus_gq2_vx_leg - minus_g2_vx_leg;
@@ -2253,228 +2201,183 @@ impl DualV {
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let gq3_wz_leg = 1.0 - g2_wz_leg;
                     failed.result()?;
-                    ::overact::simd::put(&mut output[0], [0, 15], at, zz_1_leg_on_vx);
-                    ::overact::simd::put(&mut output[0], [1, 15], at, zz_1_leg_on_vx);
-                    ::overact::simd::put(
-                        &mut output[0],
-                        [2, 15],
-                        at,
-                        g1_vx_leg * rate_1_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[0], [0, 15], at, zz_1_leg_on_vx);
+                    simd::put(&mut output[0], [1, 15], at, zz_1_leg_on_vx);
+                    simd::put(&mut output[0], [2, 15], at, g1_vx_leg * rate_1_leg);
+                    simd::put(
                         &mut output[0],
                         [3, 15],
                         at,
-                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
+                        simd::signed(g1_vx_leg, rate_1_leg, at),
                     );
-                    ::overact::simd::put(&mut output[0], [4, 15], at, g1_vx_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut output[0], [4, 15], at, g1_vx_leg);
+                    simd::put(
                         &mut output[0],
                         [5, 15],
                         at,
                         minus_g2_vx_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [6, 15],
                         at,
                         -(g1_vx_leg * t2_leg + minus_g2_vx_leg * a2_y_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [7, 15],
                         at,
                         g1_vx_leg * inv_l_ab_a_on_f2_leg + minus_g2_vx_leg * a2_x_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [8, 15],
                         at,
                         L_AB_SQUARED * zz_1_leg_on_vx,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [9, 15],
                         at,
                         minus_qd_2_leg * minus_gq2_vx_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [10, 15],
                         at,
-                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(
-                        &mut output[0],
-                        [11, 15],
-                        at,
-                        -minus_gq2_vx_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut output[0],
-                        [12, 15],
-                        at,
-                        minus_g2_vx_leg * qd_3_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[0], [11, 15], at, -minus_gq2_vx_leg);
+                    simd::put(&mut output[0], [12, 15], at, minus_g2_vx_leg * qd_3_leg);
+                    simd::put(
                         &mut output[0],
                         [13, 15],
                         at,
-                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        simd::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
-                    ::overact::simd::put(&mut output[0], [14, 15], at, minus_g2_vx_leg);
-                    ::overact::simd::put(&mut output[1], [0, 15], at, zz_1_leg_on_vy);
-                    ::overact::simd::put(&mut output[1], [1, 15], at, zz_1_leg_on_vy);
-                    ::overact::simd::put(
-                        &mut output[1],
-                        [2, 15],
-                        at,
-                        g1_vy_leg * rate_1_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[0], [14, 15], at, minus_g2_vx_leg);
+                    simd::put(&mut output[1], [0, 15], at, zz_1_leg_on_vy);
+                    simd::put(&mut output[1], [1, 15], at, zz_1_leg_on_vy);
+                    simd::put(&mut output[1], [2, 15], at, g1_vy_leg * rate_1_leg);
+                    simd::put(
                         &mut output[1],
                         [3, 15],
                         at,
-                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
+                        simd::signed(g1_vy_leg, rate_1_leg, at),
                     );
-                    ::overact::simd::put(&mut output[1], [4, 15], at, g1_vy_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut output[1], [4, 15], at, g1_vy_leg);
+                    simd::put(
                         &mut output[1],
                         [5, 15],
                         at,
                         minus_g2_vy_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [6, 15],
                         at,
                         -(g1_vy_leg * t2_leg + minus_g2_vy_leg * a2_y_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [7, 15],
                         at,
                         g1_vy_leg * inv_l_ab_a_on_f2_leg + minus_g2_vy_leg * a2_x_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [8, 15],
                         at,
                         L_AB_SQUARED * zz_1_leg_on_vy,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [9, 15],
                         at,
                         minus_qd_2_leg * minus_gq2_vy_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [10, 15],
                         at,
-                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(
-                        &mut output[1],
-                        [11, 15],
-                        at,
-                        -minus_gq2_vy_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut output[1],
-                        [12, 15],
-                        at,
-                        minus_g2_vy_leg * qd_3_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[1], [11, 15], at, -minus_gq2_vy_leg);
+                    simd::put(&mut output[1], [12, 15], at, minus_g2_vy_leg * qd_3_leg);
+                    simd::put(
                         &mut output[1],
                         [13, 15],
                         at,
-                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        simd::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
-                    ::overact::simd::put(&mut output[1], [14, 15], at, minus_g2_vy_leg);
-                    ::overact::simd::put(
-                        &mut output[2],
-                        [0, 15],
-                        at,
-                        -minus_zz_1_leg_on_wz,
-                    );
-                    ::overact::simd::put(
-                        &mut output[2],
-                        [1, 15],
-                        at,
-                        -minus_zz_1_leg_on_wz,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[1], [14, 15], at, minus_g2_vy_leg);
+                    simd::put(&mut output[2], [0, 15], at, -minus_zz_1_leg_on_wz);
+                    simd::put(&mut output[2], [1, 15], at, -minus_zz_1_leg_on_wz);
+                    simd::put(
                         &mut output[2],
                         [2, 15],
                         at,
                         -(minus_g1_wz_leg * rate_1_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [3, 15],
                         at,
-                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -simd::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
-                    ::overact::simd::put(&mut output[2], [4, 15], at, -minus_g1_wz_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut output[2], [4, 15], at, -minus_g1_wz_leg);
+                    simd::put(
                         &mut output[2],
                         [5, 15],
                         at,
                         -(g2_wz_leg * minus_rate_dot_2_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [6, 15],
                         at,
                         minus_g1_wz_leg * t2_leg + g2_wz_leg * a2_y_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [7, 15],
                         at,
                         -(minus_g1_wz_leg * inv_l_ab_a_on_f2_leg + g2_wz_leg * a2_x_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [8, 15],
                         at,
                         -(L_AB_SQUARED * minus_zz_1_leg_on_wz),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [9, 15],
                         at,
                         -(minus_qd_2_leg * gq2_wz_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [10, 15],
                         at,
-                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(&mut output[2], [11, 15], at, gq2_wz_leg);
-                    ::overact::simd::put(
-                        &mut output[2],
-                        [12, 15],
-                        at,
-                        qd_3_leg * gq3_wz_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[2], [11, 15], at, gq2_wz_leg);
+                    simd::put(&mut output[2], [12, 15], at, qd_3_leg * gq3_wz_leg);
+                    simd::put(
                         &mut output[2],
                         [13, 15],
                         at,
-                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
+                        simd::signed(gq3_wz_leg, qd_3_leg, at),
                     );
-                    ::overact::simd::put(&mut output[2], [14, 15], at, gq3_wz_leg);
+                    simd::put(&mut output[2], [14, 15], at, gq3_wz_leg);
                 }
                 *place = output;
-                ::core::result::Result::Ok(())
+                Ok(())
             }
         }
-        if ::overact::simd::four() {
-            return ::overact::simd::few(Legs {
+        if simd::four() {
+            return simd::few(Legs {
                 pose,
                 twist,
                 acceleration,
@@ -2482,26 +2385,26 @@ impl DualV {
             });
         }
         /// 1 / l_ab
-        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        const INV_L_AB: f64 = 3.5714285714285716;
         /// 1 / r_p
-        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        const INV_R_P: f64 = 9.090909090909092;
         /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
+        const L_AB: f64 = 0.28;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         /// r_p / l_ab
-        const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
+        const R_P_PER_L_AB: f64 = 0.39285714285714285;
         /// 2 l_ab²
-        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        const TWICE_L_AB_SQUARED: f64 = 0.1568;
         output[0][60] = 0.0; // zz_platform
         output[0][63] = acceleration[0]; // m_platform
         output[1][60] = 0.0; // zz_platform
         output[1][63] = acceleration[1]; // m_platform
         output[2][60] = acceleration[2]; // zz_platform
         output[2][63] = 0.0; // m_platform
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
@@ -2517,39 +2420,39 @@ impl DualV {
         let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         // --- leg2
         let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         // --- leg3
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         output[2][61] = a_y_platform; // mx_platform
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -2672,58 +2575,58 @@ impl DualV {
         output[0][2] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
         output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
         output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
-        output[0][3] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
-        output[1][3] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-        output[2][3] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
+        output[0][3] = math::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+        output[1][3] = math::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+        output[2][3] = -math::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
         output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
         output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
-        output[0][18] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
-        output[1][18] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
-        output[2][18] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[0][18] = math::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[1][18] = math::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[2][18] = -math::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
         output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
         output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
-        output[0][33] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-        output[1][33] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
-        output[2][33] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
+        output[0][33] = math::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+        output[1][33] = math::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+        output[2][33] = math::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
         output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
         output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
         output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
-        output[0][48] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
-        output[1][48] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
-        output[2][48] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[0][48] = math::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[1][48] = math::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[2][48] = math::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
-        output[0][10] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[0][10] = math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
         output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
-        output[1][10] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[1][10] = math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
         output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
-        output[2][10] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[2][10] = -math::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         output[0][24] = qd_2_leg2 * gq2_vx_leg2; // fv_2_leg2
-        output[0][25] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+        output[0][25] = math::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
         output[1][24] = qd_2_leg2 * gq2_vy_leg2; // fv_2_leg2
-        output[1][25] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+        output[1][25] = math::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
         output[2][24] = -(qd_2_leg2 * minus_gq2_wz_leg2); // fv_2_leg2
-        output[2][25] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
+        output[2][25] = -math::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
         output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
         output[2][12] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
-        output[2][13] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
-        output[0][13] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
-        output[1][13] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
+        output[2][13] = math::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+        output[0][13] = math::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
+        output[1][13] = math::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
         let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
         let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -2819,11 +2722,11 @@ impl DualV {
         output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
         let qd_3_leg2 = twist[2] - rate_2_leg2;
         output[0][27] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
-        output[0][28] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+        output[0][28] = -math::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
         output[1][27] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
-        output[1][28] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
+        output[1][28] = -math::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
         output[2][27] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
-        output[2][28] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
+        output[2][28] = math::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
         // --- leg3
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
@@ -2902,18 +2805,18 @@ impl DualV {
         output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
-        output[0][40] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[0][40] = math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
         output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
-        output[1][40] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[1][40] = math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
         output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
-        output[2][40] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[2][40] = math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-        output[0][43] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
+        output[0][43] = math::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
         output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-        output[1][43] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
+        output[1][43] = math::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
         output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
-        output[2][43] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+        output[2][43] = math::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
         output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
         output[0][52] = -(minus_g1_vx_leg4 * inv_l_ab_a_on_f2_leg4
             + g2_vx_leg4 * a2_x_leg4); // my_2_leg4
@@ -2937,19 +2840,19 @@ impl DualV {
         output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         output[0][54] = qd_2_leg4 * gq2_vx_leg4; // fv_2_leg4
-        output[0][55] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+        output[0][55] = math::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
         output[1][54] = qd_2_leg4 * gq2_vy_leg4; // fv_2_leg4
-        output[1][55] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+        output[1][55] = math::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
         output[2][54] = qd_2_leg4 * gq2_wz_leg4; // fv_2_leg4
-        output[2][55] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
+        output[2][55] = math::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
         let qd_3_leg4 = twist[2] - rate_2_leg4;
         output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
-        output[0][58] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+        output[0][58] = -math::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
         output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
-        output[1][58] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+        output[1][58] = -math::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
         output[2][57] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
-        output[2][58] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
-        ::core::result::Result::Ok(())
+        output[2][58] = math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+        Ok(())
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
@@ -2965,14 +2868,14 @@ impl DualV {
     /// 404 operations (122 additions, 278 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 34 negations, 250 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 64]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
             pose,
             joints,
             twist,
@@ -2985,19 +2888,19 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_platform_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_from_joints_into(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 64]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 64]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -3005,17 +2908,17 @@ impl DualV {
                 *acceleration,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// r_p² / l_ab
-            const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+            const R_P_SQUARED_PER_L_AB: f64 = 0.04321428571428571;
             output[0][60] = 0.0; // zz_platform
             output[0][63] = acceleration[0]; // m_platform
             output[1][60] = 0.0; // zz_platform
@@ -3025,14 +2928,14 @@ impl DualV {
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s2_leg4, c2_leg4), (s_phi, c_phi), (s1_leg1, c1_leg1),
-            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = math::wide::sin_cos_all([
                 joints[1], joints[4], joints[7], joints[10], pose[2], joints[0], joints[3],
                 joints[6], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+            guard::leg(s2_leg1, 1.0, "leg1")?;
+            guard::leg(s2_leg2, 1.0, "leg2")?;
+            guard::leg(s2_leg3, 1.0, "leg3")?;
+            guard::leg(s2_leg4, 1.0, "leg4")?;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
             output[2][61] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -3152,74 +3055,50 @@ impl DualV {
             output[0][2] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
             output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
-            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][3] = -::overact::math::wide::signed(
-                minus_g1_wz_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
+            output[0][3] = math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][3] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][3] = -math::wide::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
             output[0][17] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][17] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
             output[2][17] = -(minus_g1_wz_leg2 * rate_1_leg2); // fv_1_leg2
-            output[0][18] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][18] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
-            output[2][18] = -::overact::math::wide::signed(
-                minus_g1_wz_leg2,
-                rate_1_leg2,
-            ); // fs_1_leg2
+            output[0][18] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][18] = math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            output[2][18] = -math::wide::signed(minus_g1_wz_leg2, rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
             output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
-            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
+            output[0][33] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][33] = math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][33] = math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let rate_1_leg4 = g1_vx_leg4 * v_end_x_leg3 + g1_vy_leg4 * v_end_y_leg3;
             output[0][47] = g1_vx_leg4 * rate_1_leg4; // fv_1_leg4
             output[1][47] = g1_vy_leg4 * rate_1_leg4; // fv_1_leg4
             output[2][47] = g1_wz_leg4 * rate_1_leg4; // fv_1_leg4
-            output[0][48] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4); // fs_1_leg4
-            output[1][48] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4); // fs_1_leg4
-            output[2][48] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4); // fs_1_leg4
+            output[0][48] = math::wide::signed(g1_vx_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][48] = math::wide::signed(g1_vy_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][48] = math::wide::signed(g1_wz_leg4, rate_1_leg4); // fs_1_leg4
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
-            output[0][10] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][10] = math::wide::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[1][9] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
-            output[1][10] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][10] = math::wide::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[2][9] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
-            output[2][10] = -::overact::math::wide::signed(
-                gq2_wz_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[2][10] = -math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
             let minus_rate_2_leg2 = minus_g2_vx_leg2 * v_end_x_leg1
                 + minus_g2_vy_leg2 * v_end_y_leg1;
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             output[0][24] = minus_qd_2_leg2 * minus_gq2_vx_leg2; // fv_2_leg2
-            output[0][25] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][25] = math::wide::signed(minus_gq2_vx_leg2, minus_qd_2_leg2); // fs_2_leg2
             output[1][24] = minus_qd_2_leg2 * minus_gq2_vy_leg2; // fv_2_leg2
-            output[1][25] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][25] = math::wide::signed(minus_gq2_vy_leg2, minus_qd_2_leg2); // fs_2_leg2
             output[2][24] = -(minus_qd_2_leg2 * gq2_wz_leg2); // fv_2_leg2
-            output[2][25] = -::overact::math::wide::signed(
-                gq2_wz_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
+            output[2][25] = -math::wide::signed(gq2_wz_leg2, minus_qd_2_leg2); // fs_2_leg2
             let a_end_x_leg1 = acceleration[0] + a_arm_x_leg1;
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -3294,17 +3173,11 @@ impl DualV {
             output[2][8] = -(L_AB_SQUARED * minus_zz_1_leg1_on_wz); // m_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed(
-                minus_g2_vx_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[0][13] = math::wide::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
             output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
-            output[1][13] = ::overact::math::wide::signed(
-                minus_g2_vy_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[1][13] = math::wide::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
             output[2][12] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
-            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+            output[2][13] = math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
             output[0][23] = L_AB_SQUARED * zz_1_leg2_on_vx; // m_2_leg2
             output[1][22] = g1_vy_leg2 * a_on_f2_leg2
                 + minus_g2_vy_leg2 * minus_a_on_f1_leg2; // my_2_leg2
@@ -3329,17 +3202,11 @@ impl DualV {
             output[2][23] = -(L_AB_SQUARED * minus_zz_1_leg2_on_wz); // m_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             output[0][27] = minus_g2_vx_leg2 * qd_3_leg2; // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed(
-                minus_g2_vx_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[0][28] = math::wide::signed(minus_g2_vx_leg2, qd_3_leg2); // fs_3_leg2
             output[1][27] = minus_g2_vy_leg2 * qd_3_leg2; // fv_3_leg2
-            output[1][28] = ::overact::math::wide::signed(
-                minus_g2_vy_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[1][28] = math::wide::signed(minus_g2_vy_leg2, qd_3_leg2); // fs_3_leg2
             output[2][27] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
-            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
+            output[2][28] = math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -3414,33 +3281,18 @@ impl DualV {
             output[1][38] = L_AB_SQUARED * zz_1_leg3_on_vy; // m_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
-            output[0][40] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][40] = math::wide::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
             output[1][39] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
-            output[1][40] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][40] = math::wide::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
             output[2][39] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[2][40] = math::wide::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                minus_g2_vx_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[0][43] = math::wide::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[1][43] = ::overact::math::wide::signed(
-                minus_g2_vy_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[1][43] = math::wide::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
             output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
-            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+            output[2][43] = math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_wz; // m_2_leg4
             output[0][52] = g1_vx_leg4 * a_on_f2_leg4
                 + minus_g2_vx_leg4 * minus_a_on_f1_leg4; // my_2_leg4
@@ -3464,34 +3316,19 @@ impl DualV {
             output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
             output[0][54] = minus_qd_2_leg4 * minus_gq2_vx_leg4; // fv_2_leg4
-            output[0][55] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg4,
-                minus_qd_2_leg4,
-            ); // fs_2_leg4
+            output[0][55] = math::wide::signed(minus_gq2_vx_leg4, minus_qd_2_leg4); // fs_2_leg4
             output[1][54] = minus_qd_2_leg4 * minus_gq2_vy_leg4; // fv_2_leg4
-            output[1][55] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg4,
-                minus_qd_2_leg4,
-            ); // fs_2_leg4
+            output[1][55] = math::wide::signed(minus_gq2_vy_leg4, minus_qd_2_leg4); // fs_2_leg4
             output[2][54] = minus_qd_2_leg4 * minus_gq2_wz_leg4; // fv_2_leg4
-            output[2][55] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg4,
-                minus_qd_2_leg4,
-            ); // fs_2_leg4
+            output[2][55] = math::wide::signed(minus_gq2_wz_leg4, minus_qd_2_leg4); // fs_2_leg4
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             output[0][57] = minus_g2_vx_leg4 * qd_3_leg4; // fv_3_leg4
-            output[0][58] = ::overact::math::wide::signed(
-                minus_g2_vx_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[0][58] = math::wide::signed(minus_g2_vx_leg4, qd_3_leg4); // fs_3_leg4
             output[1][57] = minus_g2_vy_leg4 * qd_3_leg4; // fv_3_leg4
-            output[1][58] = ::overact::math::wide::signed(
-                minus_g2_vy_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[1][58] = math::wide::signed(minus_g2_vy_leg4, qd_3_leg4); // fs_3_leg4
             output[2][57] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
-            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
-            ::core::result::Result::Ok(())
+            output[2][58] = math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -3509,14 +3346,14 @@ impl DualV {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+    ) -> Result<[[f64; 64]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -3529,45 +3366,45 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_platform_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_from_actuators_into(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 64]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+        output: &mut [[f64; 64]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// 1 / (2 l_ab)
-            const INV_TWICE_L_AB: ::core::primitive::f64 = 1.7857142857142858;
+            const INV_TWICE_L_AB: f64 = 1.7857142857142858;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// r_p / l_ab
-            const R_P_PER_L_AB: ::core::primitive::f64 = 0.39285714285714285;
+            const R_P_PER_L_AB: f64 = 0.39285714285714285;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
             output[0][60] = 0.0; // zz_platform
             output[1][60] = 0.0; // zz_platform
             output[2][63] = 0.0; // m_platform
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
@@ -3583,41 +3420,41 @@ impl DualV {
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let half_d_x_leg3 = 0.5 * d_x_leg3;
             // --- leg2
             let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
             let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -3644,7 +3481,7 @@ impl DualV {
             output[0][49] = -minus_g1_vx_leg4; // off_1_leg4
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
             let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
             let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
@@ -3667,11 +3504,7 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
             output[2][19] = g1_wz_leg2; // off_1_leg2
@@ -3694,11 +3527,7 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             // --- leg1
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             output[0][14] = minus_g2_vx_leg1; // off_3_leg1
@@ -3771,11 +3600,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = t3 / pivot_3;
-            ::overact::guard::size(wz, 1e60)?;
+            guard::size(wz, 1e60)?;
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let vy = t2 / pivot_2 - l_3_2 * wz;
-            ::overact::guard::size(vy, 1e60)?;
+            guard::size(vy, 1e60)?;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -3783,154 +3612,100 @@ impl DualV {
             output[0][2] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
             output[2][2] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
-            output[0][3] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][3] = -::overact::math::wide::signed(
-                minus_g1_wz_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
+            output[0][3] = math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][3] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][3] = -math::wide::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[0][17] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[1][17] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[2][17] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
-            output[0][18] = ::overact::math::wide::signed(
-                minus_g1_vx_leg2,
-                minus_rate_1_leg2,
-            ); // fs_1_leg2
-            output[1][18] = ::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                minus_rate_1_leg2,
-            ); // fs_1_leg2
-            output[2][18] = -::overact::math::wide::signed(
-                g1_wz_leg2,
-                minus_rate_1_leg2,
-            ); // fs_1_leg2
+            output[0][18] = math::wide::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
+            output[1][18] = math::wide::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
+            output[2][18] = -math::wide::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = minus_gq2_vx_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[0][10] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][10] = math::wide::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[1][9] = minus_gq2_vy_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[1][10] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][10] = math::wide::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[2][9] = -(gq2_wz_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[2][10] = -::overact::math::wide::signed(
-                gq2_wz_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[2][10] = -math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][24] = gq2_vx_leg2 * qd_2_leg2; // fv_2_leg2
-            output[0][25] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][25] = math::wide::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
             output[1][24] = gq2_vy_leg2 * qd_2_leg2; // fv_2_leg2
-            output[1][25] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][25] = math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             output[2][24] = -(minus_gq2_wz_leg2 * qd_2_leg2); // fv_2_leg2
-            output[2][25] = -::overact::math::wide::signed(
-                minus_gq2_wz_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[2][25] = -math::wide::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][12] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
             output[1][12] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
             output[2][12] = gq3_wz_leg1 * qd_3_leg1; // fv_3_leg1
-            output[2][13] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
-            output[0][13] = ::overact::math::wide::signed(
-                minus_g2_vx_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
-            output[1][13] = ::overact::math::wide::signed(
-                minus_g2_vy_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[2][13] = math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+            output[0][13] = math::wide::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
+            output[1][13] = math::wide::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
             let qd_3_leg2 = wz - rate_2_leg2;
             output[0][27] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
             output[1][27] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
             output[2][27] = gq3_wz_leg2 * qd_3_leg2; // fv_3_leg2
-            output[2][28] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
-            output[0][28] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
-            output[1][28] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
+            output[2][28] = math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
+            output[0][28] = -math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+            output[1][28] = -math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
             let v_end_x_leg3 = vx + v_arm_x_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[0][32] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][32] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
             output[2][32] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][33] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][33] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
-            output[2][33] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
+            output[0][33] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][33] = math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][33] = math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
             output[0][47] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[1][47] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[2][47] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][48] = ::overact::math::wide::signed(
-                minus_g1_vx_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[1][48] = ::overact::math::wide::signed(
-                minus_g1_vy_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[2][48] = ::overact::math::wide::signed(
-                minus_g1_wz_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[0][48] = math::wide::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[1][48] = math::wide::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[2][48] = math::wide::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[0][40] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][40] = math::wide::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
             output[1][39] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[1][40] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][40] = math::wide::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
             output[2][39] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[2][40] = math::wide::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][54] = gq2_vx_leg4 * qd_2_leg4; // fv_2_leg4
-            output[0][55] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+            output[0][55] = math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
             output[1][54] = gq2_vy_leg4 * qd_2_leg4; // fv_2_leg4
-            output[1][55] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+            output[1][55] = math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
             output[2][54] = gq2_wz_leg4 * qd_2_leg4; // fv_2_leg4
-            output[2][55] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
+            output[2][55] = math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
             output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
-            output[2][43] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                minus_g2_vx_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[1][43] = ::overact::math::wide::signed(
-                minus_g2_vy_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[2][43] = math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+            output[0][43] = math::wide::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
+            output[1][43] = math::wide::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
             // --- leg1
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
+            guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
+            guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -3938,13 +3713,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg1;
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
+            guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
+            guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -3952,13 +3727,13 @@ impl DualV {
                 - bias_rate_dot_1_leg2;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
+            guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
+            guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = rho_squared_leg3 - TWICE_L_AB_SQUARED;
             let t2_leg3 = 0.5 * t1_leg3;
             let t3_leg3 = rate_1_squared_leg3 * t2_leg3;
@@ -3967,13 +3742,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
+            guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
+            guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -3993,13 +3768,13 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
-            ::overact::guard::size(dwz, 1e60)?;
+            guard::size(dwz, 1e60)?;
             output[2][60] = dwz; // zz_platform
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
-            ::overact::guard::size(dvy, 1e60)?;
+            guard::size(dvy, 1e60)?;
             output[1][63] = dvy; // m_platform
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            ::overact::guard::size(dvx, 1e60)?;
+            guard::size(dvx, 1e60)?;
             output[0][63] = dvx; // m_platform
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
@@ -4102,11 +3877,11 @@ impl DualV {
             output[1][53] = L_AB_SQUARED * zz_1_leg4_on_vy; // m_2_leg4
             let qd_3_leg4 = wz - rate_2_leg4;
             output[0][57] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
-            output[0][58] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+            output[0][58] = -math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
             output[1][57] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
-            output[1][58] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+            output[1][58] = -math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
             output[2][57] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
-            output[2][58] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+            output[2][58] = math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             // --- leg1
             let a_end_x_leg1 = dvx + a_arm_x_leg1;
             let a_end_y_leg1 = dvy - a_arm_y_leg3;
@@ -4204,7 +3979,7 @@ impl DualV {
             let my_platform_on_vx = INV_R_P * a_arm_x_leg1;
             output[0][62] = my_platform_on_vx;
             output[1][61] = -my_platform_on_vx; // mx_platform
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -4220,13 +3995,13 @@ impl DualV {
     /// 526 operations (184 additions, 333 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 48 negations, 401 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_into(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 64]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_into(
             pose,
             twist,
             acceleration,
@@ -4238,34 +4013,34 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_into(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 64]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 64]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// 1 / r_p²
-            const INV_R_P_SQUARED: ::core::primitive::f64 = 82.64462809917356;
+            const INV_R_P_SQUARED: f64 = 82.64462809917356;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// r_p² / l_ab
-            const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+            const R_P_SQUARED_PER_L_AB: f64 = 0.04321428571428571;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
             output[0][4] = 1.0; // off_1_leg1
             output[0][15..20].fill(0.0);
             output[0][23] = 0.0; // m_2_leg2
@@ -4279,7 +4054,7 @@ impl DualV {
             output[2][0..12].fill(0.0);
             output[2][15..27].fill(0.0);
             output[2][34] = 1.0; // off_1_leg3
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -4288,42 +4063,42 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -4353,11 +4128,7 @@ impl DualV {
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
             let det_ja = g1_wz_leg3 * t1;
-            ::overact::guard::platform(
-                det_ja,
-                3.538,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
             output[2][14] = wz_by_a3; // off_3_leg1
@@ -4406,13 +4177,13 @@ impl DualV {
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[1][17] = -minus_rate_1_leg2; // fv_1_leg2
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
-            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
+            output[0][3] = math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][18] = -math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[2][32] = rate_1_leg3; // fv_1_leg3
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[2][33] = math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
@@ -4516,59 +4287,47 @@ impl DualV {
             output[0][22] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][10] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][10] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let minus_off_3_leg1_on_q1_leg2 = g2_a2_leg1 + minus_wz_by_a2;
             output[1][14] = -minus_off_3_leg1_on_q1_leg2; // off_3_leg1
             output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
             output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
-            output[1][13] = -::overact::math::wide::signed(
+            output[1][13] = -math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             ); // fs_3_leg1
-            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
+            output[2][13] = math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][24] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
-            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][25] = math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
             output[0][29] = off_3_leg2_on_q1_leg1;
             output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
             output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed(
-                off_3_leg2_on_q1_leg1,
-                qd_3_leg2,
-            ); // fs_3_leg2
-            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
+            output[0][28] = math::wide::signed(off_3_leg2_on_q1_leg1, qd_3_leg2); // fs_3_leg2
+            output[2][28] = math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][11] = off_2_leg1_on_q1_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][10] = -::overact::math::wide::signed(
+            output[0][10] = -math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             ); // fs_2_leg1
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][14] = off_3_leg1_on_q1_leg1;
             output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[0][13] = math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1); // fs_3_leg1
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][26] = off_2_leg2_on_q1_leg2;
             output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][25] = ::overact::math::wide::signed(
-                off_2_leg2_on_q1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][25] = math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2); // fs_2_leg2
             let minus_off_3_leg2_on_q1_leg2 = g2_a2_leg2 + minus_wz_by_a2;
             output[1][29] = -minus_off_3_leg2_on_q1_leg2; // off_3_leg2
             output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2); // fv_3_leg2
-            output[1][28] = -::overact::math::wide::signed(
+            output[1][28] = -math::wide::signed(
                 minus_off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
             ); // fs_3_leg2
@@ -4627,14 +4386,8 @@ impl DualV {
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            output[0][40] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][40] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][40] = -math::wide::signed(g2_a1_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[1][40] = -math::wide::signed(g2_a2_leg3, minus_qd_2_leg3); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
@@ -4642,28 +4395,22 @@ impl DualV {
             let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
             output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg1,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[1][43] = -::overact::math::wide::signed(
+            output[0][43] = math::wide::signed(off_3_leg3_on_q1_leg1, qd_3_leg3); // fs_3_leg3
+            output[1][43] = -math::wide::signed(
                 minus_off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
             ); // fs_3_leg3
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
             output[2][41] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3
             output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed(
+            output[2][40] = math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
             let off_3_leg3_on_q1_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][44] = off_3_leg3_on_q1_leg3;
             output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
-            output[2][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[2][43] = math::wide::signed(off_3_leg3_on_q1_leg3, qd_3_leg3); // fs_3_leg3
             // --- leg4
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -4719,14 +4466,8 @@ impl DualV {
             output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
             output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[0][48] = -::overact::math::wide::signed(
-                g1_a1_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[1][48] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[0][48] = -math::wide::signed(g1_a1_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[1][48] = -math::wide::signed(g1_a2_leg4, minus_rate_1_leg4); // fs_1_leg4
             let minus_g1_wz_wz_by_a3_leg4 = minus_g1_wz_leg4 * wz_by_a3;
             let g2_wz_wz_by_a3_leg4 = g2_wz_leg4 * wz_by_a3;
             output[2][52] = -(7.142857142857143
@@ -4744,10 +4485,7 @@ impl DualV {
                 - L_AB * (zz_2_leg4_on_q1_leg3 + zz_1_leg4_on_q1_leg3); // mx_2_leg4
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
             output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[2][48] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[2][48] = math::wide::signed(minus_g1_a3_leg4, minus_rate_1_leg4); // fs_1_leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
@@ -4774,31 +4512,16 @@ impl DualV {
             let off_3_leg4_on_q1_leg3 = wz_by_a3 - g2_a3_leg4;
             output[2][59] = off_3_leg4_on_q1_leg3;
             output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
-            output[0][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg1,
-                qd_2_leg4,
-            ); // fs_2_leg4
-            output[1][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg2,
-                qd_2_leg4,
-            ); // fs_2_leg4
-            output[2][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg3,
-                qd_2_leg4,
-            ); // fs_2_leg4
-            output[0][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg1,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            output[1][58] = -::overact::math::wide::signed(
+            output[0][55] = math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4); // fs_2_leg4
+            output[1][55] = math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4); // fs_2_leg4
+            output[2][55] = math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4); // fs_2_leg4
+            output[0][58] = math::wide::signed(off_3_leg4_on_q1_leg1, qd_3_leg4); // fs_3_leg4
+            output[1][58] = -math::wide::signed(
                 minus_off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
             ); // fs_3_leg4
-            output[2][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg3,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            ::core::result::Result::Ok(())
+            output[2][58] = math::wide::signed(off_3_leg4_on_q1_leg3, qd_3_leg4); // fs_3_leg4
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -4815,14 +4538,14 @@ impl DualV {
     /// 479 operations (156 additions, 318 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 58 negations, 366 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 64]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
             pose,
             joints,
             twist,
@@ -4835,19 +4558,19 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_joints_into(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 64]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 64]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -4855,19 +4578,19 @@ impl DualV {
                 *acceleration,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// 1 / r_p²
-            const INV_R_P_SQUARED: ::core::primitive::f64 = 82.64462809917356;
+            const INV_R_P_SQUARED: f64 = 82.64462809917356;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// r_p² / l_ab
-            const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+            const R_P_SQUARED_PER_L_AB: f64 = 0.04321428571428571;
             output[0][4] = 1.0; // off_1_leg1
             output[0][15..20].fill(0.0);
             output[0][23] = 0.0; // m_2_leg2
@@ -4884,14 +4607,14 @@ impl DualV {
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s2_leg4, c2_leg4), (s1_leg1, c1_leg1), (s_phi, c_phi),
-            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = math::wide::sin_cos_all([
                 joints[1], joints[4], joints[7], joints[10], joints[0], pose[2], joints[3],
                 joints[6], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+            guard::leg(s2_leg1, 1.0, "leg1")?;
+            guard::leg(s2_leg2, 1.0, "leg2")?;
+            guard::leg(s2_leg3, 1.0, "leg3")?;
+            guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg1
             let k1_leg1 = INV_L_AB / s2_leg1;
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
@@ -4919,11 +4642,7 @@ impl DualV {
             let t2 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
             let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
             let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
-            ::overact::guard::platform(
-                det_ja,
-                7.075,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 7.075, ActuatorGroup::Kept)?;
             let inv_det_ja = 1.0 / det_ja;
             let minus_wz_by_a3 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2)
                 * inv_det_ja;
@@ -4966,13 +4685,13 @@ impl DualV {
             output[0][2] = rate_1_leg1; // fv_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
             output[1][17] = rate_1_leg2; // fv_1_leg2
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
-            output[1][18] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
+            output[0][3] = math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][18] = math::wide::sign(rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[2][32] = rate_1_leg3; // fv_1_leg3
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[2][33] = math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
@@ -5074,71 +4793,47 @@ impl DualV {
             output[0][22] = -(g2_a1_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][10] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][10] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
             output[1][14] = off_3_leg1_on_q1_leg2;
             output[1][12] = qd_3_leg1 * off_3_leg1_on_q1_leg2; // fv_3_leg1
             output[2][12] = -(minus_wz_by_a3 * qd_3_leg1); // fv_3_leg1
-            output[1][13] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg2,
-                qd_3_leg1,
-            ); // fs_3_leg1
-            output[2][13] = -::overact::math::wide::signed(
-                minus_wz_by_a3,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[1][13] = math::wide::signed(off_3_leg1_on_q1_leg2, qd_3_leg1); // fs_3_leg1
+            output[2][13] = -math::wide::signed(minus_wz_by_a3, qd_3_leg1); // fs_3_leg1
             output[1][23] = L_AB_SQUARED * rate_dot_1_leg2; // m_2_leg2
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             output[0][24] = -(g2_a1_leg2 * minus_qd_2_leg2); // fv_2_leg2
-            output[0][25] = -::overact::math::wide::signed(
-                g2_a1_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][25] = -math::wide::signed(g2_a1_leg2, minus_qd_2_leg2); // fs_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             let off_3_leg2_on_q1_leg1 = wz_by_a1 - g2_a1_leg2;
             output[0][29] = off_3_leg2_on_q1_leg1;
             output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
             output[2][27] = -(minus_wz_by_a3 * qd_3_leg2); // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed(
-                off_3_leg2_on_q1_leg1,
-                qd_3_leg2,
-            ); // fs_3_leg2
-            output[2][28] = -::overact::math::wide::signed(
-                minus_wz_by_a3,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[0][28] = math::wide::signed(off_3_leg2_on_q1_leg1, qd_3_leg2); // fs_3_leg2
+            output[2][28] = -math::wide::signed(minus_wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][11] = off_2_leg1_on_q1_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][10] = -::overact::math::wide::signed(
+            output[0][10] = -math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             ); // fs_2_leg1
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][14] = off_3_leg1_on_q1_leg1;
             output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[0][13] = math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1); // fs_3_leg1
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][26] = off_2_leg2_on_q1_leg2;
             output[1][24] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2); // fv_2_leg2
-            output[1][25] = -::overact::math::wide::signed(
+            output[1][25] = -math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 minus_qd_2_leg2,
             ); // fs_2_leg2
             let off_3_leg2_on_q1_leg2 = wz_by_a2 - g2_a2_leg2;
             output[1][29] = off_3_leg2_on_q1_leg2;
             output[1][27] = qd_3_leg2 * off_3_leg2_on_q1_leg2; // fv_3_leg2
-            output[1][28] = ::overact::math::wide::signed(
-                off_3_leg2_on_q1_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[1][28] = math::wide::signed(off_3_leg2_on_q1_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
@@ -5191,14 +4886,8 @@ impl DualV {
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            output[0][40] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][40] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][40] = -math::wide::signed(g2_a1_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[1][40] = -math::wide::signed(g2_a2_leg3, minus_qd_2_leg3); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let off_3_leg3_on_q1_leg1 = wz_by_a1 - g2_a1_leg3;
             output[0][44] = off_3_leg3_on_q1_leg1;
@@ -5206,25 +4895,19 @@ impl DualV {
             let off_3_leg3_on_q1_leg2 = wz_by_a2 - g2_a2_leg3;
             output[1][44] = off_3_leg3_on_q1_leg2;
             output[1][42] = qd_3_leg3 * off_3_leg3_on_q1_leg2; // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg1,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[1][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg2,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[0][43] = math::wide::signed(off_3_leg3_on_q1_leg1, qd_3_leg3); // fs_3_leg3
+            output[1][43] = math::wide::signed(off_3_leg3_on_q1_leg2, qd_3_leg3); // fs_3_leg3
             let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
             output[2][41] = off_2_leg3_on_q1_leg3;
             output[2][39] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3); // fv_2_leg3
-            output[2][40] = -::overact::math::wide::signed(
+            output[2][40] = -math::wide::signed(
                 off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
             let minus_off_3_leg3_on_q1_leg3 = g2_a3_leg3 + minus_wz_by_a3;
             output[2][44] = -minus_off_3_leg3_on_q1_leg3; // off_3_leg3
             output[2][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg3); // fv_3_leg3
-            output[2][43] = -::overact::math::wide::signed(
+            output[2][43] = -math::wide::signed(
                 minus_off_3_leg3_on_q1_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
@@ -5278,12 +4961,9 @@ impl DualV {
             let minus_g1_a3_leg4 = 2.0 * (g1_wz_leg4 * minus_wz_by_a3);
             output[2][49] = -minus_g1_a3_leg4; // off_1_leg4
             output[2][47] = -(minus_g1_a3_leg4 * rate_1_leg4); // fv_1_leg4
-            output[0][48] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
-            output[1][48] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
-            output[2][48] = -::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                rate_1_leg4,
-            ); // fs_1_leg4
+            output[0][48] = math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][48] = math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][48] = -math::wide::signed(minus_g1_a3_leg4, rate_1_leg4); // fs_1_leg4
             output[0][52] = g1_a1_leg4 * a_on_f2_leg4
                 - g2_a1_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             let g2_a3_leg4 = 2.0 * (minus_g2_wz_leg4 * minus_wz_by_a3);
@@ -5297,7 +4977,7 @@ impl DualV {
             let off_3_leg4_on_q1_leg1 = wz_by_a1 - g2_a1_leg4;
             output[0][59] = off_3_leg4_on_q1_leg1;
             output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
-            output[0][55] = -::overact::math::wide::signed(
+            output[0][55] = -math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 minus_qd_2_leg4,
             ); // fs_2_leg4
@@ -5307,15 +4987,9 @@ impl DualV {
             let minus_off_3_leg4_on_q1_leg3 = g2_a3_leg4 + minus_wz_by_a3;
             output[2][59] = -minus_off_3_leg4_on_q1_leg3; // off_3_leg4
             output[2][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg3); // fv_3_leg4
-            output[0][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg1,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            output[1][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg2,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            output[2][58] = -::overact::math::wide::signed(
+            output[0][58] = math::wide::signed(off_3_leg4_on_q1_leg1, qd_3_leg4); // fs_3_leg4
+            output[1][58] = math::wide::signed(off_3_leg4_on_q1_leg2, qd_3_leg4); // fs_3_leg4
+            output[2][58] = -math::wide::signed(
                 minus_off_3_leg4_on_q1_leg3,
                 qd_3_leg4,
             ); // fs_3_leg4
@@ -5341,15 +5015,15 @@ impl DualV {
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][56] = off_2_leg4_on_q1_leg3;
             output[2][54] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3); // fv_2_leg4
-            output[1][55] = -::overact::math::wide::signed(
+            output[1][55] = -math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 minus_qd_2_leg4,
             ); // fs_2_leg4
-            output[2][55] = -::overact::math::wide::signed(
+            output[2][55] = -math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 minus_qd_2_leg4,
             ); // fs_2_leg4
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -5367,14 +5041,14 @@ impl DualV {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+    ) -> Result<[[f64; 64]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -5387,41 +5061,41 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_actuators_into(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 64]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+        output: &mut [[f64; 64]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// 1 / r_p²
-            const INV_R_P_SQUARED: ::core::primitive::f64 = 82.64462809917356;
+            const INV_R_P_SQUARED: f64 = 82.64462809917356;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// r_p² / l_ab
-            const R_P_SQUARED_PER_L_AB: ::core::primitive::f64 = 0.04321428571428571;
+            const R_P_SQUARED_PER_L_AB: f64 = 0.04321428571428571;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
             output[0][4] = 1.0; // off_1_leg1
             output[0][15..20].fill(0.0);
             output[0][23] = 0.0; // m_2_leg2
@@ -5435,7 +5109,7 @@ impl DualV {
             output[2][0..12].fill(0.0);
             output[2][15..27].fill(0.0);
             output[2][34] = 1.0; // off_1_leg3
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -5444,42 +5118,42 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -5511,11 +5185,7 @@ impl DualV {
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
             let det_ja = g1_wz_leg3 * t1;
-            ::overact::guard::platform(
-                det_ja,
-                3.538,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
             // --- leg4
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
@@ -5523,7 +5193,7 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -5534,11 +5204,7 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
@@ -5557,11 +5223,7 @@ impl DualV {
             let inv_pivot_2 = 1.0 / pivot_2;
             let l_3_2 = schur_2_3 * inv_pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
             output[2][14] = wz_by_a3; // off_3_leg1
@@ -5669,21 +5331,21 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t2
                 - l_3_2 * t3;
             let wz = inv_pivot_3 * t4;
-            ::overact::guard::size(wz, 1e60)?;
+            guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             let vy = inv_pivot_2 * t3 - l_3_2 * wz;
-            ::overact::guard::size(vy, 1e60)?;
+            guard::size(vy, 1e60)?;
             let vx = inv_pivot_1 * t2 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
+            guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
@@ -5691,7 +5353,7 @@ impl DualV {
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             output[0][2] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
+            guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -5700,7 +5362,7 @@ impl DualV {
             // --- leg2
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
+            guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
@@ -5709,7 +5371,7 @@ impl DualV {
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[1][17] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
+            guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -5721,7 +5383,7 @@ impl DualV {
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
+            guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
@@ -5729,7 +5391,7 @@ impl DualV {
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[2][32] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
+            guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
             let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
@@ -5738,7 +5400,7 @@ impl DualV {
             // --- leg4
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
+            guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
@@ -5746,7 +5408,7 @@ impl DualV {
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
+            guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -5766,11 +5428,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t5
                 - l_3_2 * t6;
             let dwz = inv_pivot_3 * t7;
-            ::overact::guard::size(dwz, 1e60)?;
+            guard::size(dwz, 1e60)?;
             let dvy = inv_pivot_2 * t6 - l_3_2 * dwz;
-            ::overact::guard::size(dvy, 1e60)?;
+            guard::size(dvy, 1e60)?;
             let dvx = inv_pivot_1 * t5 - l_2_1 * dvy - l_3_1 * dwz;
-            ::overact::guard::size(dvx, 1e60)?;
+            guard::size(dvx, 1e60)?;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
@@ -5835,58 +5497,46 @@ impl DualV {
             output[2][61] = wz_by_a3 * a_y_platform
                 - (vy_by_a3 * inv_r_p_a_arm_x_leg1
                     + vx_by_a3 * inv_r_p_a_arm_y_leg3); // mx_platform
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[0][3] = math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
             output[0][8] = L_AB_SQUARED * rate_dot_1_leg1; // m_2_leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][9] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][10] = -::overact::math::wide::signed(
+            output[0][10] = -math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             ); // fs_2_leg1
             output[1][9] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][10] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][10] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][12] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][13] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[0][13] = math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1); // fs_3_leg1
             output[1][12] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
-            output[1][13] = -::overact::math::wide::signed(
+            output[1][13] = -math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             ); // fs_3_leg1
             output[2][12] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
-            output[2][13] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
-            output[1][18] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
+            output[2][13] = math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
+            output[1][18] = -math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
             output[1][23] = -(L_AB_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][24] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
-            output[0][25] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][25] = math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             output[1][24] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][25] = ::overact::math::wide::signed(
-                off_2_leg2_on_q1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][25] = math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2); // fs_2_leg2
             let qd_3_leg2 = wz - rate_2_leg2;
             output[0][27] = qd_3_leg2 * off_3_leg2_on_q1_leg1; // fv_3_leg2
-            output[0][28] = ::overact::math::wide::signed(
-                off_3_leg2_on_q1_leg1,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[0][28] = math::wide::signed(off_3_leg2_on_q1_leg1, qd_3_leg2); // fs_3_leg2
             output[1][27] = -(qd_3_leg2 * minus_off_3_leg2_on_q1_leg2); // fv_3_leg2
-            output[1][28] = -::overact::math::wide::signed(
+            output[1][28] = -math::wide::signed(
                 minus_off_3_leg2_on_q1_leg2,
                 qd_3_leg2,
             ); // fs_3_leg2
             output[2][27] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
-            output[2][28] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
-            output[2][33] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[2][28] = math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
+            output[2][33] = math::wide::sign(rate_1_leg3); // fs_1_leg3
             output[0][37] = -(g2_a1_leg3 * a2_x_leg3); // my_2_leg3
             output[1][37] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
             output[2][38] = L_AB_SQUARED * rate_dot_1_leg3; // m_2_leg3
@@ -5917,40 +5567,22 @@ impl DualV {
             output[0][39] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][39] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[2][39] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[2][40] = ::overact::math::wide::signed(
+            output[2][40] = math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
-            output[0][40] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][40] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][40] = -math::wide::signed(g2_a1_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[1][40] = -math::wide::signed(g2_a2_leg3, minus_qd_2_leg3); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             output[2][42] = qd_3_leg3 * off_3_leg3_on_q1_leg3; // fv_3_leg3
-            output[2][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[2][43] = math::wide::signed(off_3_leg3_on_q1_leg3, qd_3_leg3); // fs_3_leg3
             output[2][53] = L_AB_SQUARED * zz_1_leg4_on_q1_leg3; // m_2_leg4
             output[0][47] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[1][47] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[2][47] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[2][48] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[0][48] = -::overact::math::wide::signed(
-                g1_a1_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[1][48] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[2][48] = math::wide::signed(minus_g1_a3_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[0][48] = -math::wide::signed(g1_a1_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[1][48] = -math::wide::signed(g1_a2_leg4, minus_rate_1_leg4); // fs_1_leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][52] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
@@ -5971,36 +5603,21 @@ impl DualV {
             output[1][53] = -(L_AB_SQUARED * minus_zz_1_leg4_on_q1_leg2); // m_2_leg4
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][54] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
-            output[0][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg1,
-                qd_2_leg4,
-            ); // fs_2_leg4
+            output[0][55] = math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4); // fs_2_leg4
             output[1][54] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
-            output[1][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg2,
-                qd_2_leg4,
-            ); // fs_2_leg4
+            output[1][55] = math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4); // fs_2_leg4
             output[2][54] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
-            output[2][55] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg3,
-                qd_2_leg4,
-            ); // fs_2_leg4
+            output[2][55] = math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4); // fs_2_leg4
             let qd_3_leg4 = wz - rate_2_leg4;
             output[0][57] = qd_3_leg4 * off_3_leg4_on_q1_leg1; // fv_3_leg4
-            output[0][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg1,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[0][58] = math::wide::signed(off_3_leg4_on_q1_leg1, qd_3_leg4); // fs_3_leg4
             output[1][57] = -(qd_3_leg4 * minus_off_3_leg4_on_q1_leg2); // fv_3_leg4
-            output[1][58] = -::overact::math::wide::signed(
+            output[1][58] = -math::wide::signed(
                 minus_off_3_leg4_on_q1_leg2,
                 qd_3_leg4,
             ); // fs_3_leg4
             output[2][57] = qd_3_leg4 * off_3_leg4_on_q1_leg3; // fv_3_leg4
-            output[2][58] = ::overact::math::wide::signed(
-                off_3_leg4_on_q1_leg3,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[2][58] = math::wide::signed(off_3_leg4_on_q1_leg3, qd_3_leg4); // fs_3_leg4
             output[0][61] = minus_vy_by_a1 * inv_r_p_a_arm_x_leg1
                 - vx_by_a1 * inv_r_p_a_arm_y_leg3 + wz_by_a1 * a_y_platform; // mx_platform
             output[1][61] = minus_vy_by_a2 * inv_r_p_a_arm_x_leg1
@@ -6016,11 +5633,8 @@ impl DualV {
             let minus_off_3_leg3_on_q1_leg2 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][44] = -minus_off_3_leg3_on_q1_leg2; // off_3_leg3
             output[1][42] = -(qd_3_leg3 * minus_off_3_leg3_on_q1_leg2); // fv_3_leg3
-            output[0][43] = ::overact::math::wide::signed(
-                off_3_leg3_on_q1_leg1,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[1][43] = -::overact::math::wide::signed(
+            output[0][43] = math::wide::signed(off_3_leg3_on_q1_leg1, qd_3_leg3); // fs_3_leg3
+            output[1][43] = -math::wide::signed(
                 minus_off_3_leg3_on_q1_leg2,
                 qd_3_leg3,
             ); // fs_3_leg3
@@ -6069,7 +5683,7 @@ impl DualV {
             output[1][6] = t6_platform + L_AB * minus_zz_2_leg1_on_q1_leg2; // mx_2_leg1
             output[0][36] = t4_platform + L_AB * minus_zz_2_leg3_on_q1_leg1; // mx_2_leg3
             output[1][36] = t7_platform + L_AB * minus_zz_2_leg3_on_q1_leg2; // mx_2_leg3
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -6087,13 +5701,13 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 49]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             pose,
             twist,
             acceleration,
@@ -6105,38 +5719,38 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 49]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 49]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            acceleration: &'a [::core::primitive::f64; 3],
-            output: &'a mut [[::core::primitive::f64; 49]; 3],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            acceleration: &'a [f64; 3],
+            output: &'a mut [[f64; 49]; 3],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<(), ::overact::Error>;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<(), Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, output } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
                 output[0][0] = 0.0; // zz_platformR
                 output[1][0] = 0.0; // zz_platformR
                 output[2][3] = 0.0; // m_platformR
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 // --- leg
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let minus_mx_platform_on_vx = c_phi * rate_3_squared_leg
@@ -6158,8 +5772,8 @@ impl DualV {
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -6172,42 +5786,28 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let a_arm_x_leg = my_platform_on_vx * of_leg[0];
@@ -6250,201 +5850,148 @@ impl DualV {
                     let qd_3_leg = minus_rate_2_leg + twist[2];
                     let gq3_wz_leg = 1.0 - g2_wz_leg;
                     failed.result()?;
-                    ::overact::simd::put(
-                        &mut output[0],
-                        [4, 1],
-                        at,
-                        g1_vx_leg * rate_dot_1_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut output[0],
-                        [8, 1],
-                        at,
-                        g1_vx_leg * rate_1_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[0], [4, 1], at, g1_vx_leg * rate_dot_1_leg);
+                    simd::put(&mut output[0], [8, 1], at, g1_vx_leg * rate_1_leg);
+                    simd::put(
                         &mut output[0],
                         [12, 1],
                         at,
-                        ::overact::simd::signed(g1_vx_leg, rate_1_leg, at),
+                        simd::signed(g1_vx_leg, rate_1_leg, at),
                     );
-                    ::overact::simd::put(&mut output[0], [16, 1], at, g1_vx_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut output[0], [16, 1], at, g1_vx_leg);
+                    simd::put(
                         &mut output[0],
                         [20, 1],
                         at,
                         minus_g2_vx_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [24, 1],
                         at,
                         g1_vx_leg * inv_l_ab_a_on_f2_leg + minus_g2_vx_leg * a2_x_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [28, 1],
                         at,
                         minus_qd_2_leg * minus_gq2_vx_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[0],
                         [32, 1],
                         at,
-                        ::overact::simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
+                        simd::signed(minus_gq2_vx_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(&mut output[0], [36, 1], at, -minus_gq2_vx_leg);
-                    ::overact::simd::put(
-                        &mut output[0],
-                        [40, 1],
-                        at,
-                        minus_g2_vx_leg * qd_3_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[0], [36, 1], at, -minus_gq2_vx_leg);
+                    simd::put(&mut output[0], [40, 1], at, minus_g2_vx_leg * qd_3_leg);
+                    simd::put(
                         &mut output[0],
                         [44, 1],
                         at,
-                        ::overact::simd::signed(minus_g2_vx_leg, qd_3_leg, at),
+                        simd::signed(minus_g2_vx_leg, qd_3_leg, at),
                     );
-                    ::overact::simd::put_of_first(
-                        &mut output[0],
-                        [48, 0],
-                        1,
-                        at,
-                        minus_g2_vx_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut output[1],
-                        [4, 1],
-                        at,
-                        g1_vy_leg * rate_dot_1_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut output[1],
-                        [8, 1],
-                        at,
-                        g1_vy_leg * rate_1_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put_of_first(&mut output[0], [48, 0], 1, at, minus_g2_vx_leg);
+                    simd::put(&mut output[1], [4, 1], at, g1_vy_leg * rate_dot_1_leg);
+                    simd::put(&mut output[1], [8, 1], at, g1_vy_leg * rate_1_leg);
+                    simd::put(
                         &mut output[1],
                         [12, 1],
                         at,
-                        ::overact::simd::signed(g1_vy_leg, rate_1_leg, at),
+                        simd::signed(g1_vy_leg, rate_1_leg, at),
                     );
-                    ::overact::simd::put(&mut output[1], [16, 1], at, g1_vy_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut output[1], [16, 1], at, g1_vy_leg);
+                    simd::put(
                         &mut output[1],
                         [20, 1],
                         at,
                         minus_g2_vy_leg * minus_rate_dot_2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [24, 1],
                         at,
                         g1_vy_leg * inv_l_ab_a_on_f2_leg + minus_g2_vy_leg * a2_x_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [28, 1],
                         at,
                         minus_qd_2_leg * minus_gq2_vy_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[1],
                         [32, 1],
                         at,
-                        ::overact::simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
+                        simd::signed(minus_gq2_vy_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(&mut output[1], [36, 1], at, -minus_gq2_vy_leg);
-                    ::overact::simd::put(
-                        &mut output[1],
-                        [40, 1],
-                        at,
-                        minus_g2_vy_leg * qd_3_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[1], [36, 1], at, -minus_gq2_vy_leg);
+                    simd::put(&mut output[1], [40, 1], at, minus_g2_vy_leg * qd_3_leg);
+                    simd::put(
                         &mut output[1],
                         [44, 1],
                         at,
-                        ::overact::simd::signed(minus_g2_vy_leg, qd_3_leg, at),
+                        simd::signed(minus_g2_vy_leg, qd_3_leg, at),
                     );
-                    ::overact::simd::put_of_first(
-                        &mut output[1],
-                        [48, 0],
-                        1,
-                        at,
-                        minus_g2_vy_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put_of_first(&mut output[1], [48, 0], 1, at, minus_g2_vy_leg);
+                    simd::put(
                         &mut output[2],
                         [4, 1],
                         at,
                         -(minus_g1_wz_leg * rate_dot_1_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [8, 1],
                         at,
                         -(minus_g1_wz_leg * rate_1_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [12, 1],
                         at,
-                        -::overact::simd::signed(minus_g1_wz_leg, rate_1_leg, at),
+                        -simd::signed(minus_g1_wz_leg, rate_1_leg, at),
                     );
-                    ::overact::simd::put(&mut output[2], [16, 1], at, -minus_g1_wz_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut output[2], [16, 1], at, -minus_g1_wz_leg);
+                    simd::put(
                         &mut output[2],
                         [20, 1],
                         at,
                         -(g2_wz_leg * minus_rate_dot_2_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [24, 1],
                         at,
                         -(minus_g1_wz_leg * inv_l_ab_a_on_f2_leg + g2_wz_leg * a2_x_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [28, 1],
                         at,
                         -(minus_qd_2_leg * gq2_wz_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output[2],
                         [32, 1],
                         at,
-                        -::overact::simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
+                        -simd::signed(gq2_wz_leg, minus_qd_2_leg, at),
                     );
-                    ::overact::simd::put(&mut output[2], [36, 1], at, gq2_wz_leg);
-                    ::overact::simd::put(
-                        &mut output[2],
-                        [40, 1],
-                        at,
-                        qd_3_leg * gq3_wz_leg,
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut output[2], [36, 1], at, gq2_wz_leg);
+                    simd::put(&mut output[2], [40, 1], at, qd_3_leg * gq3_wz_leg);
+                    simd::put(
                         &mut output[2],
                         [44, 1],
                         at,
-                        ::overact::simd::signed(gq3_wz_leg, qd_3_leg, at),
+                        simd::signed(gq3_wz_leg, qd_3_leg, at),
                     );
-                    ::overact::simd::put_of_first(
-                        &mut output[2],
-                        [48, 0],
-                        1,
-                        at,
-                        gq3_wz_leg,
-                    );
+                    simd::put_of_first(&mut output[2], [48, 0], 1, at, gq3_wz_leg);
                 }
-                ::core::result::Result::Ok(())
+                Ok(())
             }
         }
-        if ::overact::simd::four() {
-            return ::overact::simd::few(Legs {
+        if simd::four() {
+            return simd::few(Legs {
                 pose,
                 twist,
                 acceleration,
@@ -6452,22 +5999,22 @@ impl DualV {
             });
         }
         /// 1 / l_ab
-        const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+        const INV_L_AB: f64 = 3.5714285714285716;
         /// 1 / r_p
-        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        const INV_R_P: f64 = 9.090909090909092;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         /// 2 l_ab²
-        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+        const TWICE_L_AB_SQUARED: f64 = 0.1568;
         output[0][0] = 0.0; // zz_platformR
         output[0][3] = acceleration[0]; // m_platformR
         output[1][0] = 0.0; // zz_platformR
         output[1][3] = acceleration[1]; // m_platformR
         output[2][0] = acceleration[2]; // zz_platformR
         output[2][3] = 0.0; // m_platformR
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let p_x_leg3 = R_P * s_phi;
@@ -6479,44 +6026,44 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let half_d_x_leg4 = 0.5 * d_x_leg4;
         // --- leg2
         let x_minus_half_d_x_leg4 = pose[0] - half_d_x_leg4;
         let d_x_leg2 = x_minus_half_d_x_leg4 + x_minus_half_d_x_leg4;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         // --- leg3
         let y_minus_half_d_y_leg1 = pose[1] - half_d_y_leg1;
         let d_y_leg3 = y_minus_half_d_y_leg1 + y_minus_half_d_y_leg1;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         output[2][1] = a_y_platform; // mx_platform
         let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -6629,66 +6176,66 @@ impl DualV {
         output[0][8] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
         output[1][8] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
         output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
-        output[0][12] = ::overact::math::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
-        output[1][12] = ::overact::math::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-        output[2][12] = -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
+        output[0][12] = math::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+        output[1][12] = math::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+        output[2][12] = -math::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
             + minus_g1_vy_leg2 * v_end_y_leg1;
         output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
         output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
         output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
-        output[0][13] = ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
-        output[1][13] = ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
-        output[2][13] = -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[0][13] = math::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[1][13] = math::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
+        output[2][13] = -math::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
         let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
         let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
         let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
         output[0][10] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
         output[1][10] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
         output[2][10] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
-        output[0][14] = ::overact::math::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-        output[1][14] = ::overact::math::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
-        output[2][14] = ::overact::math::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
+        output[0][14] = math::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+        output[1][14] = math::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+        output[2][14] = math::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
             + minus_g1_vy_leg4 * v_end_y_leg3;
         output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
         output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
         output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
-        output[0][15] = ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
-        output[1][15] = ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
-        output[2][15] = ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[0][15] = math::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[1][15] = math::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
+        output[2][15] = math::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
             + minus_g2_vy_leg1 * v_end_y_leg1;
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
         output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
-        output[0][32] = ::overact::math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[0][32] = math::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
         output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
-        output[1][32] = ::overact::math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[1][32] = math::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
         output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
-        output[2][32] = -::overact::math::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
+        output[2][32] = -math::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
         let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
         let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
         output[0][29] = qd_2_leg2 * gq2_vx_leg2; // fv_2_leg2
-        output[0][33] = ::overact::math::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+        output[0][33] = math::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
         output[1][29] = qd_2_leg2 * gq2_vy_leg2; // fv_2_leg2
-        output[1][33] = ::overact::math::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+        output[1][33] = math::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
         output[2][29] = -(qd_2_leg2 * minus_gq2_wz_leg2); // fv_2_leg2
-        output[2][33] = -::overact::math::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
+        output[2][33] = -math::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
         let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
         output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
         output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
         output[2][40] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
-        output[2][44] = ::overact::math::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
-        output[0][44] = ::overact::math::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
-        output[1][44] = ::overact::math::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
+        output[2][44] = math::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+        output[0][44] = math::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
+        output[1][44] = math::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
         let qd_3_leg2 = twist[2] - rate_2_leg2;
         output[0][41] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
         output[1][41] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
-        output[0][45] = -::overact::math::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
-        output[1][45] = -::overact::math::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
+        output[0][45] = -math::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+        output[1][45] = -math::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
         let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
         output[2][41] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
-        output[2][45] = ::overact::math::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
+        output[2][45] = math::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
         let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
         let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
         let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -6745,19 +6292,19 @@ impl DualV {
             + minus_g2_vy_leg3 * v_end_y_leg3;
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
         output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
-        output[0][34] = ::overact::math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[0][34] = math::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
         output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
-        output[1][34] = ::overact::math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[1][34] = math::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
         output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
-        output[2][34] = ::overact::math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
+        output[2][34] = math::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
         let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
         let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
         output[0][31] = qd_2_leg4 * gq2_vx_leg4; // fv_2_leg4
-        output[0][35] = ::overact::math::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+        output[0][35] = math::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
         output[1][31] = qd_2_leg4 * gq2_vy_leg4; // fv_2_leg4
-        output[1][35] = ::overact::math::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+        output[1][35] = math::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
         output[2][31] = qd_2_leg4 * gq2_wz_leg4; // fv_2_leg4
-        output[2][35] = ::overact::math::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
+        output[2][35] = math::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
         // --- leg3
         let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
         let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
@@ -6813,21 +6360,21 @@ impl DualV {
         output[2][23] = g2_wz_leg4 * rate_dot_2_leg4; // zz_2_leg4R
         let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
         output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-        output[0][46] = ::overact::math::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
+        output[0][46] = math::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
         output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-        output[1][46] = ::overact::math::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
+        output[1][46] = math::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
         let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
         output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
-        output[2][46] = ::overact::math::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+        output[2][46] = math::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
         let qd_3_leg4 = twist[2] - rate_2_leg4;
         output[0][43] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
-        output[0][47] = -::overact::math::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+        output[0][47] = -math::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
         output[1][43] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
-        output[1][47] = -::overact::math::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+        output[1][47] = -math::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
         let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
         output[2][43] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
-        output[2][47] = ::overact::math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
-        ::core::result::Result::Ok(())
+        output[2][47] = math::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+        Ok(())
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
@@ -6843,14 +6390,14 @@ impl DualV {
     /// 346 operations (96 additions, 246 multiplications, 4 divisions), 9 trigonometric pairs, 12 signs, 4 guards, 30 negations, 225 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 49]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -6863,19 +6410,19 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_joints_into(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 49]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 49]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -6883,13 +6430,13 @@ impl DualV {
                 *acceleration,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             output[0][0] = 0.0; // zz_platformR
             output[0][3] = acceleration[0]; // m_platformR
             output[1][0] = 0.0; // zz_platformR
@@ -6899,14 +6446,14 @@ impl DualV {
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s2_leg4, c2_leg4), (s_phi, c_phi), (s1_leg1, c1_leg1),
-            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg2, c1_leg2), (s1_leg3, c1_leg3), (s1_leg4, c1_leg4)] = math::wide::sin_cos_all([
                 joints[1], joints[4], joints[7], joints[10], pose[2], joints[0], joints[3],
                 joints[6], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+            guard::leg(s2_leg1, 1.0, "leg1")?;
+            guard::leg(s2_leg2, 1.0, "leg2")?;
+            guard::leg(s2_leg3, 1.0, "leg3")?;
+            guard::leg(s2_leg4, 1.0, "leg4")?;
             let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
             output[2][1] = a_y_platform; // mx_platform
             let a_x_platform = s_phi * acceleration[1] + c_phi * acceleration[0];
@@ -6953,30 +6500,18 @@ impl DualV {
             output[0][8] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
             output[1][8] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
             output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
-            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
-            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][12] = -::overact::math::wide::signed(
-                minus_g1_wz_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
+            output[0][12] = math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][12] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][12] = -math::wide::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = minus_qd_2_leg1 * minus_gq2_vx_leg1; // fv_2_leg1
-            output[0][32] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][32] = math::wide::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[1][28] = minus_qd_2_leg1 * minus_gq2_vy_leg1; // fv_2_leg1
-            output[1][32] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][32] = math::wide::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[2][28] = -(minus_qd_2_leg1 * gq2_wz_leg1); // fv_2_leg1
-            output[2][32] = -::overact::math::wide::signed(
-                gq2_wz_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[2][32] = -math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
             let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -7005,17 +6540,11 @@ impl DualV {
             output[1][20] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
-            output[0][44] = ::overact::math::wide::signed(
-                minus_g2_vx_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[0][44] = math::wide::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
             output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
-            output[1][44] = ::overact::math::wide::signed(
-                minus_g2_vy_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[1][44] = math::wide::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
             output[2][40] = qd_3_leg1 * gq3_wz_leg1; // fv_3_leg1
-            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+            output[2][44] = math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let k1_leg2 = INV_L_AB / s2_leg2;
@@ -7052,12 +6581,9 @@ impl DualV {
             output[0][9] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][9] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
             output[2][9] = -(minus_g1_wz_leg2 * rate_1_leg2); // fv_1_leg2
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
-            output[2][13] = -::overact::math::wide::signed(
-                minus_g1_wz_leg2,
-                rate_1_leg2,
-            ); // fs_1_leg2
+            output[0][13] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            output[2][13] = -math::wide::signed(minus_g1_wz_leg2, rate_1_leg2); // fs_1_leg2
             output[1][21] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             let g2_wz_leg2 = p_x_leg3 * minus_g2_vy_leg2
                 + p_y_leg1 * minus_g2_vx_leg2;
@@ -7076,32 +6602,17 @@ impl DualV {
             let gq2_wz_leg2 = minus_g1_wz_leg2 + g2_wz_leg2;
             output[2][37] = gq2_wz_leg2; // off_2_leg2R
             output[2][29] = -(minus_qd_2_leg2 * gq2_wz_leg2); // fv_2_leg2
-            output[0][33] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
-            output[1][33] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
-            output[2][33] = -::overact::math::wide::signed(
-                gq2_wz_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][33] = math::wide::signed(minus_gq2_vx_leg2, minus_qd_2_leg2); // fs_2_leg2
+            output[1][33] = math::wide::signed(minus_gq2_vy_leg2, minus_qd_2_leg2); // fs_2_leg2
+            output[2][33] = -math::wide::signed(gq2_wz_leg2, minus_qd_2_leg2); // fs_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             output[0][41] = minus_g2_vx_leg2 * qd_3_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed(
-                minus_g2_vx_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[0][45] = math::wide::signed(minus_g2_vx_leg2, qd_3_leg2); // fs_3_leg2
             output[1][41] = minus_g2_vy_leg2 * qd_3_leg2; // fv_3_leg2
-            output[1][45] = ::overact::math::wide::signed(
-                minus_g2_vy_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[1][45] = math::wide::signed(minus_g2_vy_leg2, qd_3_leg2); // fs_3_leg2
             let gq3_wz_leg2 = 1.0 - g2_wz_leg2;
             output[2][41] = qd_3_leg2 * gq3_wz_leg2; // fv_3_leg2
-            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
+            output[2][45] = math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let k1_leg3 = INV_L_AB / s2_leg3;
@@ -7115,12 +6626,12 @@ impl DualV {
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[0][10] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][10] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[0][14] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][14] = math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             output[2][18] = g1_wz_leg3; // off_1_leg3R
             output[2][10] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
-            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][14] = math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let minus_g2_vx_leg3 = c1_leg3 * k1_leg3;
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             output[0][38] = -minus_gq2_vx_leg3; // off_2_leg3R
@@ -7157,38 +6668,23 @@ impl DualV {
                 + minus_g2_wz_leg3 * minus_a_on_f1_leg3; // my_2_leg3
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = minus_qd_2_leg3 * minus_gq2_vx_leg3; // fv_2_leg3
-            output[0][34] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][34] = math::wide::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
             let minus_gq2_vy_leg3 = g1_vy_leg3 + minus_g2_vy_leg3;
             output[1][38] = -minus_gq2_vy_leg3; // off_2_leg3R
             output[1][30] = minus_qd_2_leg3 * minus_gq2_vy_leg3; // fv_2_leg3
             let minus_gq2_wz_leg3 = g1_wz_leg3 + minus_g2_wz_leg3;
             output[2][38] = -minus_gq2_wz_leg3; // off_2_leg3R
             output[2][30] = minus_qd_2_leg3 * minus_gq2_wz_leg3; // fv_2_leg3
-            output[1][34] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[2][34] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][34] = math::wide::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[2][34] = math::wide::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][46] = ::overact::math::wide::signed(
-                minus_g2_vx_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[0][46] = math::wide::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[1][46] = ::overact::math::wide::signed(
-                minus_g2_vy_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[1][46] = math::wide::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
             output[2][42] = qd_3_leg3 * gq3_wz_leg3; // fv_3_leg3
-            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+            output[2][46] = math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             // --- leg4
             let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
             let k1_leg4 = INV_L_AB / s2_leg4;
@@ -7229,9 +6725,9 @@ impl DualV {
             output[0][11] = g1_vx_leg4 * rate_1_leg4; // fv_1_leg4
             output[1][11] = g1_vy_leg4 * rate_1_leg4; // fv_1_leg4
             output[2][11] = g1_wz_leg4 * rate_1_leg4; // fv_1_leg4
-            output[0][15] = ::overact::math::wide::signed(g1_vx_leg4, rate_1_leg4); // fs_1_leg4
-            output[1][15] = ::overact::math::wide::signed(g1_vy_leg4, rate_1_leg4); // fs_1_leg4
-            output[2][15] = ::overact::math::wide::signed(g1_wz_leg4, rate_1_leg4); // fs_1_leg4
+            output[0][15] = math::wide::signed(g1_vx_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][15] = math::wide::signed(g1_vy_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][15] = math::wide::signed(g1_wz_leg4, rate_1_leg4); // fs_1_leg4
             output[1][27] = g1_vy_leg4 * a_on_f2_leg4
                 + minus_g2_vy_leg4 * minus_a_on_f1_leg4; // my_2_leg4
             output[2][27] = g1_wz_leg4 * a_on_f2_leg4
@@ -7246,33 +6742,18 @@ impl DualV {
             let minus_gq2_wz_leg4 = g1_wz_leg4 + minus_g2_wz_leg4;
             output[2][39] = -minus_gq2_wz_leg4; // off_2_leg4R
             output[2][31] = minus_qd_2_leg4 * minus_gq2_wz_leg4; // fv_2_leg4
-            output[0][35] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg4,
-                minus_qd_2_leg4,
-            ); // fs_2_leg4
-            output[1][35] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg4,
-                minus_qd_2_leg4,
-            ); // fs_2_leg4
-            output[2][35] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg4,
-                minus_qd_2_leg4,
-            ); // fs_2_leg4
+            output[0][35] = math::wide::signed(minus_gq2_vx_leg4, minus_qd_2_leg4); // fs_2_leg4
+            output[1][35] = math::wide::signed(minus_gq2_vy_leg4, minus_qd_2_leg4); // fs_2_leg4
+            output[2][35] = math::wide::signed(minus_gq2_wz_leg4, minus_qd_2_leg4); // fs_2_leg4
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             output[0][43] = minus_g2_vx_leg4 * qd_3_leg4; // fv_3_leg4
-            output[0][47] = ::overact::math::wide::signed(
-                minus_g2_vx_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[0][47] = math::wide::signed(minus_g2_vx_leg4, qd_3_leg4); // fs_3_leg4
             output[1][43] = minus_g2_vy_leg4 * qd_3_leg4; // fv_3_leg4
-            output[1][47] = ::overact::math::wide::signed(
-                minus_g2_vy_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[1][47] = math::wide::signed(minus_g2_vy_leg4, qd_3_leg4); // fs_3_leg4
             let gq3_wz_leg4 = minus_g2_wz_leg4 + 1.0;
             output[2][43] = qd_3_leg4 * gq3_wz_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
-            ::core::result::Result::Ok(())
+            output[2][47] = math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -7290,14 +6771,14 @@ impl DualV {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+    ) -> Result<[[f64; 49]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -7310,39 +6791,39 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_actuators_into(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 49]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+        output: &mut [[f64; 49]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
             output[0][0] = 0.0; // zz_platformR
             output[1][0] = 0.0; // zz_platformR
             output[2][3] = 0.0; // m_platformR
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let p_y_leg1 = R_P * c_phi;
@@ -7354,41 +6835,41 @@ impl DualV {
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg2
             let k1_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
@@ -7413,7 +6894,7 @@ impl DualV {
             output[0][19] = -minus_g1_vx_leg4; // off_1_leg4R
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let l1_y_leg2 = y_minus_half_d_y_leg3 + d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
@@ -7436,11 +6917,7 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
             output[2][17] = g1_wz_leg2; // off_1_leg2R
@@ -7463,11 +6940,7 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let minus_gq2_vy_leg3 = d_y_leg3 / det_leg3;
             output[1][38] = -minus_gq2_vy_leg3; // off_2_leg3R
             // --- leg1
@@ -7527,11 +7000,11 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = t3 / pivot_3;
-            ::overact::guard::size(wz, 1e60)?;
+            guard::size(wz, 1e60)?;
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let vy = t2 / pivot_2 - l_3_2 * wz;
-            ::overact::guard::size(vy, 1e60)?;
+            guard::size(vy, 1e60)?;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
@@ -7539,164 +7012,110 @@ impl DualV {
             output[0][8] = g1_vx_leg1 * rate_1_leg1; // fv_1_leg1
             output[1][8] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
             output[2][8] = -(minus_g1_wz_leg1 * rate_1_leg1); // fv_1_leg1
-            output[0][12] = ::overact::math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
-            output[1][12] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            output[2][12] = -::overact::math::wide::signed(
-                minus_g1_wz_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
+            output[0][12] = math::wide::signed(g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][12] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[2][12] = -math::wide::signed(minus_g1_wz_leg1, rate_1_leg1); // fs_1_leg1
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[0][9] = minus_g1_vx_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[1][9] = minus_g1_vy_leg2 * minus_rate_1_leg2; // fv_1_leg2
             output[2][9] = -(g1_wz_leg2 * minus_rate_1_leg2); // fv_1_leg2
-            output[0][13] = ::overact::math::wide::signed(
-                minus_g1_vx_leg2,
-                minus_rate_1_leg2,
-            ); // fs_1_leg2
-            output[1][13] = ::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                minus_rate_1_leg2,
-            ); // fs_1_leg2
-            output[2][13] = -::overact::math::wide::signed(
-                g1_wz_leg2,
-                minus_rate_1_leg2,
-            ); // fs_1_leg2
+            output[0][13] = math::wide::signed(minus_g1_vx_leg2, minus_rate_1_leg2); // fs_1_leg2
+            output[1][13] = math::wide::signed(minus_g1_vy_leg2, minus_rate_1_leg2); // fs_1_leg2
+            output[2][13] = -math::wide::signed(g1_wz_leg2, minus_rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = vx + v_arm_x_leg3;
             let v_end_y_leg3 = vy + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[0][10] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][10] = g1_vy_leg3 * rate_1_leg3; // fv_1_leg3
             output[2][10] = g1_wz_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][14] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][14] = ::overact::math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
-            output[2][14] = ::overact::math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
+            output[0][14] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][14] = math::wide::signed(g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            output[2][14] = math::wide::signed(g1_wz_leg3, rate_1_leg3); // fs_1_leg3
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
             output[0][11] = minus_g1_vx_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[1][11] = minus_g1_vy_leg4 * minus_rate_1_leg4; // fv_1_leg4
             output[2][11] = minus_g1_wz_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][15] = ::overact::math::wide::signed(
-                minus_g1_vx_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[1][15] = ::overact::math::wide::signed(
-                minus_g1_vy_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[2][15] = ::overact::math::wide::signed(
-                minus_g1_wz_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[0][15] = math::wide::signed(minus_g1_vx_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[1][15] = math::wide::signed(minus_g1_vy_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[2][15] = math::wide::signed(minus_g1_wz_leg4, minus_rate_1_leg4); // fs_1_leg4
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = minus_gq2_vx_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[0][32] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][32] = math::wide::signed(minus_gq2_vx_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[1][28] = minus_gq2_vy_leg1 * minus_qd_2_leg1; // fv_2_leg1
-            output[1][32] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][32] = math::wide::signed(minus_gq2_vy_leg1, minus_qd_2_leg1); // fs_2_leg1
             output[2][28] = -(gq2_wz_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[2][32] = -::overact::math::wide::signed(
-                gq2_wz_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[2][32] = -math::wide::signed(gq2_wz_leg1, minus_qd_2_leg1); // fs_2_leg1
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][29] = gq2_vx_leg2 * qd_2_leg2; // fv_2_leg2
-            output[0][33] = ::overact::math::wide::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][33] = math::wide::signed(gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
             output[1][29] = gq2_vy_leg2 * qd_2_leg2; // fv_2_leg2
-            output[1][33] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][33] = math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             output[2][29] = -(minus_gq2_wz_leg2 * qd_2_leg2); // fv_2_leg2
-            output[2][33] = -::overact::math::wide::signed(
-                minus_gq2_wz_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[2][33] = -math::wide::signed(minus_gq2_wz_leg2, qd_2_leg2); // fs_2_leg2
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][40] = minus_g2_vx_leg1 * qd_3_leg1; // fv_3_leg1
             output[1][40] = minus_g2_vy_leg1 * qd_3_leg1; // fv_3_leg1
             output[2][40] = gq3_wz_leg1 * qd_3_leg1; // fv_3_leg1
-            output[2][44] = ::overact::math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
-            output[0][44] = ::overact::math::wide::signed(
-                minus_g2_vx_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
-            output[1][44] = ::overact::math::wide::signed(
-                minus_g2_vy_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[2][44] = math::wide::signed(gq3_wz_leg1, qd_3_leg1); // fs_3_leg1
+            output[0][44] = math::wide::signed(minus_g2_vx_leg1, qd_3_leg1); // fs_3_leg1
+            output[1][44] = math::wide::signed(minus_g2_vy_leg1, qd_3_leg1); // fs_3_leg1
             let qd_3_leg2 = wz - rate_2_leg2;
             output[0][41] = -(g2_vx_leg2 * qd_3_leg2); // fv_3_leg2
             output[1][41] = -(g2_vy_leg2 * qd_3_leg2); // fv_3_leg2
-            output[0][45] = -::overact::math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
-            output[1][45] = -::overact::math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
+            output[0][45] = -math::wide::signed(g2_vx_leg2, qd_3_leg2); // fs_3_leg2
+            output[1][45] = -math::wide::signed(g2_vy_leg2, qd_3_leg2); // fs_3_leg2
             let gq3_wz_leg2 = minus_g2_wz_leg2 + 1.0;
             output[2][41] = gq3_wz_leg2 * qd_3_leg2; // fv_3_leg2
-            output[2][45] = ::overact::math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
+            output[2][45] = math::wide::signed(gq3_wz_leg2, qd_3_leg2); // fs_3_leg2
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = minus_gq2_vx_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[0][34] = ::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][34] = math::wide::signed(minus_gq2_vx_leg3, minus_qd_2_leg3); // fs_2_leg3
             output[1][30] = minus_gq2_vy_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[1][34] = ::overact::math::wide::signed(
-                minus_gq2_vy_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][34] = math::wide::signed(minus_gq2_vy_leg3, minus_qd_2_leg3); // fs_2_leg3
             output[2][30] = minus_gq2_wz_leg3 * minus_qd_2_leg3; // fv_2_leg3
-            output[2][34] = ::overact::math::wide::signed(
-                minus_gq2_wz_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[2][34] = math::wide::signed(minus_gq2_wz_leg3, minus_qd_2_leg3); // fs_2_leg3
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][31] = gq2_vx_leg4 * qd_2_leg4; // fv_2_leg4
-            output[0][35] = ::overact::math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
+            output[0][35] = math::wide::signed(gq2_vx_leg4, qd_2_leg4); // fs_2_leg4
             output[1][31] = gq2_vy_leg4 * qd_2_leg4; // fv_2_leg4
-            output[1][35] = ::overact::math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
+            output[1][35] = math::wide::signed(gq2_vy_leg4, qd_2_leg4); // fs_2_leg4
             output[2][31] = gq2_wz_leg4 * qd_2_leg4; // fv_2_leg4
-            output[2][35] = ::overact::math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
+            output[2][35] = math::wide::signed(gq2_wz_leg4, qd_2_leg4); // fs_2_leg4
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             output[0][42] = minus_g2_vx_leg3 * qd_3_leg3; // fv_3_leg3
             output[1][42] = minus_g2_vy_leg3 * qd_3_leg3; // fv_3_leg3
-            output[0][46] = ::overact::math::wide::signed(
-                minus_g2_vx_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[1][46] = ::overact::math::wide::signed(
-                minus_g2_vy_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[0][46] = math::wide::signed(minus_g2_vx_leg3, qd_3_leg3); // fs_3_leg3
+            output[1][46] = math::wide::signed(minus_g2_vy_leg3, qd_3_leg3); // fs_3_leg3
             let gq3_wz_leg3 = minus_g2_wz_leg3 + 1.0;
             output[2][42] = gq3_wz_leg3 * qd_3_leg3; // fv_3_leg3
-            output[2][46] = ::overact::math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
+            output[2][46] = math::wide::signed(gq3_wz_leg3, qd_3_leg3); // fs_3_leg3
             let qd_3_leg4 = wz - rate_2_leg4;
             output[0][43] = -(g2_vx_leg4 * qd_3_leg4); // fv_3_leg4
             output[1][43] = -(g2_vy_leg4 * qd_3_leg4); // fv_3_leg4
-            output[0][47] = -::overact::math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
-            output[1][47] = -::overact::math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
+            output[0][47] = -math::wide::signed(g2_vx_leg4, qd_3_leg4); // fs_3_leg4
+            output[1][47] = -math::wide::signed(g2_vy_leg4, qd_3_leg4); // fs_3_leg4
             let gq3_wz_leg4 = 1.0 - g2_wz_leg4;
             output[2][43] = gq3_wz_leg4 * qd_3_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
+            output[2][47] = math::wide::signed(gq3_wz_leg4, qd_3_leg4); // fs_3_leg4
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
+            guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
                 - l2_x_leg2 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg2;
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
+            guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -7704,13 +7123,13 @@ impl DualV {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
+            guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
                 - l2_x_leg1 * bias_a_end_x_leg1 - l_ab_squared_rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
+            guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -7718,13 +7137,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg1;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
+            guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
                 - l2_y_leg3 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
+            guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
             let minus_bias_rate_dot_1_leg3 = (bias_a_on_f1_leg3 - t2_leg3)
@@ -7733,13 +7152,13 @@ impl DualV {
                 + minus_bias_rate_dot_1_leg3;
             // --- leg4
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
+            guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
                 - l2_y_leg4 * bias_a_end_y_leg3 - l_ab_squared_rate_2_squared_leg4;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
+            guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -7759,15 +7178,15 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = t6 / pivot_3;
-            ::overact::guard::size(dwz, 1e60)?;
+            guard::size(dwz, 1e60)?;
             output[2][0] = dwz; // zz_platformR
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let dvy = t5 / pivot_2 - l_3_2 * dwz;
-            ::overact::guard::size(dvy, 1e60)?;
+            guard::size(dvy, 1e60)?;
             output[1][3] = dvy; // m_platformR
             let dvx = t4 / s_1_1 - l_2_1 * dvy - l_3_1 * dwz;
-            ::overact::guard::size(dvx, 1e60)?;
+            guard::size(dvx, 1e60)?;
             output[0][3] = dvx; // m_platformR
             // --- leg1
             let a_end_x_leg1 = a_arm_x_leg1 + dvx;
@@ -7869,7 +7288,7 @@ impl DualV {
                 + g2_wz_leg4 * a2_x_leg4); // my_2_leg4
             output[1][23] = g2_vy_leg4 * rate_dot_2_leg4; // zz_2_leg4R
             output[2][23] = g2_wz_leg4 * rate_dot_2_leg4; // zz_2_leg4R
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -7885,13 +7304,13 @@ impl DualV {
     /// 477 operations (160 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 13 guards, 39 negations, 376 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 49]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
             pose,
             twist,
             acceleration,
@@ -7903,28 +7322,28 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_into(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 49]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 49]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
             output[0][5..7].fill(0.0);
             output[0][9..11].fill(0.0);
             output[0][13..15].fill(0.0);
@@ -7949,7 +7368,7 @@ impl DualV {
             output[2][28..30].fill(0.0);
             output[2][32..34].fill(0.0);
             output[2][36..38].fill(0.0);
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -7958,42 +7377,42 @@ impl DualV {
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg2
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -8023,11 +7442,7 @@ impl DualV {
             let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
             let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
             let det_ja = g1_wz_leg3 * t1;
-            ::overact::guard::platform(
-                det_ja,
-                3.538,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
             output[2][48] = wz_by_a3; // off_3_leg1R
@@ -8067,13 +7482,13 @@ impl DualV {
             let minus_rate_1_leg2 = minus_g1_vx_leg2 * v_end_x_leg1
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[1][9] = -minus_rate_1_leg2; // fv_1_leg2
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
-            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
+            output[0][12] = math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][13] = -math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[2][10] = rate_1_leg3; // fv_1_leg3
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[2][14] = math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -8107,10 +7522,7 @@ impl DualV {
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
             output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[2][15] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[2][15] = math::wide::signed(minus_g1_a3_leg4, minus_rate_1_leg4); // fs_1_leg4
             let minus_g1_wz_leg4 = g1_wz_leg3 * minus_g1_a3_leg4;
             let g1_a1_leg4 = minus_g1_vy_leg4 * minus_vy_by_a1
                 - minus_g1_vx_leg4 * vx_by_a1 - minus_g1_wz_leg4 * wz_by_a1;
@@ -8120,14 +7532,8 @@ impl DualV {
                 - minus_g1_vx_leg4 * vx_by_a2 + minus_g1_wz_leg4 * minus_wz_by_a2;
             output[1][19] = g1_a2_leg4; // off_1_leg4R
             output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
-            output[0][15] = -::overact::math::wide::signed(
-                g1_a1_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[1][15] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[0][15] = -math::wide::signed(g1_a1_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[1][15] = -math::wide::signed(g1_a2_leg4, minus_rate_1_leg4); // fs_1_leg4
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
             let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1
@@ -8145,17 +7551,14 @@ impl DualV {
             output[0][36] = off_2_leg1_on_q1_leg1; // off_2_leg1R
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
             output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[0][32] = -::overact::math::wide::signed(
+            output[0][32] = -math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             ); // fs_2_leg1
-            output[1][32] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][32] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             output[2][40] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
-            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
+            output[2][44] = math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             let a_end_x_leg1 = a_arm_x_leg1 + acceleration[0];
             let a_end_y_leg1 = acceleration[1] - a_arm_y_leg3;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -8204,7 +7607,7 @@ impl DualV {
             output[0][25] = -(g2_a1_leg2 * a2_x_leg2); // my_2_leg2
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][29] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
-            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][33] = math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][48] = off_3_leg1_on_q1_leg1; // off_3_leg1R
             output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
@@ -8214,30 +7617,21 @@ impl DualV {
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
             output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[0][45] = math::wide::signed(wz_by_a1_minus_g2_a1_leg2, qd_3_leg2); // fs_3_leg2
             output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
-            output[0][44] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
-            output[1][44] = -::overact::math::wide::signed(
+            output[0][44] = math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1); // fs_3_leg1
+            output[1][44] = -math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             ); // fs_3_leg1
-            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
+            output[2][45] = math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
             output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][33] = ::overact::math::wide::signed(
-                off_2_leg2_on_q1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][33] = math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2); // fs_2_leg2
             let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
             output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2); // fv_3_leg2
-            output[1][45] = -::overact::math::wide::signed(
+            output[1][45] = -math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg2,
                 qd_3_leg2,
             ); // fs_3_leg2
@@ -8292,32 +7686,23 @@ impl DualV {
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
             output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
-            output[2][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg3,
-                qd_2_leg4,
-            ); // fs_2_leg4
+            output[2][35] = math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4); // fs_2_leg4
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             let minus_off_2_leg3_on_q1_leg3 = minus_g2_a3_leg3 + 1.0;
             output[2][38] = -minus_off_2_leg3_on_q1_leg3; // off_2_leg3R
             output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[2][34] = ::overact::math::wide::signed(
+            output[2][34] = math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
-            output[2][46] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[2][46] = math::wide::signed(wz_by_a3_minus_g2_a3_leg3, qd_3_leg3); // fs_3_leg3
             let qd_3_leg4 = twist[2] - rate_2_leg4;
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
             output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[2][47] = math::wide::signed(wz_by_a3_minus_g2_a3_leg4, qd_3_leg4); // fs_3_leg4
             let minus_g2_wz_leg3 = g1_wz_leg3 * minus_g2_a3_leg3;
             let g2_a1_leg3 = minus_g2_vy_leg3 * minus_vy_by_a1
                 - minus_g2_vx_leg3 * vx_by_a1 - minus_g2_wz_leg3 * wz_by_a1;
@@ -8351,47 +7736,29 @@ impl DualV {
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
             output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
             output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
-            output[0][34] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][34] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[0][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg1,
-                qd_2_leg4,
-            ); // fs_2_leg4
-            output[1][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg2,
-                qd_2_leg4,
-            ); // fs_2_leg4
+            output[0][34] = -math::wide::signed(g2_a1_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[1][34] = -math::wide::signed(g2_a2_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[0][35] = math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4); // fs_2_leg4
+            output[1][35] = math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4); // fs_2_leg4
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
             output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
-            output[0][46] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[0][47] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[0][46] = math::wide::signed(wz_by_a1_minus_g2_a1_leg3, qd_3_leg3); // fs_3_leg3
+            output[0][47] = math::wide::signed(wz_by_a1_minus_g2_a1_leg4, qd_3_leg4); // fs_3_leg4
             let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
-            output[1][46] = -::overact::math::wide::signed(
+            output[1][46] = -math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
             output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
-            output[1][47] = -::overact::math::wide::signed(
+            output[1][47] = -math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg4,
                 qd_3_leg4,
             ); // fs_3_leg4
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -8408,14 +7775,14 @@ impl DualV {
     /// 430 operations (132 additions, 293 multiplications, 5 divisions), 9 trigonometric pairs, 12 signs, 5 guards, 51 negations, 341 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 49]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -8428,19 +7795,19 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_joints_into(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 49]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 49]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, joints, twist, acceleration) = (
                 *pose,
                 *joints,
@@ -8448,13 +7815,13 @@ impl DualV {
                 *acceleration,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             output[0][5..7].fill(0.0);
             output[0][9..11].fill(0.0);
             output[0][13..15].fill(0.0);
@@ -8482,14 +7849,14 @@ impl DualV {
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
             (s2_leg4, c2_leg4), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3),
-            (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg4, c1_leg4)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg4, c1_leg4)] = math::wide::sin_cos_all([
                 joints[1], joints[4], joints[7], joints[10], joints[3], joints[6], joints[0],
                 pose[2], joints[9],
             ]);
-            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+            guard::leg(s2_leg1, 1.0, "leg1")?;
+            guard::leg(s2_leg2, 1.0, "leg2")?;
+            guard::leg(s2_leg3, 1.0, "leg3")?;
+            guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -8517,11 +7884,7 @@ impl DualV {
             let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
             let t3 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
             let det_ja = g1_vy_leg2 * t1 - g1_vx_leg2 * t2 - minus_g1_wz_leg2 * t3;
-            ::overact::guard::platform(
-                det_ja,
-                7.075,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 7.075, ActuatorGroup::Kept)?;
             let inv_det_ja = 1.0 / det_ja;
             let wz_by_a2 = t3 * inv_det_ja;
             output[1][0] = wz_by_a2 * acceleration[2]; // zz_platformR
@@ -8556,13 +7919,13 @@ impl DualV {
             output[0][8] = rate_1_leg1; // fv_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
             output[1][9] = rate_1_leg2; // fv_1_leg2
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
+            output[0][12] = math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][13] = math::wide::sign(rate_1_leg2); // fs_1_leg2
             let v_end_x_leg3 = twist[0] + v_arm_x_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[2][10] = rate_1_leg3; // fv_1_leg3
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[2][14] = math::wide::sign(rate_1_leg3); // fs_1_leg3
             let a_arm_x_leg1 = twist[2] * v_arm_y_leg3 - p_y_leg1 * acceleration[2];
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
             let a_arm_y_leg3 = twist[2] * v_arm_x_leg3 + p_x_leg3 * acceleration[2];
@@ -8612,23 +7975,14 @@ impl DualV {
             output[1][24] = -(g2_a2_leg1 * minus_a_on_f1_leg1); // my_2_leg1
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][32] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][32] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let off_3_leg1_on_q1_leg2 = wz_by_a2 - g2_a2_leg1;
             output[1][48] = off_3_leg1_on_q1_leg2; // off_3_leg1R
             output[1][40] = qd_3_leg1 * off_3_leg1_on_q1_leg2; // fv_3_leg1
             output[2][40] = -(minus_wz_by_a3 * qd_3_leg1); // fv_3_leg1
-            output[1][44] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg2,
-                qd_3_leg1,
-            ); // fs_3_leg1
-            output[2][44] = -::overact::math::wide::signed(
-                minus_wz_by_a3,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[1][44] = math::wide::signed(off_3_leg1_on_q1_leg2, qd_3_leg1); // fs_3_leg1
+            output[2][44] = -math::wide::signed(minus_wz_by_a3, qd_3_leg1); // fs_3_leg1
             // --- leg2
             let minus_g2_vx_leg2 = c1_leg2 * k1_leg2;
             let minus_g2_vy_leg2 = s1_leg2 * k1_leg2;
@@ -8659,49 +8013,34 @@ impl DualV {
             output[0][25] = -(g2_a1_leg2 * minus_a_on_f1_leg2); // my_2_leg2
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
             output[0][29] = -(g2_a1_leg2 * minus_qd_2_leg2); // fv_2_leg2
-            output[0][33] = -::overact::math::wide::signed(
-                g2_a1_leg2,
-                minus_qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][33] = -math::wide::signed(g2_a1_leg2, minus_qd_2_leg2); // fs_2_leg2
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
             output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[0][45] = math::wide::signed(wz_by_a1_minus_g2_a1_leg2, qd_3_leg2); // fs_3_leg2
             output[2][41] = -(minus_wz_by_a3 * qd_3_leg2); // fv_3_leg2
-            output[2][45] = -::overact::math::wide::signed(
-                minus_wz_by_a3,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[2][45] = -math::wide::signed(minus_wz_by_a3, qd_3_leg2); // fs_3_leg2
             let off_2_leg1_on_q1_leg1 = g2_a1_leg1 - 1.0;
             output[0][36] = off_2_leg1_on_q1_leg1; // off_2_leg1R
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][32] = -::overact::math::wide::signed(
+            output[0][32] = -math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             ); // fs_2_leg1
             let off_3_leg1_on_q1_leg1 = wz_by_a1 - g2_a1_leg1;
             output[0][48] = off_3_leg1_on_q1_leg1; // off_3_leg1R
             output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][44] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[0][44] = math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1); // fs_3_leg1
             let off_2_leg2_on_q1_leg2 = g2_a2_leg2 - 1.0;
             output[1][37] = off_2_leg2_on_q1_leg2; // off_2_leg2R
             output[1][29] = -(minus_qd_2_leg2 * off_2_leg2_on_q1_leg2); // fv_2_leg2
-            output[1][33] = -::overact::math::wide::signed(
+            output[1][33] = -math::wide::signed(
                 off_2_leg2_on_q1_leg2,
                 minus_qd_2_leg2,
             ); // fs_2_leg2
             let wz_by_a2_minus_g2_a2_leg2 = wz_by_a2 - g2_a2_leg2;
             output[1][41] = qd_3_leg2 * wz_by_a2_minus_g2_a2_leg2; // fv_3_leg2
-            output[1][45] = ::overact::math::wide::signed(
-                wz_by_a2_minus_g2_a2_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[1][45] = math::wide::signed(wz_by_a2_minus_g2_a2_leg2, qd_3_leg2); // fs_3_leg2
             // --- leg3
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + acceleration[1];
@@ -8739,37 +8078,25 @@ impl DualV {
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
-            output[0][34] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][34] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][34] = -math::wide::signed(g2_a1_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[1][34] = -math::wide::signed(g2_a2_leg3, minus_qd_2_leg3); // fs_2_leg3
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
             output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
-            output[0][46] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[0][46] = math::wide::signed(wz_by_a1_minus_g2_a1_leg3, qd_3_leg3); // fs_3_leg3
             let wz_by_a2_minus_g2_a2_leg3 = wz_by_a2 - g2_a2_leg3;
             output[1][42] = qd_3_leg3 * wz_by_a2_minus_g2_a2_leg3; // fv_3_leg3
-            output[1][46] = ::overact::math::wide::signed(
-                wz_by_a2_minus_g2_a2_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[1][46] = math::wide::signed(wz_by_a2_minus_g2_a2_leg3, qd_3_leg3); // fs_3_leg3
             let off_2_leg3_on_q1_leg3 = g2_a3_leg3 - 1.0;
             output[2][38] = off_2_leg3_on_q1_leg3; // off_2_leg3R
             output[2][30] = -(minus_qd_2_leg3 * off_2_leg3_on_q1_leg3); // fv_2_leg3
-            output[2][34] = -::overact::math::wide::signed(
+            output[2][34] = -math::wide::signed(
                 off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
             let g2_a3_minus_wz_by_a3_leg3 = g2_a3_leg3 + minus_wz_by_a3;
             output[2][42] = -(qd_3_leg3 * g2_a3_minus_wz_by_a3_leg3); // fv_3_leg3
-            output[2][46] = -::overact::math::wide::signed(
+            output[2][46] = -math::wide::signed(
                 g2_a3_minus_wz_by_a3_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
@@ -8824,12 +8151,9 @@ impl DualV {
             output[0][11] = g1_a1_leg4 * rate_1_leg4; // fv_1_leg4
             output[1][11] = g1_a2_leg4 * rate_1_leg4; // fv_1_leg4
             output[2][11] = -(minus_g1_a3_leg4 * rate_1_leg4); // fv_1_leg4
-            output[0][15] = ::overact::math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
-            output[1][15] = ::overact::math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
-            output[2][15] = -::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                rate_1_leg4,
-            ); // fs_1_leg4
+            output[0][15] = math::wide::signed(g1_a1_leg4, rate_1_leg4); // fs_1_leg4
+            output[1][15] = math::wide::signed(g1_a2_leg4, rate_1_leg4); // fs_1_leg4
+            output[2][15] = -math::wide::signed(minus_g1_a3_leg4, rate_1_leg4); // fs_1_leg4
             output[1][23] = -(g2_a2_leg4 * minus_rate_dot_2_leg4); // zz_2_leg4R
             output[2][23] = -(g2_a3_leg4 * minus_rate_dot_2_leg4); // zz_2_leg4R
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
@@ -8839,41 +8163,35 @@ impl DualV {
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
-            output[0][47] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[0][47] = math::wide::signed(wz_by_a1_minus_g2_a1_leg4, qd_3_leg4); // fs_3_leg4
             let off_2_leg4_on_q1_leg2 = g2_a2_leg4 - g1_a2_leg4;
             output[1][39] = off_2_leg4_on_q1_leg2; // off_2_leg4R
             output[1][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg2); // fv_2_leg4
             let wz_by_a2_minus_g2_a2_leg4 = wz_by_a2 - g2_a2_leg4;
             output[1][43] = qd_3_leg4 * wz_by_a2_minus_g2_a2_leg4; // fv_3_leg4
-            output[1][47] = ::overact::math::wide::signed(
-                wz_by_a2_minus_g2_a2_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[1][47] = math::wide::signed(wz_by_a2_minus_g2_a2_leg4, qd_3_leg4); // fs_3_leg4
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
             output[2][31] = -(minus_qd_2_leg4 * off_2_leg4_on_q1_leg3); // fv_2_leg4
             let g2_a3_minus_wz_by_a3_leg4 = g2_a3_leg4 + minus_wz_by_a3;
             output[2][43] = -(qd_3_leg4 * g2_a3_minus_wz_by_a3_leg4); // fv_3_leg4
-            output[2][47] = -::overact::math::wide::signed(
+            output[2][47] = -math::wide::signed(
                 g2_a3_minus_wz_by_a3_leg4,
                 qd_3_leg4,
             ); // fs_3_leg4
-            output[0][35] = -::overact::math::wide::signed(
+            output[0][35] = -math::wide::signed(
                 off_2_leg4_on_q1_leg1,
                 minus_qd_2_leg4,
             ); // fs_2_leg4
-            output[1][35] = -::overact::math::wide::signed(
+            output[1][35] = -math::wide::signed(
                 off_2_leg4_on_q1_leg2,
                 minus_qd_2_leg4,
             ); // fs_2_leg4
-            output[2][35] = -::overact::math::wide::signed(
+            output[2][35] = -math::wide::signed(
                 off_2_leg4_on_q1_leg3,
                 minus_qd_2_leg4,
             ); // fs_2_leg4
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -8891,14 +8209,14 @@ impl DualV {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+    ) -> Result<[[f64; 49]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -8911,35 +8229,35 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_actuators_into(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 49]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+        output: &mut [[f64; 49]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
             output[0][5..7].fill(0.0);
             output[0][9..11].fill(0.0);
             output[0][13..15].fill(0.0);
@@ -8964,7 +8282,7 @@ impl DualV {
             output[2][28..30].fill(0.0);
             output[2][32..34].fill(0.0);
             output[2][36..38].fill(0.0);
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -8973,42 +8291,42 @@ impl DualV {
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg2
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -9039,11 +8357,7 @@ impl DualV {
             let t2 = p_y_leg1 * t1;
             let t3 = p_x_leg3 * t1;
             let det_ja = g1_vx_leg3 * t2 + g1_vy_leg3 * t3;
-            ::overact::guard::platform(
-                det_ja,
-                3.538,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
             // --- leg4
             let k1_leg4 = 1.0 / det_leg4;
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
@@ -9051,7 +8365,7 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
@@ -9062,11 +8376,7 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
@@ -9086,11 +8396,7 @@ impl DualV {
             let inv_pivot_2 = 1.0 / pivot_2;
             let l_3_2 = schur_2_3 * inv_pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let half_per_det_ja = 0.5 / det_ja;
             let wz_by_a3 = t1 * half_per_det_ja;
             output[2][48] = wz_by_a3; // off_3_leg1R
@@ -9181,21 +8487,21 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t4
                 - l_3_2 * t5;
             let wz = inv_pivot_3 * t6;
-            ::overact::guard::size(wz, 1e60)?;
+            guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
             let v_arm_y_leg3 = p_x_leg3 * wz;
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             let vy = inv_pivot_2 * t5 - l_3_2 * wz;
-            ::overact::guard::size(vy, 1e60)?;
+            guard::size(vy, 1e60)?;
             let vx = inv_pivot_1 * t4 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let v_end_y_leg1 = vy - v_arm_y_leg3;
             // --- leg2
             let rate_2_leg2 = g2_vx_leg2 * v_end_x_leg1 + g2_vy_leg2 * v_end_y_leg1;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
+            guard::size(rate_2_squared_leg2, 1e60)?;
             let l_ab_squared_rate_2_squared_leg2 = L_AB_SQUARED
                 * rate_2_squared_leg2;
             let bias_a_on_f1_leg2 = l2_y_leg2 * bias_a_end_y_leg3
@@ -9204,7 +8510,7 @@ impl DualV {
                 + minus_g1_vy_leg2 * v_end_y_leg1;
             output[1][9] = -minus_rate_1_leg2; // fv_1_leg2
             let rate_1_squared_leg2 = minus_rate_1_leg2 * minus_rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
+            guard::size(rate_1_squared_leg2, 1e60)?;
             let t1_leg2 = 0.5 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
             let t2_leg2 = rate_1_squared_leg2 * t1_leg2;
             let bias_rate_dot_1_leg2 = k1_leg2 * (bias_a_on_f1_leg2 - t2_leg2);
@@ -9214,7 +8520,7 @@ impl DualV {
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * v_end_x_leg1
                 + minus_g2_vy_leg1 * v_end_y_leg1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
+            guard::size(rate_2_squared_leg1, 1e60)?;
             let l_ab_squared_rate_2_squared_leg1 = L_AB_SQUARED
                 * rate_2_squared_leg1;
             let bias_a_on_f1_leg1 = l2_y_leg1 * bias_a_end_y_leg3
@@ -9222,7 +8528,7 @@ impl DualV {
             let rate_1_leg1 = g1_vx_leg1 * v_end_x_leg1 + g1_vy_leg1 * v_end_y_leg1;
             output[0][8] = rate_1_leg1; // fv_1_leg1
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
+            guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let minus_bias_rate_dot_1_leg1 = k1_leg1 * (bias_a_on_f1_leg1 - t2_leg1);
@@ -9234,7 +8540,7 @@ impl DualV {
             let minus_rate_2_leg3 = minus_g2_vx_leg3 * v_end_x_leg3
                 + minus_g2_vy_leg3 * v_end_y_leg3;
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
+            guard::size(rate_2_squared_leg3, 1e60)?;
             let l_ab_squared_rate_2_squared_leg3 = L_AB_SQUARED
                 * rate_2_squared_leg3;
             let bias_a_on_f1_leg3 = l2_x_leg3 * bias_a_end_x_leg1
@@ -9242,7 +8548,7 @@ impl DualV {
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
             output[2][10] = rate_1_leg3; // fv_1_leg3
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
+            guard::size(rate_1_squared_leg3, 1e60)?;
             let t1_leg3 = 0.5 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
             let t2_leg3 = rate_1_squared_leg3 * t1_leg3;
             let minus_bias_rate_dot_1_leg3 = k1_leg3 * (bias_a_on_f1_leg3 - t2_leg3);
@@ -9251,7 +8557,7 @@ impl DualV {
             // --- leg4
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
-            ::overact::guard::size(rate_2_squared_leg4, 1e60)?;
+            guard::size(rate_2_squared_leg4, 1e60)?;
             let l_ab_squared_rate_2_squared_leg4 = L_AB_SQUARED
                 * rate_2_squared_leg4;
             let bias_a_on_f1_leg4 = l2_x_leg4 * bias_a_end_x_leg1
@@ -9259,7 +8565,7 @@ impl DualV {
             let minus_rate_1_leg4 = minus_g1_vx_leg4 * v_end_x_leg3
                 + minus_g1_vy_leg4 * v_end_y_leg3;
             let rate_1_squared_leg4 = minus_rate_1_leg4 * minus_rate_1_leg4;
-            ::overact::guard::size(rate_1_squared_leg4, 1e60)?;
+            guard::size(rate_1_squared_leg4, 1e60)?;
             let t1_leg4 = 0.5 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
             let t2_leg4 = rate_1_squared_leg4 * t1_leg4;
             let bias_rate_dot_1_leg4 = k1_leg4 * (bias_a_on_f1_leg4 - t2_leg4);
@@ -9279,13 +8585,13 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t7
                 - l_3_2 * t8;
             let dwz = inv_pivot_3 * t9;
-            ::overact::guard::size(dwz, 1e60)?;
+            guard::size(dwz, 1e60)?;
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let dvy = inv_pivot_2 * t8 - l_3_2 * dwz;
-            ::overact::guard::size(dvy, 1e60)?;
+            guard::size(dvy, 1e60)?;
             let dvx = inv_pivot_1 * t7 - l_2_1 * dvy - l_3_1 * dwz;
-            ::overact::guard::size(dvx, 1e60)?;
+            guard::size(dvx, 1e60)?;
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
             let a_end_y_leg3 = a_arm_y_leg3 + dvy;
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
@@ -9373,27 +8679,18 @@ impl DualV {
             output[0][11] = -(g1_a1_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[1][11] = -(g1_a2_leg4 * minus_rate_1_leg4); // fv_1_leg4
             output[2][11] = minus_g1_a3_leg4 * minus_rate_1_leg4; // fv_1_leg4
-            output[0][12] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
-            output[1][13] = -::overact::math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
-            output[2][14] = ::overact::math::wide::sign(rate_1_leg3); // fs_1_leg3
-            output[0][15] = -::overact::math::wide::signed(
-                g1_a1_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[0][12] = math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[1][13] = -math::wide::sign(minus_rate_1_leg2); // fs_1_leg2
+            output[2][14] = math::wide::sign(rate_1_leg3); // fs_1_leg3
+            output[0][15] = -math::wide::signed(g1_a1_leg4, minus_rate_1_leg4); // fs_1_leg4
             let inv_l_ab_a_on_f2_leg4 = INV_L_AB * a_on_f2_leg4;
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
             output[0][27] = g1_a1_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a1_leg4 * a2_x_leg4; // my_2_leg4
             output[1][27] = g1_a2_leg4 * inv_l_ab_a_on_f2_leg4
                 - g2_a2_leg4 * a2_x_leg4; // my_2_leg4
-            output[1][15] = -::overact::math::wide::signed(
-                g1_a2_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
-            output[2][15] = ::overact::math::wide::signed(
-                minus_g1_a3_leg4,
-                minus_rate_1_leg4,
-            ); // fs_1_leg4
+            output[1][15] = -math::wide::signed(g1_a2_leg4, minus_rate_1_leg4); // fs_1_leg4
+            output[2][15] = math::wide::signed(minus_g1_a3_leg4, minus_rate_1_leg4); // fs_1_leg4
             output[1][22] = -(g2_a2_leg3 * minus_rate_dot_2_leg3); // zz_2_leg3R
             output[2][22] = minus_g2_a3_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
             output[1][23] = g2_a2_leg4 * rate_dot_2_leg4; // zz_2_leg4R
@@ -9403,124 +8700,85 @@ impl DualV {
             output[1][26] = -(g2_a2_leg3 * a2_x_leg3); // my_2_leg3
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             output[0][28] = -(minus_qd_2_leg1 * off_2_leg1_on_q1_leg1); // fv_2_leg1
-            output[0][32] = -::overact::math::wide::signed(
+            output[0][32] = -math::wide::signed(
                 off_2_leg1_on_q1_leg1,
                 minus_qd_2_leg1,
             ); // fs_2_leg1
             output[1][28] = -(g2_a2_leg1 * minus_qd_2_leg1); // fv_2_leg1
-            output[1][32] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][32] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             output[0][29] = g2_a1_leg2 * qd_2_leg2; // fv_2_leg2
             output[1][29] = qd_2_leg2 * off_2_leg2_on_q1_leg2; // fv_2_leg2
-            output[1][33] = ::overact::math::wide::signed(
-                off_2_leg2_on_q1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
-            output[0][33] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][33] = math::wide::signed(off_2_leg2_on_q1_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][33] = math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             output[0][30] = -(g2_a1_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[1][30] = -(g2_a2_leg3 * minus_qd_2_leg3); // fv_2_leg3
             output[2][30] = minus_qd_2_leg3 * minus_off_2_leg3_on_q1_leg3; // fv_2_leg3
-            output[2][34] = ::overact::math::wide::signed(
+            output[2][34] = math::wide::signed(
                 minus_off_2_leg3_on_q1_leg3,
                 minus_qd_2_leg3,
             ); // fs_2_leg3
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             output[0][31] = qd_2_leg4 * off_2_leg4_on_q1_leg1; // fv_2_leg4
-            output[0][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg1,
-                qd_2_leg4,
-            ); // fs_2_leg4
+            output[0][35] = math::wide::signed(off_2_leg4_on_q1_leg1, qd_2_leg4); // fs_2_leg4
             output[1][31] = qd_2_leg4 * off_2_leg4_on_q1_leg2; // fv_2_leg4
-            output[1][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg2,
-                qd_2_leg4,
-            ); // fs_2_leg4
+            output[1][35] = math::wide::signed(off_2_leg4_on_q1_leg2, qd_2_leg4); // fs_2_leg4
             let off_2_leg4_on_q1_leg3 = minus_g1_a3_leg4 + g2_a3_leg4;
             output[2][39] = off_2_leg4_on_q1_leg3; // off_2_leg4R
             output[2][31] = qd_2_leg4 * off_2_leg4_on_q1_leg3; // fv_2_leg4
-            output[2][35] = ::overact::math::wide::signed(
-                off_2_leg4_on_q1_leg3,
-                qd_2_leg4,
-            ); // fs_2_leg4
-            output[0][34] = -::overact::math::wide::signed(
-                g2_a1_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
-            output[1][34] = -::overact::math::wide::signed(
-                g2_a2_leg3,
-                minus_qd_2_leg3,
-            ); // fs_2_leg3
+            output[2][35] = math::wide::signed(off_2_leg4_on_q1_leg3, qd_2_leg4); // fs_2_leg4
+            output[0][34] = -math::wide::signed(g2_a1_leg3, minus_qd_2_leg3); // fs_2_leg3
+            output[1][34] = -math::wide::signed(g2_a2_leg3, minus_qd_2_leg3); // fs_2_leg3
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
             output[0][40] = qd_3_leg1 * off_3_leg1_on_q1_leg1; // fv_3_leg1
-            output[0][44] = ::overact::math::wide::signed(
-                off_3_leg1_on_q1_leg1,
-                qd_3_leg1,
-            ); // fs_3_leg1
+            output[0][44] = math::wide::signed(off_3_leg1_on_q1_leg1, qd_3_leg1); // fs_3_leg1
             output[1][40] = -(qd_3_leg1 * minus_off_3_leg1_on_q1_leg2); // fv_3_leg1
-            output[1][44] = -::overact::math::wide::signed(
+            output[1][44] = -math::wide::signed(
                 minus_off_3_leg1_on_q1_leg2,
                 qd_3_leg1,
             ); // fs_3_leg1
             output[2][40] = wz_by_a3 * qd_3_leg1; // fv_3_leg1
-            output[2][44] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
+            output[2][44] = math::wide::signed(wz_by_a3, qd_3_leg1); // fs_3_leg1
             let qd_3_leg2 = wz - rate_2_leg2;
             let wz_by_a1_minus_g2_a1_leg2 = wz_by_a1 - g2_a1_leg2;
             output[0][41] = qd_3_leg2 * wz_by_a1_minus_g2_a1_leg2; // fv_3_leg2
-            output[0][45] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg2,
-                qd_3_leg2,
-            ); // fs_3_leg2
+            output[0][45] = math::wide::signed(wz_by_a1_minus_g2_a1_leg2, qd_3_leg2); // fs_3_leg2
             let g2_a2_minus_wz_by_a2_leg2 = g2_a2_leg2 + minus_wz_by_a2;
             output[1][41] = -(qd_3_leg2 * g2_a2_minus_wz_by_a2_leg2); // fv_3_leg2
-            output[1][45] = -::overact::math::wide::signed(
+            output[1][45] = -math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg2,
                 qd_3_leg2,
             ); // fs_3_leg2
             output[2][41] = wz_by_a3 * qd_3_leg2; // fv_3_leg2
-            output[2][45] = ::overact::math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
+            output[2][45] = math::wide::signed(wz_by_a3, qd_3_leg2); // fs_3_leg2
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
             let wz_by_a1_minus_g2_a1_leg3 = wz_by_a1 - g2_a1_leg3;
             output[0][42] = qd_3_leg3 * wz_by_a1_minus_g2_a1_leg3; // fv_3_leg3
             let qd_3_leg4 = wz - rate_2_leg4;
             let wz_by_a1_minus_g2_a1_leg4 = wz_by_a1 - g2_a1_leg4;
             output[0][43] = qd_3_leg4 * wz_by_a1_minus_g2_a1_leg4; // fv_3_leg4
-            output[0][46] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
-            output[0][47] = ::overact::math::wide::signed(
-                wz_by_a1_minus_g2_a1_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
+            output[0][46] = math::wide::signed(wz_by_a1_minus_g2_a1_leg3, qd_3_leg3); // fs_3_leg3
+            output[0][47] = math::wide::signed(wz_by_a1_minus_g2_a1_leg4, qd_3_leg4); // fs_3_leg4
             let g2_a2_minus_wz_by_a2_leg3 = g2_a2_leg3 + minus_wz_by_a2;
             output[1][42] = -(qd_3_leg3 * g2_a2_minus_wz_by_a2_leg3); // fv_3_leg3
             let g2_a2_minus_wz_by_a2_leg4 = g2_a2_leg4 + minus_wz_by_a2;
             output[1][43] = -(qd_3_leg4 * g2_a2_minus_wz_by_a2_leg4); // fv_3_leg4
-            output[1][46] = -::overact::math::wide::signed(
+            output[1][46] = -math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg3,
                 qd_3_leg3,
             ); // fs_3_leg3
-            output[1][47] = -::overact::math::wide::signed(
+            output[1][47] = -math::wide::signed(
                 g2_a2_minus_wz_by_a2_leg4,
                 qd_3_leg4,
             ); // fs_3_leg4
             let wz_by_a3_minus_g2_a3_leg3 = wz_by_a3 + minus_g2_a3_leg3;
             output[2][42] = qd_3_leg3 * wz_by_a3_minus_g2_a3_leg3; // fv_3_leg3
-            output[2][46] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg3,
-                qd_3_leg3,
-            ); // fs_3_leg3
+            output[2][46] = math::wide::signed(wz_by_a3_minus_g2_a3_leg3, qd_3_leg3); // fs_3_leg3
             let wz_by_a3_minus_g2_a3_leg4 = wz_by_a3 - g2_a3_leg4;
             output[2][43] = qd_3_leg4 * wz_by_a3_minus_g2_a3_leg4; // fv_3_leg4
-            output[2][47] = ::overact::math::wide::signed(
-                wz_by_a3_minus_g2_a3_leg4,
-                qd_3_leg4,
-            ); // fs_3_leg4
-            ::core::result::Result::Ok(())
+            output[2][47] = math::wide::signed(wz_by_a3_minus_g2_a3_leg4, qd_3_leg4); // fs_3_leg4
+            Ok(())
         })
     }
     /// The payload's columns of the platform projection (case 1), eq. (38).
@@ -9536,13 +8794,13 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn idm_red_payload(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_into(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 4]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_payload_into(
             pose,
             twist,
             acceleration,
@@ -9554,27 +8812,27 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_payload`]; `output` is then only partly written.
     pub fn idm_red_payload_into(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 4]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 4]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / r_p
-        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        const INV_R_P: f64 = 9.090909090909092;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         output[0][0] = 0.0; // zz_payload
         output[0][3] = acceleration[0]; // m_payload
         output[1][0] = 0.0; // zz_payload
         output[1][3] = acceleration[1]; // m_payload
         output[2][0] = acceleration[2]; // zz_payload
         output[2][3] = 0.0; // m_payload
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- platform
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         output[2][1] = a_y_platform; // mx_payload
@@ -9593,7 +8851,7 @@ impl DualV {
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
         output[0][2] = my_payload_on_vx;
         output[1][1] = -my_payload_on_vx; // mx_payload
-        ::core::result::Result::Ok(())
+        Ok(())
     }
     /// The payload's columns of the platform projection (case 1), eq. (38).
     ///
@@ -9609,14 +8867,14 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 1 trigonometric pair, 4 negations, 16 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn idm_red_payload_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_from_joints_into(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 4]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_payload_from_joints_into(
             pose,
             joints,
             twist,
@@ -9629,29 +8887,29 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_payload_from_joints`]; `output` is then only partly written.
     pub fn idm_red_payload_from_joints_into(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 4]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 4]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / r_p
-        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        const INV_R_P: f64 = 9.090909090909092;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         output[0][0] = 0.0; // zz_payload
         output[0][3] = acceleration[0]; // m_payload
         output[1][0] = 0.0; // zz_payload
         output[1][3] = acceleration[1]; // m_payload
         output[2][0] = acceleration[2]; // zz_payload
         output[2][3] = 0.0; // m_payload
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- platform
         let a_y_platform = c_phi * acceleration[1] - s_phi * acceleration[0];
         output[2][1] = a_y_platform; // mx_payload
@@ -9670,7 +8928,7 @@ impl DualV {
         let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
         output[0][2] = my_payload_on_vx;
         output[1][1] = -my_payload_on_vx; // mx_payload
-        ::core::result::Result::Ok(())
+        Ok(())
     }
     /// The payload's columns of the platform projection (case 1), eq. (38).
     ///
@@ -9687,14 +8945,14 @@ impl DualV {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_from_actuators_into(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+    ) -> Result<[[f64; 4]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_payload_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -9707,37 +8965,37 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_payload_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_payload_from_actuators_into(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        start: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 4]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 3],
+        output: &mut [[f64; 4]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
             output[0][0] = 0.0; // zz_payload
             output[1][0] = 0.0; // zz_payload
             output[2][3] = 0.0; // m_payload
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let p_y_leg1 = R_P * c_phi;
@@ -9746,42 +9004,42 @@ impl DualV {
             let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             // --- leg3
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             // --- leg1
             let k1_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
@@ -9804,7 +9062,7 @@ impl DualV {
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             // --- leg1
             let half_d_y_leg1 = 0.5 * d_y_leg1;
             let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
@@ -9828,11 +9086,7 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
                 + p_y_leg1 * minus_g1_vx_leg2;
@@ -9852,11 +9106,7 @@ impl DualV {
             let inv_pivot_2 = 1.0 / pivot_2;
             let l_3_2 = schur_2_3 * inv_pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let inv_pivot_3 = 1.0 / pivot_3;
             let t1 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -9961,7 +9211,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * qdd1_minus_bias_rate_dot_1_leg4 - l_3_1 * t4
                 - l_3_2 * t5;
             let dwz = inv_pivot_3 * t6;
-            ::overact::guard::size(dwz, 1e100)?;
+            guard::size(dwz, 1e100)?;
             output[2][0] = dwz; // zz_payload
             let dvy = inv_pivot_2 * t5 - l_3_2 * dwz;
             output[1][3] = dvy; // m_payload
@@ -9974,17 +9224,17 @@ impl DualV {
             // --- leg1
             let a_arm_y_leg3 = bias_a_end_y_leg3 + p_x_leg3 * dwz;
             let minus_mx_payload_on_vx = INV_R_P * a_arm_y_leg3;
-            ::overact::guard::size(minus_mx_payload_on_vx, 1e100)?;
+            guard::size(minus_mx_payload_on_vx, 1e100)?;
             output[0][1] = -minus_mx_payload_on_vx; // mx_payload
             output[1][2] = -minus_mx_payload_on_vx; // my_payload
             let a_arm_x_leg1 = bias_a_end_x_leg1 - p_y_leg1 * dwz;
             let my_payload_on_vx = INV_R_P * a_arm_x_leg1;
-            ::overact::guard::size(my_payload_on_vx, 1e100)?;
-            ::overact::guard::size(dvy, 1e100)?;
-            ::overact::guard::size(dvx, 1e100)?;
+            guard::size(my_payload_on_vx, 1e100)?;
+            guard::size(dvy, 1e100)?;
+            guard::size(dvx, 1e100)?;
             output[0][2] = my_payload_on_vx;
             output[1][1] = -my_payload_on_vx; // mx_payload
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// The payload's columns of the actuator projection (case 2), eq. (38).
@@ -10000,13 +9250,13 @@ impl DualV {
     /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pair, 10 guards, 2 negations, 142 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_payload_actuators(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_payload_actuators_into(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 4]; 3], Error> {
+        zeroed_then_fill(|output| Self::idm_red_payload_actuators_into(
             pose,
             twist,
             acceleration,
@@ -10018,23 +9268,23 @@ impl DualV {
     /// # Errors
     /// Those of [`Self::idm_red_payload_actuators`]; `output` is then only partly written.
     pub fn idm_red_payload_actuators_into(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        output: &mut [[::core::primitive::f64; 4]; 3],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        output: &mut [[f64; 4]; 3],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / r_p
-        const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+        const INV_R_P: f64 = 9.090909090909092;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -10043,31 +9293,31 @@ impl DualV {
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         // --- leg3
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_x_leg3 = pose[0] + p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
@@ -10088,7 +9338,7 @@ impl DualV {
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let t1 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
         let det_ja = g1_wz_leg3 * t1;
-        ::overact::guard::platform(det_ja, 3.538, ::overact::ActuatorGroup::Kept)?;
+        guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
         let half_per_det_ja = 0.5 / det_ja;
         let wz_by_a1 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * half_per_det_ja;
@@ -10134,7 +9384,7 @@ impl DualV {
             - vx_by_a2 * inv_r_p_a_arm_y_leg3 - minus_wz_by_a2 * a_y_platform; // mx_payload
         output[1][2] = vx_by_a2 * inv_r_p_a_arm_x_leg1
             + minus_vy_by_a2 * inv_r_p_a_arm_y_leg3 + minus_wz_by_a2 * a_x_platform; // my_payload
-        ::core::result::Result::Ok(())
+        Ok(())
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -10147,17 +9397,17 @@ impl DualV {
     /// 101 operations (39 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pair, 12 guards, 104 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_platform(
-        pose: &[::core::primitive::f64; 3],
-        torques: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        pose: &[f64; 3],
+        torques: &[f64; 4],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -10166,25 +9416,25 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         // --- leg3
@@ -10193,25 +9443,25 @@ impl DualV {
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -10228,7 +9478,7 @@ impl DualV {
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        ::core::result::Result::Ok([
+        Ok([
             g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
                 + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3],
             g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
@@ -10248,17 +9498,17 @@ impl DualV {
     /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pair, 13 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_actuators(
-        pose: &[::core::primitive::f64; 3],
-        torques: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        pose: &[f64; 3],
+        torques: &[f64; 4],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
@@ -10270,7 +9520,7 @@ impl DualV {
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         let k1_leg4 = 1.0 / det_leg4;
@@ -10283,7 +9533,7 @@ impl DualV {
         // --- leg2
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         let k1_leg2 = 1.0 / det_leg2;
@@ -10295,7 +9545,7 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         let k1_leg3 = 1.0 / det_leg3;
@@ -10306,22 +9556,22 @@ impl DualV {
         // --- leg1
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
@@ -10330,7 +9580,7 @@ impl DualV {
         let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
         let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
         let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
-        ::overact::guard::platform(det_ja, 3.538, ::overact::ActuatorGroup::Kept)?;
+        guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
         let half_per_det_ja = 0.5 / det_ja;
         let minus_vy_by_a1 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
             * half_per_det_ja;
@@ -10355,7 +9605,7 @@ impl DualV {
         let vx_by_a3 = t1 * half_per_det_ja;
         let g1_a3_leg4 = 2.0
             * (minus_g1_vy_leg4 * minus_vy_by_a3 - minus_g1_vx_leg4 * vx_by_a3);
-        ::core::result::Result::Ok([
+        Ok([
             torques[0] + torques[3] * g1_a1_leg4, torques[1] + torques[3] * g1_a2_leg4,
             torques[2] + torques[3] * g1_a3_leg4,
         ])
@@ -10375,14 +9625,14 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        parameters: &[::core::primitive::f64; 68],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        parameters: &[f64; 68],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("parameters", parameters, 1e12),
@@ -10390,59 +9640,64 @@ impl DualV {
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            acceleration: &'a [::core::primitive::f64; 3],
-            parameters: &'a [::core::primitive::f64; 68],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            acceleration: &'a [f64; 3],
+            parameters: &'a [f64; 68],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [::core::primitive::f64; 4],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[f64; 4], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, parameters } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// 1 / l_ab²
-                const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+                const INV_L_AB_SQUARED: f64 = 12.755102040816327;
                 /// 1 / (2 l_ab)
-                const INV_TWICE_L_AB: ::core::primitive::f64 = 1.7857142857142858;
+                const INV_TWICE_L_AB: f64 = 1.7857142857142858;
                 /// l_ab = l_bc
-                const L_AB: ::core::primitive::f64 = 0.28;
+                const L_AB: f64 = 0.28;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let t1_leg = s_phi * rate_3_squared_leg - c_phi * acceleration[2];
                 let t2_leg = c_phi * rate_3_squared_leg + s_phi * acceleration[2];
                 // --- platform
-                let mass_platform = parameters[63] + parameters[67];
-                let first_y_platform = parameters[62] + parameters[66];
-                let first_x_platform = parameters[61] + parameters[65];
+                let m_platform = parameters[63];
+                let m_payload = parameters[67];
+                let mass_platform = m_platform + m_payload;
+                let my_platform = parameters[62];
+                let my_payload = parameters[66];
+                let first_y_platform = my_platform + my_payload;
+                let mx_platform = parameters[61];
+                let mx_payload = parameters[65];
+                let first_x_platform = mx_platform + mx_payload;
                 let force_x_platform = acceleration[0] * mass_platform
                     + t1_leg * first_y_platform - t2_leg * first_x_platform;
                 let force_y_platform = acceleration[1] * mass_platform
                     - (t1_leg * first_x_platform + t2_leg * first_y_platform);
-                let inertia_zz_platform = parameters[60] + parameters[64];
+                let zz_platform = parameters[60];
+                let zz_payload = parameters[64];
+                let inertia_zz_platform = zz_platform + zz_payload;
                 let moment_z_platform = acceleration[1]
                     * (c_phi * first_x_platform - s_phi * first_y_platform)
                     - acceleration[0]
                         * (s_phi * first_x_platform + c_phi * first_y_platform)
                     + acceleration[2] * inertia_zz_platform;
-                // --- what the legs add: a row for each number, in it one for each leg
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 9];
-                // --- what the legs need again when the sums are known
+                // --- values of the legs that are used after the sums
                 let mut own = [[0.0; 4]; 3];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -10455,61 +9710,29 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_parameters = [
-                        ::overact::simd::scattered(parameters, [7, 15], at),
-                        ::overact::simd::scattered(parameters, [6, 15], at),
-                        ::overact::simd::scattered(parameters, [2, 15], at),
-                        ::overact::simd::scattered(parameters, [3, 15], at),
-                        ::overact::simd::scattered(parameters, [4, 15], at),
-                        ::overact::simd::scattered(parameters, [8, 15], at),
-                        ::overact::simd::scattered(parameters, [0, 15], at),
-                        ::overact::simd::scattered(parameters, [1, 15], at),
-                        ::overact::simd::scattered(parameters, [9, 15], at),
-                        ::overact::simd::scattered(parameters, [10, 15], at),
-                        ::overact::simd::scattered(parameters, [11, 15], at),
-                        ::overact::simd::scattered(parameters, [5, 15], at),
-                        ::overact::simd::scattered(parameters, [12, 15], at),
-                        ::overact::simd::scattered(parameters, [13, 15], at),
-                        ::overact::simd::scattered(parameters, [14, 15], at),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
@@ -10543,150 +9766,118 @@ impl DualV {
                     let c2_leg = 6.377551020408164 * t3_leg;
                     let minus_rate_dot_2_leg = k1_leg
                         * (a_on_f2_leg + l_ab_squared_rate_2_squared_leg * c2_leg);
-                    let force2_x_leg = own_parameters[0] * minus_rate_dot_2_leg
-                        - own_parameters[1] * rate_2_squared_leg;
-                    let minus_force2_y_leg = own_parameters[1] * minus_rate_dot_2_leg
-                        + own_parameters[0] * rate_2_squared_leg;
+                    let my_2_leg = simd::scattered(parameters, [7, 15], at);
+                    let mx_2_leg = simd::scattered(parameters, [6, 15], at);
+                    let force2_x_leg = my_2_leg * minus_rate_dot_2_leg
+                        - mx_2_leg * rate_2_squared_leg;
+                    let minus_force2_y_leg = mx_2_leg * minus_rate_dot_2_leg
+                        + my_2_leg * rate_2_squared_leg;
+                    let fv_1_leg = simd::scattered(parameters, [2, 15], at);
+                    let fs_1_leg = simd::scattered(parameters, [3, 15], at);
+                    let off_1_leg = simd::scattered(parameters, [4, 15], at);
                     let minus_a_on_f1_leg = l2_x_leg * a_end_x_leg
                         + l2_y_leg * a_end_y_leg + l_ab_squared_rate_2_squared_leg;
                     let rate_dot_1_leg = k1_leg
                         * (minus_a_on_f1_leg + l_ab_squared_rate_1_squared_leg * c2_leg);
-                    let t4_leg = own_parameters[4]
+                    let m_2_leg = simd::scattered(parameters, [8, 15], at);
+                    let zz_1_leg = simd::scattered(parameters, [0, 15], at);
+                    let ia_1_leg = simd::scattered(parameters, [1, 15], at);
+                    let t4_leg = off_1_leg
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
-                        + own_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(own_parameters[3], rate_1_leg, at)
+                        + fv_1_leg * rate_1_leg + simd::signed(fs_1_leg, rate_1_leg, at)
                         + rate_dot_1_leg
-                            * (own_parameters[6] + L_AB_SQUARED * own_parameters[5]
-                                + own_parameters[7]);
+                            * (zz_1_leg + L_AB_SQUARED * m_2_leg + ia_1_leg);
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let tau_2_leg = own_parameters[10]
-                        - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::simd::signed(
-                                own_parameters[9],
-                                minus_qd_2_leg,
-                                at,
-                            ));
+                    let fv_2_leg = simd::scattered(parameters, [9, 15], at);
+                    let fs_2_leg = simd::scattered(parameters, [10, 15], at);
+                    let off_2_leg = simd::scattered(parameters, [11, 15], at);
+                    let tau_2_leg = off_2_leg
+                        - (fv_2_leg * minus_qd_2_leg
+                            + simd::signed(fs_2_leg, minus_qd_2_leg, at));
                     let force_on_u1_leg = t4_leg - tau_2_leg;
                     let a2_y_leg = INV_L_AB * (det_leg * rate_1_squared_leg)
                         + INV_TWICE_L_AB * (t3_leg * rate_dot_1_leg);
                     let a2_x_leg = INV_L_AB * minus_a_on_f1_leg;
-                    let moment2_z_leg = own_parameters[1] * a2_y_leg
-                        - own_parameters[0] * a2_x_leg
-                        - own_parameters[11] * minus_rate_dot_2_leg;
+                    let zz_2_leg = simd::scattered(parameters, [5, 15], at);
+                    let moment2_z_leg = mx_2_leg * a2_y_leg - my_2_leg * a2_x_leg
+                        - zz_2_leg * minus_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
-                    let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
-                        + own_parameters[14];
+                    let fv_3_leg = simd::scattered(parameters, [12, 15], at);
+                    let fs_3_leg = simd::scattered(parameters, [13, 15], at);
+                    let off_3_leg = simd::scattered(parameters, [14, 15], at);
+                    let tau_3_leg = fv_3_leg * qd_3_leg
+                        + simd::signed(fs_3_leg, qd_3_leg, at) + off_3_leg;
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     failed.result()?;
-                    ::overact::simd::put(
-                        &mut added[0],
-                        [0, 1],
-                        at,
-                        g1_vx_leg * g1_vx_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut added[1],
-                        [0, 1],
-                        at,
-                        g1_vx_leg * g1_vy_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut added[2],
-                        [0, 1],
-                        at,
-                        -(g1_vx_leg * minus_g1_wz_leg),
-                    );
-                    ::overact::simd::put(
-                        &mut added[3],
-                        [0, 1],
-                        at,
-                        g1_vy_leg * g1_vy_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut added[4],
-                        [0, 1],
-                        at,
-                        -(g1_vy_leg * minus_g1_wz_leg),
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut added[0], [0, 1], at, g1_vx_leg * g1_vx_leg);
+                    simd::put(&mut added[1], [0, 1], at, g1_vx_leg * g1_vy_leg);
+                    simd::put(&mut added[2], [0, 1], at, -(g1_vx_leg * minus_g1_wz_leg));
+                    simd::put(&mut added[3], [0, 1], at, g1_vy_leg * g1_vy_leg);
+                    simd::put(&mut added[4], [0, 1], at, -(g1_vy_leg * minus_g1_wz_leg));
+                    simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         minus_g1_wz_leg * minus_g1_wz_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
                         g2_wz_leg * force_on_u2_leg - minus_g1_wz_leg * force_on_u1_leg
                             + tau_3_leg,
                     );
-                    ::overact::simd::put(&mut own[0], [0, 1], at, g1_vx_leg);
-                    ::overact::simd::put(&mut own[1], [0, 1], at, g1_vy_leg);
-                    ::overact::simd::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
+                    simd::put(&mut own[0], [0, 1], at, g1_vx_leg);
+                    simd::put(&mut own[1], [0, 1], at, g1_vy_leg);
+                    simd::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    ::overact::simd::sum(&added[0]), ::overact::simd::sum(&added[1]),
-                    ::overact::simd::sum(&added[2]), ::overact::simd::sum(&added[3]),
-                    ::overact::simd::sum(&added[4]), ::overact::simd::sum(&added[5]),
-                    force_x_platform + ::overact::simd::sum(&added[6]),
-                    force_y_platform + ::overact::simd::sum(&added[7]),
-                    moment_z_platform + ::overact::simd::sum(&added[8]),
+                    simd::sum(&added[0]), simd::sum(&added[1]), simd::sum(&added[2]),
+                    simd::sum(&added[3]), simd::sum(&added[4]), simd::sum(&added[5]),
+                    force_x_platform + simd::sum(&added[6]),
+                    force_y_platform + simd::sum(&added[7]),
+                    moment_z_platform + simd::sum(&added[8]),
                 ];
                 let solution = {
-                    ::overact::guard::platform(
-                        sums[0],
-                        25.42916107675064,
-                        ::overact::ActuatorGroup::All,
-                    )?;
+                    guard::platform(sums[0], 25.42916107675064, ActuatorGroup::All)?;
                     let l_2_1 = sums[1] / sums[0];
                     let t1 = sums[7] - l_2_1 * sums[6];
                     let pivot_2 = sums[3] - sums[1] * l_2_1;
-                    ::overact::guard::platform(
-                        pivot_2,
-                        25.592368899353353,
-                        ::overact::ActuatorGroup::All,
-                    )?;
+                    guard::platform(pivot_2, 25.592368899353353, ActuatorGroup::All)?;
                     let l_3_1 = sums[2] / sums[0];
                     let schur_2_3 = sums[4] - sums[1] * l_3_1;
                     let l_3_2 = schur_2_3 / pivot_2;
                     let pivot_3 = sums[5] - sums[2] * l_3_1 - schur_2_3 * l_3_2;
-                    ::overact::guard::platform(
-                        pivot_3,
-                        0.3076928490286827,
-                        ::overact::ActuatorGroup::All,
-                    )?;
+                    guard::platform(pivot_3, 0.3076928490286827, ActuatorGroup::All)?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = t1 / pivot_2 - l_3_2 * t2;
-                    ::overact::guard::size(t3, 1e100)?;
+                    guard::size(t3, 1e100)?;
                     let t4 = sums[6] / sums[0] - l_2_1 * t3 - l_3_1 * t2;
-                    ::overact::guard::size(t4, 1e100)?;
-                    ::overact::guard::size(t2, 1e100)?;
+                    guard::size(t4, 1e100)?;
+                    guard::size(t2, 1e100)?;
                     [t4, t3, t2]
                 };
                 let mut output = [0.0; 4];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
+                for at in simd::places::<V, 4>(lanes) {
                     let own = [
-                        ::overact::simd::row(&own[0], at), ::overact::simd::row(&own[1], at),
-                        ::overact::simd::row(&own[2], at),
+                        simd::row(&own[0], at), simd::row(&own[1], at), simd::row(&own[2], at),
                     ];
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output,
                         [0, 1],
                         at,
@@ -10694,10 +9885,10 @@ impl DualV {
                             + own[2] * solution[2],
                     );
                 }
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        ::overact::simd::few(Legs {
+        simd::few(Legs {
             pose,
             twist,
             acceleration,
@@ -10718,42 +9909,42 @@ impl DualV {
     /// 517 operations (218 additions, 289 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 531 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        parameters: &[::core::primitive::f64; 68],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        parameters: &[f64; 68],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             // --- sines and cosines
             let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
             (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
-            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
+            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = math::wide::sin_cos_all([
                 joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
                 joints[9], joints[10],
             ]);
-            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+            guard::leg(s2_leg1, 1.0, "leg1")?;
+            guard::leg(s2_leg2, 1.0, "leg2")?;
+            guard::leg(s2_leg3, 1.0, "leg3")?;
+            guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -10782,37 +9973,47 @@ impl DualV {
             let v2_by_1_y_leg1 = L_AB * c2_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * v2_by_1_y_leg1);
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
+            let ia_1_leg1 = parameters[1];
+            let fs_1_leg1 = parameters[3];
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * v2_by_1_y_leg1);
-            let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-                - parameters[6] * rate_2_squared_leg1;
-            let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1;
+            let my_2_leg1 = parameters[7];
+            let mx_2_leg1 = parameters[6];
+            let force2_x_leg1 = my_2_leg1 * minus_rate_dot_2_leg1
+                - mx_2_leg1 * rate_2_squared_leg1;
+            let minus_force2_y_leg1 = mx_2_leg1 * minus_rate_dot_2_leg1
+                + my_2_leg1 * rate_2_squared_leg1;
+            let fv_1_leg1 = parameters[2];
+            let off_1_leg1 = parameters[4];
             let t1_leg1 = rate_dot_1_leg1
-                * (parameters[0] + L_AB_SQUARED * parameters[8] + parameters[1])
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+                * (zz_1_leg1 + L_AB_SQUARED * m_2_leg1 + ia_1_leg1)
+                + math::wide::signed(fs_1_leg1, rate_1_leg1)
                 + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-                + parameters[2] * rate_1_leg1 + parameters[4];
+                + fv_1_leg1 * rate_1_leg1 + off_1_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let tau_2_leg1 = parameters[11]
-                - (parameters[9] * minus_qd_2_leg1
-                    + ::overact::math::wide::signed(
-                        parameters[10],
-                        minus_qd_2_leg1,
-                    ));
+            let fv_2_leg1 = parameters[9];
+            let fs_2_leg1 = parameters[10];
+            let off_2_leg1 = parameters[11];
+            let tau_2_leg1 = off_2_leg1
+                - (fv_2_leg1 * minus_qd_2_leg1
+                    + math::wide::signed(fs_2_leg1, minus_qd_2_leg1));
             let force_on_u1_leg1 = t1_leg1 - tau_2_leg1;
             let a2_y_leg1 = s2_leg1 * l_ab_rate_1_squared_leg1
                 + v2_by_1_y_leg1 * rate_dot_1_leg1;
-            let moment2_z_leg1 = parameters[6] * a2_y_leg1
-                - parameters[7] * minus_a_on_f1_leg1
-                - parameters[5] * minus_rate_dot_2_leg1;
+            let zz_2_leg1 = parameters[5];
+            let moment2_z_leg1 = mx_2_leg1 * a2_y_leg1
+                - my_2_leg1 * minus_a_on_f1_leg1 - zz_2_leg1 * minus_rate_dot_2_leg1;
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let tau_3_leg1 = parameters[12] * qd_3_leg1
-                + ::overact::math::wide::signed(parameters[13], qd_3_leg1)
-                + parameters[14];
+            let fv_3_leg1 = parameters[12];
+            let fs_3_leg1 = parameters[13];
+            let off_3_leg1 = parameters[14];
+            let tau_3_leg1 = fv_3_leg1 * qd_3_leg1
+                + math::wide::signed(fs_3_leg1, qd_3_leg1) + off_3_leg1;
             let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -10821,6 +10022,7 @@ impl DualV {
             let g1_vx_leg2 = c12_leg2 * k1_leg2;
             let g1_vy_leg2 = s12_leg2 * k1_leg2;
             let rate_1_leg2 = g1_vx_leg2 * v_end_x_leg1 + g1_vy_leg2 * v_end_y_leg1;
+            let fs_1_leg2 = parameters[18];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
@@ -10833,37 +10035,45 @@ impl DualV {
             let v2_by_1_y_leg2 = L_AB * c2_leg2;
             let minus_rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let force2_x_leg2 = parameters[22] * minus_rate_dot_2_leg2
-                - parameters[21] * rate_2_squared_leg2;
-            let minus_force2_y_leg2 = parameters[21] * minus_rate_dot_2_leg2
-                + parameters[22] * rate_2_squared_leg2;
+            let my_2_leg2 = parameters[22];
+            let mx_2_leg2 = parameters[21];
+            let force2_x_leg2 = my_2_leg2 * minus_rate_dot_2_leg2
+                - mx_2_leg2 * rate_2_squared_leg2;
+            let minus_force2_y_leg2 = mx_2_leg2 * minus_rate_dot_2_leg2
+                + my_2_leg2 * rate_2_squared_leg2;
+            let fv_1_leg2 = parameters[17];
+            let off_1_leg2 = parameters[19];
             let minus_a_on_f1_leg2 = c12_leg2 * a_end_x_leg1
                 + s12_leg2 * a_end_y_leg1 + L_AB * rate_2_squared_leg2;
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let t1_leg2 = ::overact::math::wide::signed(parameters[18], rate_1_leg2)
+            let m_2_leg2 = parameters[23];
+            let zz_1_leg2 = parameters[15];
+            let ia_1_leg2 = parameters[16];
+            let t1_leg2 = math::wide::signed(fs_1_leg2, rate_1_leg2)
                 + L_AB * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
-                + parameters[17] * rate_1_leg2 + parameters[19]
+                + fv_1_leg2 * rate_1_leg2 + off_1_leg2
                 + rate_dot_1_leg2
-                    * (parameters[15] + L_AB_SQUARED * parameters[23]
-                        + parameters[16]);
+                    * (zz_1_leg2 + L_AB_SQUARED * m_2_leg2 + ia_1_leg2);
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            let tau_2_leg2 = parameters[26]
-                - (parameters[24] * minus_qd_2_leg2
-                    + ::overact::math::wide::signed(
-                        parameters[25],
-                        minus_qd_2_leg2,
-                    ));
+            let fv_2_leg2 = parameters[24];
+            let fs_2_leg2 = parameters[25];
+            let off_2_leg2 = parameters[26];
+            let tau_2_leg2 = off_2_leg2
+                - (fv_2_leg2 * minus_qd_2_leg2
+                    + math::wide::signed(fs_2_leg2, minus_qd_2_leg2));
             let force_on_u1_leg2 = t1_leg2 - tau_2_leg2;
             let a2_y_leg2 = s2_leg2 * l_ab_rate_1_squared_leg2
                 + v2_by_1_y_leg2 * rate_dot_1_leg2;
-            let moment2_z_leg2 = parameters[21] * a2_y_leg2
-                - parameters[22] * minus_a_on_f1_leg2
-                - parameters[20] * minus_rate_dot_2_leg2;
+            let zz_2_leg2 = parameters[20];
+            let moment2_z_leg2 = mx_2_leg2 * a2_y_leg2
+                - my_2_leg2 * minus_a_on_f1_leg2 - zz_2_leg2 * minus_rate_dot_2_leg2;
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
-            let tau_3_leg2 = parameters[27] * qd_3_leg2
-                + ::overact::math::wide::signed(parameters[28], qd_3_leg2)
-                + parameters[29];
+            let fv_3_leg2 = parameters[27];
+            let fs_3_leg2 = parameters[28];
+            let off_3_leg2 = parameters[29];
+            let tau_3_leg2 = fv_3_leg2 * qd_3_leg2
+                + math::wide::signed(fs_3_leg2, qd_3_leg2) + off_3_leg2;
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
@@ -10874,6 +10084,7 @@ impl DualV {
             let g1_vy_leg3 = s12_leg3 * k1_leg3;
             let v_end_y_leg3 = twist[1] + v_arm_y_leg3;
             let rate_1_leg3 = g1_vx_leg3 * v_end_x_leg3 + g1_vy_leg3 * v_end_y_leg3;
+            let fs_1_leg3 = parameters[33];
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
             let a_end_y_leg3 = acceleration[1] + a_arm_y_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
@@ -10888,37 +10099,45 @@ impl DualV {
             let v2_by_1_y_leg3 = L_AB * c2_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
-                - parameters[36] * rate_2_squared_leg3;
-            let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
-                + parameters[37] * rate_2_squared_leg3;
+            let my_2_leg3 = parameters[37];
+            let mx_2_leg3 = parameters[36];
+            let force2_x_leg3 = my_2_leg3 * minus_rate_dot_2_leg3
+                - mx_2_leg3 * rate_2_squared_leg3;
+            let minus_force2_y_leg3 = mx_2_leg3 * minus_rate_dot_2_leg3
+                + my_2_leg3 * rate_2_squared_leg3;
+            let fv_1_leg3 = parameters[32];
+            let off_1_leg3 = parameters[34];
             let minus_a_on_f1_leg3 = c12_leg3 * a_end_x_leg3
                 + s12_leg3 * a_end_y_leg3 + L_AB * rate_2_squared_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let t1_leg3 = ::overact::math::wide::signed(parameters[33], rate_1_leg3)
+            let m_2_leg3 = parameters[38];
+            let zz_1_leg3 = parameters[30];
+            let ia_1_leg3 = parameters[31];
+            let t1_leg3 = math::wide::signed(fs_1_leg3, rate_1_leg3)
                 + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-                + parameters[32] * rate_1_leg3 + parameters[34]
+                + fv_1_leg3 * rate_1_leg3 + off_1_leg3
                 + rate_dot_1_leg3
-                    * (parameters[30] + L_AB_SQUARED * parameters[38]
-                        + parameters[31]);
+                    * (zz_1_leg3 + L_AB_SQUARED * m_2_leg3 + ia_1_leg3);
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let tau_2_leg3 = parameters[41]
-                - (parameters[39] * minus_qd_2_leg3
-                    + ::overact::math::wide::signed(
-                        parameters[40],
-                        minus_qd_2_leg3,
-                    ));
+            let fv_2_leg3 = parameters[39];
+            let fs_2_leg3 = parameters[40];
+            let off_2_leg3 = parameters[41];
+            let tau_2_leg3 = off_2_leg3
+                - (fv_2_leg3 * minus_qd_2_leg3
+                    + math::wide::signed(fs_2_leg3, minus_qd_2_leg3));
             let force_on_u1_leg3 = t1_leg3 - tau_2_leg3;
             let a2_y_leg3 = s2_leg3 * l_ab_rate_1_squared_leg3
                 + v2_by_1_y_leg3 * rate_dot_1_leg3;
-            let moment2_z_leg3 = parameters[36] * a2_y_leg3
-                - parameters[37] * minus_a_on_f1_leg3
-                - parameters[35] * minus_rate_dot_2_leg3;
+            let zz_2_leg3 = parameters[35];
+            let moment2_z_leg3 = mx_2_leg3 * a2_y_leg3
+                - my_2_leg3 * minus_a_on_f1_leg3 - zz_2_leg3 * minus_rate_dot_2_leg3;
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            let tau_3_leg3 = parameters[42] * qd_3_leg3
-                + ::overact::math::wide::signed(parameters[43], qd_3_leg3)
-                + parameters[44];
+            let fv_3_leg3 = parameters[42];
+            let fs_3_leg3 = parameters[43];
+            let off_3_leg3 = parameters[44];
+            let tau_3_leg3 = fv_3_leg3 * qd_3_leg3
+                + math::wide::signed(fs_3_leg3, qd_3_leg3) + off_3_leg3;
             let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
             let t2_leg3 = g1_vx_leg1 * force_on_u1_leg1
                 - minus_g2_vx_leg1 * force_on_u2_leg1 + g1_vx_leg2 * force_on_u1_leg2
@@ -10943,44 +10162,60 @@ impl DualV {
             let v2_by_1_y_leg4 = L_AB * c2_leg4;
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * v2_by_1_y_leg4);
-            let force2_x_leg4 = parameters[52] * minus_rate_dot_2_leg4
-                - parameters[51] * rate_2_squared_leg4;
-            let minus_force2_y_leg4 = parameters[51] * minus_rate_dot_2_leg4
-                + parameters[52] * rate_2_squared_leg4;
+            let my_2_leg4 = parameters[52];
+            let mx_2_leg4 = parameters[51];
+            let force2_x_leg4 = my_2_leg4 * minus_rate_dot_2_leg4
+                - mx_2_leg4 * rate_2_squared_leg4;
+            let minus_force2_y_leg4 = mx_2_leg4 * minus_rate_dot_2_leg4
+                + my_2_leg4 * rate_2_squared_leg4;
+            let fv_1_leg4 = parameters[47];
+            let fs_1_leg4 = parameters[48];
+            let off_1_leg4 = parameters[49];
             let minus_a_on_f1_leg4 = c12_leg4 * a_end_x_leg3
                 + s12_leg4 * a_end_y_leg3 + L_AB * rate_2_squared_leg4;
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * v2_by_1_y_leg4);
-            let t1_leg4 = parameters[49]
+            let m_2_leg4 = parameters[53];
+            let zz_1_leg4 = parameters[45];
+            let ia_1_leg4 = parameters[46];
+            let t1_leg4 = off_1_leg4
                 + L_AB * (s2_leg4 * force2_x_leg4 - c2_leg4 * minus_force2_y_leg4)
-                + parameters[47] * rate_1_leg4
-                + ::overact::math::wide::signed(parameters[48], rate_1_leg4)
+                + fv_1_leg4 * rate_1_leg4
+                + math::wide::signed(fs_1_leg4, rate_1_leg4)
                 + rate_dot_1_leg4
-                    * (parameters[45] + L_AB_SQUARED * parameters[53]
-                        + parameters[46]);
+                    * (zz_1_leg4 + L_AB_SQUARED * m_2_leg4 + ia_1_leg4);
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
-            let tau_2_leg4 = parameters[56]
-                - (parameters[54] * minus_qd_2_leg4
-                    + ::overact::math::wide::signed(
-                        parameters[55],
-                        minus_qd_2_leg4,
-                    ));
+            let fv_2_leg4 = parameters[54];
+            let fs_2_leg4 = parameters[55];
+            let off_2_leg4 = parameters[56];
+            let tau_2_leg4 = off_2_leg4
+                - (fv_2_leg4 * minus_qd_2_leg4
+                    + math::wide::signed(fs_2_leg4, minus_qd_2_leg4));
             let force_on_u1_leg4 = t1_leg4 - tau_2_leg4;
             let a2_y_leg4 = s2_leg4 * l_ab_rate_1_squared_leg4
                 + v2_by_1_y_leg4 * rate_dot_1_leg4;
-            let moment2_z_leg4 = parameters[51] * a2_y_leg4
-                - parameters[52] * minus_a_on_f1_leg4
-                - parameters[50] * minus_rate_dot_2_leg4;
+            let zz_2_leg4 = parameters[50];
+            let moment2_z_leg4 = mx_2_leg4 * a2_y_leg4
+                - my_2_leg4 * minus_a_on_f1_leg4 - zz_2_leg4 * minus_rate_dot_2_leg4;
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
-            let tau_3_leg4 = parameters[57] * qd_3_leg4
-                + ::overact::math::wide::signed(parameters[58], qd_3_leg4)
-                + parameters[59];
+            let fv_3_leg4 = parameters[57];
+            let fs_3_leg4 = parameters[58];
+            let off_3_leg4 = parameters[59];
+            let tau_3_leg4 = fv_3_leg4 * qd_3_leg4
+                + math::wide::signed(fs_3_leg4, qd_3_leg4) + off_3_leg4;
             let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
-            let mass_platform = parameters[63] + parameters[67];
+            let m_platform = parameters[63];
+            let m_payload = parameters[67];
+            let mass_platform = m_platform + m_payload;
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let first_y_platform = parameters[62] + parameters[66];
+            let my_platform = parameters[62];
+            let my_payload = parameters[66];
+            let first_y_platform = my_platform + my_payload;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let first_x_platform = parameters[61] + parameters[65];
+            // --- platform
+            let mx_platform = parameters[61];
+            let mx_payload = parameters[65];
+            let first_x_platform = mx_platform + mx_payload;
             let force_x_platform = acceleration[0] * mass_platform
                 + inv_r_p_a_arm_x_leg1 * first_y_platform
                 - inv_r_p_a_arm_y_leg3 * first_x_platform;
@@ -10988,7 +10223,7 @@ impl DualV {
                 - minus_g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -11005,11 +10240,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
             let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
@@ -11036,7 +10267,9 @@ impl DualV {
                 - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
-            let inertia_zz_platform = parameters[60] + parameters[64];
+            let zz_platform = parameters[60];
+            let zz_payload = parameters[64];
+            let inertia_zz_platform = zz_platform + zz_payload;
             let moment_z_platform = acceleration[1]
                 * (c_phi * first_x_platform - s_phi * first_y_platform)
                 - acceleration[0]
@@ -11049,15 +10282,11 @@ impl DualV {
                 + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
                 + g1_wz_leg4 * g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let t3 = t2 / pivot_3;
             let t4 = t1 / pivot_2 - l_3_2 * t3;
             let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
                 g1_vx_leg2 * t5 + g1_vy_leg2 * t4 - minus_g1_wz_leg2 * t3,
                 g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
@@ -11080,15 +10309,15 @@ impl DualV {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        parameters: &[::core::primitive::f64; 68],
-        start: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        parameters: &[f64; 68],
+        start: &[f64; 3],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
@@ -11096,24 +10325,24 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / l_ab²
-            const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+            const INV_L_AB_SQUARED: f64 = 12.755102040816327;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// 1 / (2 l_ab)
-            const INV_TWICE_L_AB: ::core::primitive::f64 = 1.7857142857142858;
+            const INV_TWICE_L_AB: f64 = 1.7857142857142858;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
@@ -11129,59 +10358,59 @@ impl DualV {
             let d_y_leg1 = y_minus_half_d_y_leg3 + y_minus_half_d_y_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let t1_leg2 = 0.3950502153918333 + half_d_x_leg4_minus_p_x_leg3;
             let d_x_leg2 = t1_leg2 + t1_leg2;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = t1_leg2 - d_y_leg1 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             // --- leg1
             let l1_y_leg1 = y_minus_half_d_y_leg3 - d_x_leg1 * h_leg1;
@@ -11221,18 +10450,10 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let l_3_2 = schur_2_3 / pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let inv_pivot_3 = 1.0 / pivot_3;
             let t1 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -11248,7 +10469,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = inv_pivot_3 * t3;
-            ::overact::guard::size(wz, 1e60)?;
+            guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
@@ -11256,7 +10477,7 @@ impl DualV {
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let vy = t2 / pivot_2 - l_3_2 * wz;
-            ::overact::guard::size(vy, 1e60)?;
+            guard::size(vy, 1e60)?;
             let vx = inv_pivot_1 * t1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
@@ -11364,72 +10585,95 @@ impl DualV {
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
+            let ia_1_leg1 = parameters[1];
+            let fs_1_leg1 = parameters[3];
             let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + l_ab_squared_rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + l_ab_squared_rate_2_squared_leg1 * c2_leg1);
-            let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-                - rate_2_squared_leg1 * parameters[6];
-            let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
-                + rate_2_squared_leg1 * parameters[7];
+            let my_2_leg1 = parameters[7];
+            let mx_2_leg1 = parameters[6];
+            let force2_x_leg1 = my_2_leg1 * minus_rate_dot_2_leg1
+                - rate_2_squared_leg1 * mx_2_leg1;
+            let minus_force2_y_leg1 = mx_2_leg1 * minus_rate_dot_2_leg1
+                + rate_2_squared_leg1 * my_2_leg1;
+            let fv_1_leg1 = parameters[2];
+            let off_1_leg1 = parameters[4];
             let t3_leg1 = rate_dot_1_leg1
-                * (parameters[0] + L_AB_SQUARED * parameters[8] + parameters[1])
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+                * (zz_1_leg1 + L_AB_SQUARED * m_2_leg1 + ia_1_leg1)
+                + math::wide::signed(fs_1_leg1, rate_1_leg1)
                 + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-                + rate_1_leg1 * parameters[2] + parameters[4];
+                + rate_1_leg1 * fv_1_leg1 + off_1_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let tau_2_leg1 = parameters[11]
-                - (minus_qd_2_leg1 * parameters[9]
-                    + ::overact::math::wide::signed(
-                        parameters[10],
-                        minus_qd_2_leg1,
-                    ));
+            let fv_2_leg1 = parameters[9];
+            let fs_2_leg1 = parameters[10];
+            let off_2_leg1 = parameters[11];
+            let tau_2_leg1 = off_2_leg1
+                - (minus_qd_2_leg1 * fv_2_leg1
+                    + math::wide::signed(fs_2_leg1, minus_qd_2_leg1));
             let force_on_u1_leg1 = t3_leg1 - tau_2_leg1;
             let a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
                 + INV_TWICE_L_AB * (t1_leg1 * rate_dot_1_leg1);
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let moment2_z_leg1 = parameters[6] * a2_y_leg1
-                - parameters[7] * a2_x_leg1 - parameters[5] * minus_rate_dot_2_leg1;
+            let zz_2_leg1 = parameters[5];
+            let moment2_z_leg1 = mx_2_leg1 * a2_y_leg1 - my_2_leg1 * a2_x_leg1
+                - zz_2_leg1 * minus_rate_dot_2_leg1;
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            let tau_3_leg1 = qd_3_leg1 * parameters[12]
-                + ::overact::math::wide::signed(parameters[13], qd_3_leg1)
-                + parameters[14];
+            let fv_3_leg1 = parameters[12];
+            let fs_3_leg1 = parameters[13];
+            let off_3_leg1 = parameters[14];
+            let tau_3_leg1 = qd_3_leg1 * fv_3_leg1
+                + math::wide::signed(fs_3_leg1, qd_3_leg1) + off_3_leg1;
             let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
             // --- leg2
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + l_ab_squared_rate_1_squared_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + l_ab_squared_rate_2_squared_leg2 * c2_leg2);
+            let zz_2_leg2 = parameters[20];
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t3_leg2);
             let minus_a2_y_leg2 = INV_L_AB * (det_leg2 * rate_1_squared_leg2)
                 + INV_TWICE_L_AB * (t2_leg2 * minus_rate_dot_1_leg2);
+            let mx_2_leg2 = parameters[21];
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
-                - (parameters[21] * minus_a2_y_leg2 + parameters[22] * a2_x_leg2);
+            let my_2_leg2 = parameters[22];
+            let moment2_z_leg2 = zz_2_leg2 * rate_dot_2_leg2
+                - (mx_2_leg2 * minus_a2_y_leg2 + my_2_leg2 * a2_x_leg2);
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let tau_2_leg2 = qd_2_leg2 * parameters[24]
-                + ::overact::math::wide::signed(parameters[25], qd_2_leg2)
-                + parameters[26];
+            let fv_2_leg2 = parameters[24];
+            let fs_2_leg2 = parameters[25];
+            let off_2_leg2 = parameters[26];
+            let tau_2_leg2 = qd_2_leg2 * fv_2_leg2
+                + math::wide::signed(fs_2_leg2, qd_2_leg2) + off_2_leg2;
             let qd_3_leg2 = wz - rate_2_leg2;
-            let tau_3_leg2 = qd_3_leg2 * parameters[27]
-                + ::overact::math::wide::signed(parameters[28], qd_3_leg2)
-                + parameters[29];
+            let fv_3_leg2 = parameters[27];
+            let fs_3_leg2 = parameters[28];
+            let off_3_leg2 = parameters[29];
+            let tau_3_leg2 = qd_3_leg2 * fv_3_leg2
+                + math::wide::signed(fs_3_leg2, qd_3_leg2) + off_3_leg2;
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
+            let fs_1_leg2 = parameters[18];
             let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-            let minus_force2_x_leg2 = rate_2_squared_leg2 * parameters[21]
-                + parameters[22] * rate_dot_2_leg2;
-            let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
-                - rate_2_squared_leg2 * parameters[22];
+            let minus_force2_x_leg2 = rate_2_squared_leg2 * mx_2_leg2
+                + my_2_leg2 * rate_dot_2_leg2;
+            let force2_y_leg2 = mx_2_leg2 * rate_dot_2_leg2
+                - rate_2_squared_leg2 * my_2_leg2;
+            let off_1_leg2 = parameters[19];
+            let fv_1_leg2 = parameters[17];
+            let m_2_leg2 = parameters[23];
+            let zz_1_leg2 = parameters[15];
+            let ia_1_leg2 = parameters[16];
             let t4_leg2 = L_AB
                 * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
-                + parameters[19] - minus_rate_1_leg2 * parameters[17]
-                - ::overact::math::wide::signed(parameters[18], minus_rate_1_leg2)
+                + off_1_leg2 - minus_rate_1_leg2 * fv_1_leg2
+                - math::wide::signed(fs_1_leg2, minus_rate_1_leg2)
                 - minus_rate_dot_1_leg2
-                    * (parameters[15] + L_AB_SQUARED * parameters[23]
-                        + parameters[16]);
+                    * (zz_1_leg2 + L_AB_SQUARED * m_2_leg2 + ia_1_leg2);
             let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
             // --- leg3
             let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
@@ -11439,38 +10683,47 @@ impl DualV {
                 + l_ab_squared_rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + l_ab_squared_rate_2_squared_leg3 * c2_leg3);
-            let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
-                - rate_2_squared_leg3 * parameters[36];
-            let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
-                + rate_2_squared_leg3 * parameters[37];
+            let my_2_leg3 = parameters[37];
+            let mx_2_leg3 = parameters[36];
+            let force2_x_leg3 = my_2_leg3 * minus_rate_dot_2_leg3
+                - rate_2_squared_leg3 * mx_2_leg3;
+            let minus_force2_y_leg3 = mx_2_leg3 * minus_rate_dot_2_leg3
+                + rate_2_squared_leg3 * my_2_leg3;
+            let fv_1_leg3 = parameters[32];
+            let fs_1_leg3 = parameters[33];
+            let off_1_leg3 = parameters[34];
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t2_leg3);
-            let t3_leg3 = parameters[34]
+            let m_2_leg3 = parameters[38];
+            let zz_1_leg3 = parameters[30];
+            let ia_1_leg3 = parameters[31];
+            let t3_leg3 = off_1_leg3
                 + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-                + rate_1_leg3 * parameters[32]
-                + ::overact::math::wide::signed(parameters[33], rate_1_leg3)
+                + rate_1_leg3 * fv_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3)
                 + rate_dot_1_leg3
-                    * (parameters[30] + L_AB_SQUARED * parameters[38]
-                        + parameters[31]);
+                    * (zz_1_leg3 + L_AB_SQUARED * m_2_leg3 + ia_1_leg3);
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let tau_2_leg3 = parameters[41]
-                - (minus_qd_2_leg3 * parameters[39]
-                    + ::overact::math::wide::signed(
-                        parameters[40],
-                        minus_qd_2_leg3,
-                    ));
+            let fv_2_leg3 = parameters[39];
+            let fs_2_leg3 = parameters[40];
+            let off_2_leg3 = parameters[41];
+            let tau_2_leg3 = off_2_leg3
+                - (minus_qd_2_leg3 * fv_2_leg3
+                    + math::wide::signed(fs_2_leg3, minus_qd_2_leg3));
             let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
             let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
                 + INV_TWICE_L_AB * (t1_leg3 * rate_dot_1_leg3);
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            let moment2_z_leg3 = parameters[36] * a2_y_leg3
-                - parameters[37] * a2_x_leg3
-                - parameters[35] * minus_rate_dot_2_leg3;
+            let zz_2_leg3 = parameters[35];
+            let moment2_z_leg3 = mx_2_leg3 * a2_y_leg3 - my_2_leg3 * a2_x_leg3
+                - zz_2_leg3 * minus_rate_dot_2_leg3;
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let tau_3_leg3 = qd_3_leg3 * parameters[42]
-                + ::overact::math::wide::signed(parameters[43], qd_3_leg3)
-                + parameters[44];
+            let fv_3_leg3 = parameters[42];
+            let fs_3_leg3 = parameters[43];
+            let off_3_leg3 = parameters[44];
+            let tau_3_leg3 = qd_3_leg3 * fv_3_leg3
+                + math::wide::signed(fs_3_leg3, qd_3_leg3) + off_3_leg3;
             let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
             let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1
                 - minus_g2_vx_leg1 * force_on_u2_leg1 + g2_vx_leg2 * force_on_u2_leg2
@@ -11481,41 +10734,60 @@ impl DualV {
                 + l_ab_squared_rate_1_squared_leg4;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + l_ab_squared_rate_2_squared_leg4 * c2_leg4);
+            let zz_2_leg4 = parameters[50];
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
             let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
                 + INV_TWICE_L_AB * (t1_leg4 * minus_rate_dot_1_leg4);
+            let mx_2_leg4 = parameters[51];
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
-                - (parameters[51] * minus_a2_y_leg4 + parameters[52] * a2_x_leg4);
+            let my_2_leg4 = parameters[52];
+            let moment2_z_leg4 = zz_2_leg4 * rate_dot_2_leg4
+                - (mx_2_leg4 * minus_a2_y_leg4 + my_2_leg4 * a2_x_leg4);
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let tau_2_leg4 = qd_2_leg4 * parameters[54]
-                + ::overact::math::wide::signed(parameters[55], qd_2_leg4)
-                + parameters[56];
+            let fv_2_leg4 = parameters[54];
+            let fs_2_leg4 = parameters[55];
+            let off_2_leg4 = parameters[56];
+            let tau_2_leg4 = qd_2_leg4 * fv_2_leg4
+                + math::wide::signed(fs_2_leg4, qd_2_leg4) + off_2_leg4;
             let qd_3_leg4 = wz - rate_2_leg4;
-            let tau_3_leg4 = qd_3_leg4 * parameters[57]
-                + ::overact::math::wide::signed(parameters[58], qd_3_leg4)
-                + parameters[59];
+            let fv_3_leg4 = parameters[57];
+            let fs_3_leg4 = parameters[58];
+            let off_3_leg4 = parameters[59];
+            let tau_3_leg4 = qd_3_leg4 * fv_3_leg4
+                + math::wide::signed(fs_3_leg4, qd_3_leg4) + off_3_leg4;
             let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
+            let m_2_leg4 = parameters[53];
+            let zz_1_leg4 = parameters[45];
+            let ia_1_leg4 = parameters[46];
+            let fs_1_leg4 = parameters[48];
             let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-            let minus_force2_x_leg4 = rate_2_squared_leg4 * parameters[51]
-                + parameters[52] * rate_dot_2_leg4;
-            let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
-                - rate_2_squared_leg4 * parameters[52];
+            let minus_force2_x_leg4 = rate_2_squared_leg4 * mx_2_leg4
+                + my_2_leg4 * rate_dot_2_leg4;
+            let force2_y_leg4 = mx_2_leg4 * rate_dot_2_leg4
+                - rate_2_squared_leg4 * my_2_leg4;
+            let off_1_leg4 = parameters[49];
+            let fv_1_leg4 = parameters[47];
             let t3_leg4 = L_AB
                 * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
-                + parameters[49] - minus_rate_1_leg4 * parameters[47]
-                - ::overact::math::wide::signed(parameters[48], minus_rate_1_leg4)
+                + off_1_leg4 - minus_rate_1_leg4 * fv_1_leg4
+                - math::wide::signed(fs_1_leg4, minus_rate_1_leg4)
                 - minus_rate_dot_1_leg4
-                    * (parameters[45] + L_AB_SQUARED * parameters[53]
-                        + parameters[46]);
+                    * (zz_1_leg4 + L_AB_SQUARED * m_2_leg4 + ia_1_leg4);
             let force_on_u1_leg4 = t3_leg4 - tau_2_leg4;
-            let mass_platform = parameters[63] + parameters[67];
+            let m_platform = parameters[63];
+            let m_payload = parameters[67];
+            let mass_platform = m_platform + m_payload;
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let first_y_platform = parameters[62] + parameters[66];
+            let my_platform = parameters[62];
+            let my_payload = parameters[66];
+            let first_y_platform = my_platform + my_payload;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let first_x_platform = parameters[61] + parameters[65];
+            // --- platform
+            let mx_platform = parameters[61];
+            let mx_payload = parameters[65];
+            let first_x_platform = mx_platform + mx_payload;
             let force_x_platform = dvx * mass_platform
                 + inv_r_p_a_arm_x_leg1 * first_y_platform
                 - inv_r_p_a_arm_y_leg3 * first_x_platform;
@@ -11542,7 +10814,9 @@ impl DualV {
                 + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
                 - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let inertia_zz_platform = parameters[60] + parameters[64];
+            let zz_platform = parameters[60];
+            let zz_payload = parameters[64];
+            let inertia_zz_platform = zz_platform + zz_payload;
             let moment_z_platform = dvy
                 * (c_phi * first_x_platform - s_phi * first_y_platform)
                 - dvx * (s_phi * first_x_platform + c_phi * first_y_platform)
@@ -11551,12 +10825,12 @@ impl DualV {
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4
                 + moment_z_platform - l_3_1 * t1_platform - l_3_2 * t7;
             let t9 = inv_pivot_3 * t8;
-            ::overact::guard::size(t9, 1e60)?;
+            guard::size(t9, 1e60)?;
             let t10 = t7 / pivot_2 - l_3_2 * t9;
-            ::overact::guard::size(t10, 1e60)?;
+            guard::size(t10, 1e60)?;
             let t11 = inv_pivot_1 * t1_platform - l_2_1 * t10 - l_3_1 * t9;
-            ::overact::guard::size(t11, 1e60)?;
-            ::core::result::Result::Ok([
+            guard::size(t11, 1e60)?;
+            Ok([
                 g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
                 g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
                 g1_vx_leg3 * t11 + g1_vy_leg3 * t10 + g1_wz_leg3 * t9,
@@ -11580,14 +10854,14 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        base_parameters: &[::core::primitive::f64; 53],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        base_parameters: &[f64; 53],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("base_parameters", base_parameters, 1e12),
@@ -11595,53 +10869,58 @@ impl DualV {
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            acceleration: &'a [::core::primitive::f64; 3],
-            base_parameters: &'a [::core::primitive::f64; 53],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            acceleration: &'a [f64; 3],
+            base_parameters: &'a [f64; 53],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [::core::primitive::f64; 4],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[f64; 4], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, acceleration, base_parameters } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let t1_leg = s_phi * rate_3_squared_leg - c_phi * acceleration[2];
                 let t2_leg = c_phi * rate_3_squared_leg + s_phi * acceleration[2];
                 // --- platform
-                let mass_platform = base_parameters[3] + base_parameters[52];
-                let first_y_platform = base_parameters[2] + base_parameters[51];
-                let first_x_platform = base_parameters[1] + base_parameters[50];
+                let m_platformR = base_parameters[3];
+                let m_payload = base_parameters[52];
+                let mass_platform = m_platformR + m_payload;
+                let my_platformR = base_parameters[2];
+                let my_payload = base_parameters[51];
+                let first_y_platform = my_platformR + my_payload;
+                let mx_platform = base_parameters[1];
+                let mx_payload = base_parameters[50];
+                let first_x_platform = mx_platform + mx_payload;
                 let force_x_platform = acceleration[0] * mass_platform
                     + t1_leg * first_y_platform - t2_leg * first_x_platform;
                 let force_y_platform = acceleration[1] * mass_platform
                     - (t1_leg * first_x_platform + t2_leg * first_y_platform);
-                let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+                let zz_platformR = base_parameters[0];
+                let zz_payload = base_parameters[49];
+                let inertia_zz_platform = zz_platformR + zz_payload;
                 let moment_z_platform = acceleration[1]
                     * (c_phi * first_x_platform - s_phi * first_y_platform)
                     - acceleration[0]
                         * (s_phi * first_x_platform + c_phi * first_y_platform)
                     + acceleration[2] * inertia_zz_platform;
-                // --- what the legs add: a row for each number, in it one for each leg
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 9];
-                // --- what the legs need again when the sums are known
+                // --- values of the legs that are used after the sums
                 let mut own = [[0.0; 4]; 3];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -11654,63 +10933,29 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_base_parameters = [
-                        ::overact::simd::scattered(base_parameters, [4, 1], at),
-                        ::overact::simd::scattered(base_parameters, [24, 1], at),
-                        ::overact::simd::scattered(base_parameters, [8, 1], at),
-                        ::overact::simd::scattered(base_parameters, [12, 1], at),
-                        ::overact::simd::scattered(base_parameters, [16, 1], at),
-                        ::overact::simd::scattered(base_parameters, [28, 1], at),
-                        ::overact::simd::scattered(base_parameters, [32, 1], at),
-                        ::overact::simd::scattered(base_parameters, [36, 1], at),
-                        ::overact::simd::scattered(base_parameters, [20, 1], at),
-                        ::overact::simd::scattered(base_parameters, [40, 1], at),
-                        ::overact::simd::scattered(base_parameters, [44, 1], at),
-                        ::overact::simd::scattered_of_first(
-                            base_parameters,
-                            [48, 0],
-                            1,
-                            at,
-                        ),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
@@ -11738,140 +10983,112 @@ impl DualV {
                     let t3_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
                     let rate_dot_1_leg = k1_leg
                         * (minus_a_on_f1_leg + rate_1_squared_leg * t3_leg);
+                    let zz_1_leg1R = simd::scattered(base_parameters, [4, 1], at);
                     let a_on_f2_leg = l1_x_leg * a_end_x_leg + l1_y_leg * a_end_y_leg
                         + L_AB_SQUARED * rate_1_squared_leg;
-                    let t4_leg = own_base_parameters[1] * INV_L_AB;
-                    let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(own_base_parameters[3], rate_1_leg, at)
-                        + own_base_parameters[4];
+                    let my_2_leg = simd::scattered(base_parameters, [24, 1], at);
+                    let my_2_inv_l_ab_leg = my_2_leg * INV_L_AB;
+                    let fv_1_leg = simd::scattered(base_parameters, [8, 1], at);
+                    let fs_1_leg = simd::scattered(base_parameters, [12, 1], at);
+                    let off_1_leg1R = simd::scattered(base_parameters, [16, 1], at);
+                    let tau_1_leg = fv_1_leg * rate_1_leg
+                        + simd::signed(fs_1_leg, rate_1_leg, at) + off_1_leg1R;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let tau_2_leg = own_base_parameters[7]
-                        - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::simd::signed(
-                                own_base_parameters[6],
-                                minus_qd_2_leg,
-                                at,
-                            ));
-                    let force_on_u1_leg = own_base_parameters[0] * rate_dot_1_leg
-                        + a_on_f2_leg * t4_leg + tau_1_leg - tau_2_leg;
+                    let fv_2_leg = simd::scattered(base_parameters, [28, 1], at);
+                    let fs_2_leg = simd::scattered(base_parameters, [32, 1], at);
+                    let off_2_leg1R = simd::scattered(base_parameters, [36, 1], at);
+                    let tau_2_leg = off_2_leg1R
+                        - (fv_2_leg * minus_qd_2_leg
+                            + simd::signed(fs_2_leg, minus_qd_2_leg, at));
+                    let force_on_u1_leg = zz_1_leg1R * rate_dot_1_leg
+                        + a_on_f2_leg * my_2_inv_l_ab_leg + tau_1_leg - tau_2_leg;
                     let minus_rate_dot_2_leg = k1_leg
                         * (a_on_f2_leg + rate_2_squared_leg * t3_leg);
-                    let minus_moment2_z_leg = own_base_parameters[8]
-                        * minus_rate_dot_2_leg + minus_a_on_f1_leg * t4_leg;
+                    let zz_2_leg1R = simd::scattered(base_parameters, [20, 1], at);
+                    let minus_moment2_z_leg = zz_2_leg1R * minus_rate_dot_2_leg
+                        + minus_a_on_f1_leg * my_2_inv_l_ab_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
-                    let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
-                        + own_base_parameters[11];
+                    let fv_3_leg = simd::scattered(base_parameters, [40, 1], at);
+                    let fs_3_leg = simd::scattered(base_parameters, [44, 1], at);
+                    let off_3_leg1R = simd::scattered_of_first(
+                        base_parameters,
+                        [48, 0],
+                        1,
+                        at,
+                    );
+                    let tau_3_leg = fv_3_leg * qd_3_leg
+                        + simd::signed(fs_3_leg, qd_3_leg, at) + off_3_leg1R;
                     let force_on_u2_leg = tau_2_leg - minus_moment2_z_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     failed.result()?;
-                    ::overact::simd::put(
-                        &mut added[0],
-                        [0, 1],
-                        at,
-                        g1_vx_leg * g1_vx_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut added[1],
-                        [0, 1],
-                        at,
-                        g1_vx_leg * g1_vy_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut added[2],
-                        [0, 1],
-                        at,
-                        -(g1_vx_leg * minus_g1_wz_leg),
-                    );
-                    ::overact::simd::put(
-                        &mut added[3],
-                        [0, 1],
-                        at,
-                        g1_vy_leg * g1_vy_leg,
-                    );
-                    ::overact::simd::put(
-                        &mut added[4],
-                        [0, 1],
-                        at,
-                        -(g1_vy_leg * minus_g1_wz_leg),
-                    );
-                    ::overact::simd::put(
+                    simd::put(&mut added[0], [0, 1], at, g1_vx_leg * g1_vx_leg);
+                    simd::put(&mut added[1], [0, 1], at, g1_vx_leg * g1_vy_leg);
+                    simd::put(&mut added[2], [0, 1], at, -(g1_vx_leg * minus_g1_wz_leg));
+                    simd::put(&mut added[3], [0, 1], at, g1_vy_leg * g1_vy_leg);
+                    simd::put(&mut added[4], [0, 1], at, -(g1_vy_leg * minus_g1_wz_leg));
+                    simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         minus_g1_wz_leg * minus_g1_wz_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
                         g2_wz_leg * force_on_u2_leg - minus_g1_wz_leg * force_on_u1_leg
                             + tau_3_leg,
                     );
-                    ::overact::simd::put(&mut own[0], [0, 1], at, g1_vx_leg);
-                    ::overact::simd::put(&mut own[1], [0, 1], at, g1_vy_leg);
-                    ::overact::simd::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
+                    simd::put(&mut own[0], [0, 1], at, g1_vx_leg);
+                    simd::put(&mut own[1], [0, 1], at, g1_vy_leg);
+                    simd::put(&mut own[2], [0, 1], at, -minus_g1_wz_leg);
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    ::overact::simd::sum(&added[0]), ::overact::simd::sum(&added[1]),
-                    ::overact::simd::sum(&added[2]), ::overact::simd::sum(&added[3]),
-                    ::overact::simd::sum(&added[4]), ::overact::simd::sum(&added[5]),
-                    force_x_platform + ::overact::simd::sum(&added[6]),
-                    force_y_platform + ::overact::simd::sum(&added[7]),
-                    moment_z_platform + ::overact::simd::sum(&added[8]),
+                    simd::sum(&added[0]), simd::sum(&added[1]), simd::sum(&added[2]),
+                    simd::sum(&added[3]), simd::sum(&added[4]), simd::sum(&added[5]),
+                    force_x_platform + simd::sum(&added[6]),
+                    force_y_platform + simd::sum(&added[7]),
+                    moment_z_platform + simd::sum(&added[8]),
                 ];
                 let solution = {
-                    ::overact::guard::platform(
-                        sums[0],
-                        25.42916107675064,
-                        ::overact::ActuatorGroup::All,
-                    )?;
+                    guard::platform(sums[0], 25.42916107675064, ActuatorGroup::All)?;
                     let l_2_1 = sums[1] / sums[0];
                     let t1 = sums[7] - l_2_1 * sums[6];
                     let pivot_2 = sums[3] - sums[1] * l_2_1;
-                    ::overact::guard::platform(
-                        pivot_2,
-                        25.592368899353353,
-                        ::overact::ActuatorGroup::All,
-                    )?;
+                    guard::platform(pivot_2, 25.592368899353353, ActuatorGroup::All)?;
                     let l_3_1 = sums[2] / sums[0];
                     let schur_2_3 = sums[4] - sums[1] * l_3_1;
                     let l_3_2 = schur_2_3 / pivot_2;
                     let pivot_3 = sums[5] - sums[2] * l_3_1 - schur_2_3 * l_3_2;
-                    ::overact::guard::platform(
-                        pivot_3,
-                        0.3076928490286827,
-                        ::overact::ActuatorGroup::All,
-                    )?;
+                    guard::platform(pivot_3, 0.3076928490286827, ActuatorGroup::All)?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = t1 / pivot_2 - l_3_2 * t2;
-                    ::overact::guard::size(t3, 1e100)?;
+                    guard::size(t3, 1e100)?;
                     let t4 = sums[6] / sums[0] - l_2_1 * t3 - l_3_1 * t2;
-                    ::overact::guard::size(t4, 1e100)?;
-                    ::overact::guard::size(t2, 1e100)?;
+                    guard::size(t4, 1e100)?;
+                    guard::size(t2, 1e100)?;
                     [t4, t3, t2]
                 };
                 let mut output = [0.0; 4];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
+                for at in simd::places::<V, 4>(lanes) {
                     let own = [
-                        ::overact::simd::row(&own[0], at), ::overact::simd::row(&own[1], at),
-                        ::overact::simd::row(&own[2], at),
+                        simd::row(&own[0], at), simd::row(&own[1], at), simd::row(&own[2], at),
                     ];
-                    ::overact::simd::put(
+                    simd::put(
                         &mut output,
                         [0, 1],
                         at,
@@ -11879,10 +11096,10 @@ impl DualV {
                             + own[2] * solution[2],
                     );
                 }
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        ::overact::simd::few(Legs {
+        simd::few(Legs {
             pose,
             twist,
             acceleration,
@@ -11903,40 +11120,40 @@ impl DualV {
     /// 442 operations (187 additions, 245 multiplications, 10 divisions), 9 trigonometric pairs, 12 signs, 7 guards, 456 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_joints(
-        pose: &[::core::primitive::f64; 3],
-        joints: &[::core::primitive::f64; 12],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        base_parameters: &[::core::primitive::f64; 53],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        base_parameters: &[f64; 53],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             // --- sines and cosines
             let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
             (s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
-            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::wide::sin_cos_all([
+            (s2_leg3, c2_leg3), (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = math::wide::sin_cos_all([
                 joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
                 joints[9], joints[10],
             ]);
-            ::overact::guard::leg(s2_leg1, 1.0, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 1.0, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 1.0, "leg3")?;
-            ::overact::guard::leg(s2_leg4, 1.0, "leg4")?;
+            guard::leg(s2_leg1, 1.0, "leg1")?;
+            guard::leg(s2_leg2, 1.0, "leg2")?;
+            guard::leg(s2_leg3, 1.0, "leg3")?;
+            guard::leg(s2_leg4, 1.0, "leg4")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -11966,28 +11183,35 @@ impl DualV {
             let l_ab_rate_1_squared_leg1 = L_AB * rate_1_squared_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + c2_leg1 * l_ab_rate_1_squared_leg1);
+            let zz_1_leg1R = base_parameters[4];
             let a_on_f2_leg1 = c1_leg1 * a_end_x_leg1 + s1_leg1 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg1;
-            let tau_1_leg1 = base_parameters[8] * rate_1_leg1
-                + ::overact::math::wide::signed(base_parameters[12], rate_1_leg1)
-                + base_parameters[16];
+            let my_2_leg1 = base_parameters[24];
+            let fv_1_leg1 = base_parameters[8];
+            let fs_1_leg1 = base_parameters[12];
+            let off_1_leg1R = base_parameters[16];
+            let tau_1_leg1 = fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1R;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let tau_2_leg1 = base_parameters[36]
-                - (base_parameters[28] * minus_qd_2_leg1
-                    + ::overact::math::wide::signed(
-                        base_parameters[32],
-                        minus_qd_2_leg1,
-                    ));
-            let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
-                + base_parameters[24] * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
+            let fv_2_leg1 = base_parameters[28];
+            let fs_2_leg1 = base_parameters[32];
+            let off_2_leg1R = base_parameters[36];
+            let tau_2_leg1 = off_2_leg1R
+                - (fv_2_leg1 * minus_qd_2_leg1
+                    + math::wide::signed(fs_2_leg1, minus_qd_2_leg1));
+            let force_on_u1_leg1 = zz_1_leg1R * rate_dot_1_leg1
+                + my_2_leg1 * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + l_ab_rate_2_squared_leg1 * c2_leg1);
-            let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
-                + base_parameters[24] * minus_a_on_f1_leg1;
+            let zz_2_leg1R = base_parameters[20];
+            let minus_moment2_z_leg1 = zz_2_leg1R * minus_rate_dot_2_leg1
+                + my_2_leg1 * minus_a_on_f1_leg1;
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let tau_3_leg1 = base_parameters[40] * qd_3_leg1
-                + ::overact::math::wide::signed(base_parameters[44], qd_3_leg1)
-                + base_parameters[48];
+            let fv_3_leg1 = base_parameters[40];
+            let fs_3_leg1 = base_parameters[44];
+            let off_3_leg1R = base_parameters[48];
+            let tau_3_leg1 = fv_3_leg1 * qd_3_leg1
+                + math::wide::signed(fs_3_leg1, qd_3_leg1) + off_3_leg1R;
             let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -12008,27 +11232,34 @@ impl DualV {
             let l_ab_rate_1_squared_leg2 = L_AB * rate_1_squared_leg2;
             let rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + c2_leg2 * l_ab_rate_1_squared_leg2);
+            let zz_1_leg2R = base_parameters[5];
             let a_on_f2_leg2 = c1_leg2 * a_end_x_leg1 + s1_leg2 * a_end_y_leg1
                 + l_ab_rate_1_squared_leg2;
-            let tau_1_leg2 = base_parameters[9] * rate_1_leg2
-                + ::overact::math::wide::signed(base_parameters[13], rate_1_leg2)
-                + base_parameters[17];
+            let my_2_leg2 = base_parameters[25];
+            let fv_1_leg2 = base_parameters[9];
+            let fs_1_leg2 = base_parameters[13];
+            let off_1_leg2R = base_parameters[17];
+            let tau_1_leg2 = fv_1_leg2 * rate_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2) + off_1_leg2R;
             let minus_qd_2_leg2 = rate_1_leg2 + minus_rate_2_leg2;
-            let tau_2_leg2 = base_parameters[37]
-                - (base_parameters[29] * minus_qd_2_leg2
-                    + ::overact::math::wide::signed(
-                        base_parameters[33],
-                        minus_qd_2_leg2,
-                    ));
-            let force_on_u1_leg2 = base_parameters[5] * rate_dot_1_leg2
-                + base_parameters[25] * a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+            let fv_2_leg2 = base_parameters[29];
+            let fs_2_leg2 = base_parameters[33];
+            let off_2_leg2R = base_parameters[37];
+            let tau_2_leg2 = off_2_leg2R
+                - (fv_2_leg2 * minus_qd_2_leg2
+                    + math::wide::signed(fs_2_leg2, minus_qd_2_leg2));
+            let force_on_u1_leg2 = zz_1_leg2R * rate_dot_1_leg2
+                + my_2_leg2 * a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
             let minus_rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + l_ab_rate_2_squared_leg2 * c2_leg2);
-            let minus_moment2_z_leg2 = base_parameters[21] * minus_rate_dot_2_leg2
-                + base_parameters[25] * minus_a_on_f1_leg2;
+            let zz_2_leg2R = base_parameters[21];
+            let minus_moment2_z_leg2 = zz_2_leg2R * minus_rate_dot_2_leg2
+                + my_2_leg2 * minus_a_on_f1_leg2;
             let qd_3_leg2 = minus_rate_2_leg2 + twist[2];
-            let tau_3_leg2 = base_parameters[41] * qd_3_leg2
-                + ::overact::math::wide::signed(base_parameters[45], qd_3_leg2);
+            let fv_3_leg2 = base_parameters[41];
+            let fs_3_leg2 = base_parameters[45];
+            let tau_3_leg2 = fv_3_leg2 * qd_3_leg2
+                + math::wide::signed(fs_3_leg2, qd_3_leg2);
             let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2 - tau_3_leg2;
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
@@ -12053,27 +11284,34 @@ impl DualV {
             let l_ab_rate_1_squared_leg3 = L_AB * rate_1_squared_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + c2_leg3 * l_ab_rate_1_squared_leg3);
+            let zz_1_leg3R = base_parameters[6];
             let a_on_f2_leg3 = c1_leg3 * a_end_x_leg3 + s1_leg3 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg3;
-            let tau_1_leg3 = base_parameters[10] * rate_1_leg3
-                + ::overact::math::wide::signed(base_parameters[14], rate_1_leg3)
-                + base_parameters[18];
+            let my_2_leg3 = base_parameters[26];
+            let fv_1_leg3 = base_parameters[10];
+            let fs_1_leg3 = base_parameters[14];
+            let off_1_leg3R = base_parameters[18];
+            let tau_1_leg3 = fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3R;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let tau_2_leg3 = base_parameters[38]
-                - (base_parameters[30] * minus_qd_2_leg3
-                    + ::overact::math::wide::signed(
-                        base_parameters[34],
-                        minus_qd_2_leg3,
-                    ));
-            let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
-                + base_parameters[26] * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+            let fv_2_leg3 = base_parameters[30];
+            let fs_2_leg3 = base_parameters[34];
+            let off_2_leg3R = base_parameters[38];
+            let tau_2_leg3 = off_2_leg3R
+                - (fv_2_leg3 * minus_qd_2_leg3
+                    + math::wide::signed(fs_2_leg3, minus_qd_2_leg3));
+            let force_on_u1_leg3 = zz_1_leg3R * rate_dot_1_leg3
+                + my_2_leg3 * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + l_ab_rate_2_squared_leg3 * c2_leg3);
-            let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
-                + base_parameters[26] * minus_a_on_f1_leg3;
+            let zz_2_leg3R = base_parameters[22];
+            let minus_moment2_z_leg3 = zz_2_leg3R * minus_rate_dot_2_leg3
+                + my_2_leg3 * minus_a_on_f1_leg3;
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            let tau_3_leg3 = base_parameters[42] * qd_3_leg3
-                + ::overact::math::wide::signed(base_parameters[46], qd_3_leg3);
+            let fv_3_leg3 = base_parameters[42];
+            let fs_3_leg3 = base_parameters[46];
+            let tau_3_leg3 = fv_3_leg3 * qd_3_leg3
+                + math::wide::signed(fs_3_leg3, qd_3_leg3);
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
             let t1_leg3 = g1_vx_leg1 * force_on_u1_leg1
                 - minus_g2_vx_leg1 * force_on_u2_leg1 + g1_vx_leg2 * force_on_u1_leg2
@@ -12098,33 +11336,47 @@ impl DualV {
             let l_ab_rate_1_squared_leg4 = L_AB * rate_1_squared_leg4;
             let rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + c2_leg4 * l_ab_rate_1_squared_leg4);
+            let zz_1_leg4R = base_parameters[7];
             let a_on_f2_leg4 = c1_leg4 * a_end_x_leg3 + s1_leg4 * a_end_y_leg3
                 + l_ab_rate_1_squared_leg4;
-            let tau_1_leg4 = base_parameters[11] * rate_1_leg4
-                + ::overact::math::wide::signed(base_parameters[15], rate_1_leg4)
-                + base_parameters[19];
+            let my_2_leg4 = base_parameters[27];
+            let fv_1_leg4 = base_parameters[11];
+            let fs_1_leg4 = base_parameters[15];
+            let off_1_leg4R = base_parameters[19];
+            let tau_1_leg4 = fv_1_leg4 * rate_1_leg4
+                + math::wide::signed(fs_1_leg4, rate_1_leg4) + off_1_leg4R;
             let minus_qd_2_leg4 = rate_1_leg4 + minus_rate_2_leg4;
-            let tau_2_leg4 = base_parameters[39]
-                - (base_parameters[31] * minus_qd_2_leg4
-                    + ::overact::math::wide::signed(
-                        base_parameters[35],
-                        minus_qd_2_leg4,
-                    ));
-            let force_on_u1_leg4 = base_parameters[7] * rate_dot_1_leg4
-                + base_parameters[27] * a_on_f2_leg4 + tau_1_leg4 - tau_2_leg4;
+            let fv_2_leg4 = base_parameters[31];
+            let fs_2_leg4 = base_parameters[35];
+            let off_2_leg4R = base_parameters[39];
+            let tau_2_leg4 = off_2_leg4R
+                - (fv_2_leg4 * minus_qd_2_leg4
+                    + math::wide::signed(fs_2_leg4, minus_qd_2_leg4));
+            let force_on_u1_leg4 = zz_1_leg4R * rate_dot_1_leg4
+                + my_2_leg4 * a_on_f2_leg4 + tau_1_leg4 - tau_2_leg4;
             let minus_rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + l_ab_rate_2_squared_leg4 * c2_leg4);
-            let minus_moment2_z_leg4 = base_parameters[23] * minus_rate_dot_2_leg4
-                + base_parameters[27] * minus_a_on_f1_leg4;
+            let zz_2_leg4R = base_parameters[23];
+            let minus_moment2_z_leg4 = zz_2_leg4R * minus_rate_dot_2_leg4
+                + my_2_leg4 * minus_a_on_f1_leg4;
             let qd_3_leg4 = minus_rate_2_leg4 + twist[2];
-            let tau_3_leg4 = base_parameters[43] * qd_3_leg4
-                + ::overact::math::wide::signed(base_parameters[47], qd_3_leg4);
+            let fv_3_leg4 = base_parameters[43];
+            let fs_3_leg4 = base_parameters[47];
+            let tau_3_leg4 = fv_3_leg4 * qd_3_leg4
+                + math::wide::signed(fs_3_leg4, qd_3_leg4);
             let force_on_u2_leg4 = tau_2_leg4 - minus_moment2_z_leg4 - tau_3_leg4;
-            let mass_platform = base_parameters[3] + base_parameters[52];
+            let m_platformR = base_parameters[3];
+            let m_payload = base_parameters[52];
+            let mass_platform = m_platformR + m_payload;
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let first_y_platform = base_parameters[2] + base_parameters[51];
+            let my_platformR = base_parameters[2];
+            let my_payload = base_parameters[51];
+            let first_y_platform = my_platformR + my_payload;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let first_x_platform = base_parameters[1] + base_parameters[50];
+            // --- platform
+            let mx_platform = base_parameters[1];
+            let mx_payload = base_parameters[50];
+            let first_x_platform = mx_platform + mx_payload;
             let force_x_platform = acceleration[0] * mass_platform
                 + inv_r_p_a_arm_x_leg1 * first_y_platform
                 - inv_r_p_a_arm_y_leg3 * first_x_platform;
@@ -12132,7 +11384,7 @@ impl DualV {
                 - minus_g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -12149,11 +11401,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let minus_g1_wz_leg1 = g1_vy_leg1 * p_x_leg3 + g1_vx_leg1 * p_y_leg1;
             let minus_g1_wz_leg2 = p_x_leg3 * g1_vy_leg2 + p_y_leg1 * g1_vx_leg2;
@@ -12180,7 +11428,9 @@ impl DualV {
                 - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
             let minus_g2_wz_leg4 = p_x_leg3 * minus_g2_vy_leg4
                 + p_y_leg1 * minus_g2_vx_leg4;
-            let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+            let zz_platformR = base_parameters[0];
+            let zz_payload = base_parameters[49];
+            let inertia_zz_platform = zz_platformR + zz_payload;
             let moment_z_platform = acceleration[1]
                 * (c_phi * first_x_platform - s_phi * first_y_platform)
                 - acceleration[0]
@@ -12193,15 +11443,11 @@ impl DualV {
                 + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
                 + g1_wz_leg4 * g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let t3 = t2 / pivot_3;
             let t4 = t1 / pivot_2 - l_3_2 * t3;
             let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
                 g1_vx_leg2 * t5 + g1_vy_leg2 * t4 - minus_g1_wz_leg2 * t3,
                 g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
@@ -12224,15 +11470,15 @@ impl DualV {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 209 operations (86 additions, 112 multiplications, 11 divisions), 4 square roots, 5 trigonometric pairs, 4 arc tangents, 16 guards, 218 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_actuators(
-        actuators: &[::core::primitive::f64; 4],
-        actuator_velocities: &[::core::primitive::f64; 4],
-        actuator_accelerations: &[::core::primitive::f64; 4],
-        base_parameters: &[::core::primitive::f64; 53],
-        start: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        base_parameters: &[f64; 53],
+        start: &[f64; 3],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
@@ -12240,18 +11486,18 @@ impl DualV {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
@@ -12265,14 +11511,14 @@ impl DualV {
             let d_y_leg1 = pose[1] + t1_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let half_d_y_leg1 = 0.5 * d_y_leg1;
@@ -12286,14 +11532,14 @@ impl DualV {
             let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
             let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
             let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
@@ -12306,14 +11552,14 @@ impl DualV {
             let half_d_y_leg3 = 0.5 * d_y_leg3;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
             let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
             let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
@@ -12322,14 +11568,14 @@ impl DualV {
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             // --- leg4
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
             let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
@@ -12344,7 +11590,7 @@ impl DualV {
                 + minus_g1_vx_leg4 * minus_g1_wz_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let l_3_1 = s_1_3 / s_1_1;
             let s_2_3 = g1_vy_leg3 * g1_wz_leg3
                 - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
@@ -12356,19 +11602,11 @@ impl DualV {
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let l_3_2 = schur_2_3 * inv_pivot_2;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let inv_pivot_3 = 1.0 / pivot_3;
             let t1 = g1_vx_leg1 * actuator_velocities[0]
                 - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -12384,7 +11622,7 @@ impl DualV {
                 - minus_g1_wz_leg4 * actuator_velocities[3] - l_3_1 * t1
                 - l_3_2 * t2;
             let wz = inv_pivot_3 * t3;
-            ::overact::guard::size(wz, 1e60)?;
+            guard::size(wz, 1e60)?;
             // --- leg1
             let v_arm_x_leg3 = p_y_leg1 * wz;
             let bias_a_end_y_leg3 = wz * v_arm_x_leg3;
@@ -12392,7 +11630,7 @@ impl DualV {
             let bias_a_end_x_leg1 = wz * v_arm_y_leg3;
             let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
             let vy = inv_pivot_2 * t2 - l_3_2 * wz;
-            ::overact::guard::size(vy, 1e60)?;
+            guard::size(vy, 1e60)?;
             let vx = t1 / s_1_1 - l_2_1 * vy - l_3_1 * wz;
             let v_end_x_leg1 = vx - v_arm_x_leg3;
             let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
@@ -12488,86 +11726,106 @@ impl DualV {
             let minus_a_on_f1_leg1 = l2_x_leg1 * a_end_x_leg1
                 + l2_y_leg1 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg1;
             let rate_dot_1_leg1 = k1_leg1 * (minus_a_on_f1_leg1 + t2_leg1);
+            let zz_1_leg1R = base_parameters[4];
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
-            let my_2_leg1_inv_l_ab = base_parameters[24] * INV_L_AB;
-            let tau_1_leg1 = rate_1_leg1 * base_parameters[8]
-                + ::overact::math::wide::signed(base_parameters[12], rate_1_leg1)
-                + base_parameters[16];
+            let my_2_leg1 = base_parameters[24];
+            let my_2_inv_l_ab_leg1 = my_2_leg1 * INV_L_AB;
+            let fv_1_leg1 = base_parameters[8];
+            let fs_1_leg1 = base_parameters[12];
+            let off_1_leg1R = base_parameters[16];
+            let tau_1_leg1 = rate_1_leg1 * fv_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1R;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let tau_2_leg1 = base_parameters[36]
-                - (minus_qd_2_leg1 * base_parameters[28]
-                    + ::overact::math::wide::signed(
-                        base_parameters[32],
-                        minus_qd_2_leg1,
-                    ));
-            let force_on_u1_leg1 = base_parameters[4] * rate_dot_1_leg1
-                + a_on_f2_leg1 * my_2_leg1_inv_l_ab + tau_1_leg1 - tau_2_leg1;
+            let fv_2_leg1 = base_parameters[28];
+            let fs_2_leg1 = base_parameters[32];
+            let off_2_leg1R = base_parameters[36];
+            let tau_2_leg1 = off_2_leg1R
+                - (minus_qd_2_leg1 * fv_2_leg1
+                    + math::wide::signed(fs_2_leg1, minus_qd_2_leg1));
+            let force_on_u1_leg1 = zz_1_leg1R * rate_dot_1_leg1
+                + a_on_f2_leg1 * my_2_inv_l_ab_leg1 + tau_1_leg1 - tau_2_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let minus_moment2_z_leg1 = base_parameters[20] * minus_rate_dot_2_leg1
-                + minus_a_on_f1_leg1 * my_2_leg1_inv_l_ab;
+            let zz_2_leg1R = base_parameters[20];
+            let minus_moment2_z_leg1 = zz_2_leg1R * minus_rate_dot_2_leg1
+                + minus_a_on_f1_leg1 * my_2_inv_l_ab_leg1;
             let qd_3_leg1 = minus_rate_2_leg1 + wz;
-            let tau_3_leg1 = qd_3_leg1 * base_parameters[40]
-                + ::overact::math::wide::signed(base_parameters[44], qd_3_leg1)
-                + base_parameters[48];
+            let fv_3_leg1 = base_parameters[40];
+            let fs_3_leg1 = base_parameters[44];
+            let off_3_leg1R = base_parameters[48];
+            let tau_3_leg1 = qd_3_leg1 * fv_3_leg1
+                + math::wide::signed(fs_3_leg1, qd_3_leg1) + off_3_leg1R;
             let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
             // --- leg2
             let a_on_f2_leg2 = l1_x_leg2 * a_end_x_leg1 + l1_y_leg2 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t1_leg2);
+            let zz_2_leg2R = base_parameters[21];
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + l_ab_squared_rate_2_squared_leg2;
-            let inv_l_ab_my_2_leg2 = INV_L_AB * base_parameters[25];
-            let moment2_z_leg2 = base_parameters[21] * rate_dot_2_leg2
+            let my_2_leg2 = base_parameters[25];
+            let inv_l_ab_my_2_leg2 = INV_L_AB * my_2_leg2;
+            let moment2_z_leg2 = zz_2_leg2R * rate_dot_2_leg2
                 - minus_a_on_f1_leg2 * inv_l_ab_my_2_leg2;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let tau_2_leg2 = qd_2_leg2 * base_parameters[29]
-                + ::overact::math::wide::signed(base_parameters[33], qd_2_leg2)
-                + base_parameters[37];
+            let fv_2_leg2 = base_parameters[29];
+            let fs_2_leg2 = base_parameters[33];
+            let off_2_leg2R = base_parameters[37];
+            let tau_2_leg2 = qd_2_leg2 * fv_2_leg2
+                + math::wide::signed(fs_2_leg2, qd_2_leg2) + off_2_leg2R;
             let qd_3_leg2 = wz - rate_2_leg2;
-            let tau_3_leg2 = qd_3_leg2 * base_parameters[41]
-                + ::overact::math::wide::signed(base_parameters[45], qd_3_leg2);
+            let fv_3_leg2 = base_parameters[41];
+            let fs_3_leg2 = base_parameters[45];
+            let tau_3_leg2 = qd_3_leg2 * fv_3_leg2
+                + math::wide::signed(fs_3_leg2, qd_3_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
             let minus_rate_dot_1_leg2 = k1_leg2 * (minus_a_on_f1_leg2 + t2_leg2);
-            let tau_1_leg2 = base_parameters[17]
-                - (minus_rate_1_leg2 * base_parameters[9]
-                    + ::overact::math::wide::signed(
-                        base_parameters[13],
-                        minus_rate_1_leg2,
-                    ));
+            let zz_1_leg2R = base_parameters[5];
+            let fv_1_leg2 = base_parameters[9];
+            let fs_1_leg2 = base_parameters[13];
+            let off_1_leg2R = base_parameters[17];
+            let tau_1_leg2 = off_1_leg2R
+                - (minus_rate_1_leg2 * fv_1_leg2
+                    + math::wide::signed(fs_1_leg2, minus_rate_1_leg2));
             let force_on_u1_leg2 = a_on_f2_leg2 * inv_l_ab_my_2_leg2
-                - base_parameters[5] * minus_rate_dot_1_leg2 + tau_1_leg2
-                - tau_2_leg2;
+                - zz_1_leg2R * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
             // --- leg3
             let a_end_x_leg3 = dvx - a_arm_x_leg1;
             let a_end_y_leg3 = dvy + a_arm_y_leg3;
             let minus_a_on_f1_leg3 = l2_x_leg3 * a_end_x_leg3
                 + l2_y_leg3 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg3;
             let rate_dot_1_leg3 = k1_leg3 * (minus_a_on_f1_leg3 + t3_leg3);
+            let zz_1_leg3R = base_parameters[6];
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
-            let inv_l_ab_my_2_leg3 = INV_L_AB * base_parameters[26];
-            let tau_1_leg3 = rate_1_leg3 * base_parameters[10]
-                + ::overact::math::wide::signed(base_parameters[14], rate_1_leg3)
-                + base_parameters[18];
+            let my_2_leg3 = base_parameters[26];
+            let inv_l_ab_my_2_leg3 = INV_L_AB * my_2_leg3;
+            let fv_1_leg3 = base_parameters[10];
+            let fs_1_leg3 = base_parameters[14];
+            let off_1_leg3R = base_parameters[18];
+            let tau_1_leg3 = rate_1_leg3 * fv_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3R;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let tau_2_leg3 = base_parameters[38]
-                - (minus_qd_2_leg3 * base_parameters[30]
-                    + ::overact::math::wide::signed(
-                        base_parameters[34],
-                        minus_qd_2_leg3,
-                    ));
-            let force_on_u1_leg3 = base_parameters[6] * rate_dot_1_leg3
+            let fv_2_leg3 = base_parameters[30];
+            let fs_2_leg3 = base_parameters[34];
+            let off_2_leg3R = base_parameters[38];
+            let tau_2_leg3 = off_2_leg3R
+                - (minus_qd_2_leg3 * fv_2_leg3
+                    + math::wide::signed(fs_2_leg3, minus_qd_2_leg3));
+            let force_on_u1_leg3 = zz_1_leg3R * rate_dot_1_leg3
                 + a_on_f2_leg3 * inv_l_ab_my_2_leg3 + tau_1_leg3 - tau_2_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-            let minus_moment2_z_leg3 = base_parameters[22] * minus_rate_dot_2_leg3
+            let zz_2_leg3R = base_parameters[22];
+            let minus_moment2_z_leg3 = zz_2_leg3R * minus_rate_dot_2_leg3
                 + minus_a_on_f1_leg3 * inv_l_ab_my_2_leg3;
             let qd_3_leg3 = minus_rate_2_leg3 + wz;
-            let tau_3_leg3 = qd_3_leg3 * base_parameters[42]
-                + ::overact::math::wide::signed(base_parameters[46], qd_3_leg3);
+            let fv_3_leg3 = base_parameters[42];
+            let fs_3_leg3 = base_parameters[46];
+            let tau_3_leg3 = qd_3_leg3 * fv_3_leg3
+                + math::wide::signed(fs_3_leg3, qd_3_leg3);
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3 - tau_3_leg3;
             let t4_leg3 = g1_vx_leg1 * force_on_u1_leg1
                 - minus_g2_vx_leg1 * force_on_u2_leg1 + g2_vx_leg2 * force_on_u2_leg2
@@ -12578,34 +11836,47 @@ impl DualV {
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t1_leg4);
+            let zz_2_leg4R = base_parameters[23];
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
                 + l2_y_leg4 * a_end_y_leg3 + l_ab_squared_rate_2_squared_leg4;
-            let inv_l_ab_my_2_leg4 = INV_L_AB * base_parameters[27];
-            let moment2_z_leg4 = base_parameters[23] * rate_dot_2_leg4
+            let my_2_leg4 = base_parameters[27];
+            let inv_l_ab_my_2_leg4 = INV_L_AB * my_2_leg4;
+            let moment2_z_leg4 = zz_2_leg4R * rate_dot_2_leg4
                 - minus_a_on_f1_leg4 * inv_l_ab_my_2_leg4;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let tau_2_leg4 = qd_2_leg4 * base_parameters[31]
-                + ::overact::math::wide::signed(base_parameters[35], qd_2_leg4)
-                + base_parameters[39];
+            let fv_2_leg4 = base_parameters[31];
+            let fs_2_leg4 = base_parameters[35];
+            let off_2_leg4R = base_parameters[39];
+            let tau_2_leg4 = qd_2_leg4 * fv_2_leg4
+                + math::wide::signed(fs_2_leg4, qd_2_leg4) + off_2_leg4R;
             let qd_3_leg4 = wz - rate_2_leg4;
-            let tau_3_leg4 = qd_3_leg4 * base_parameters[43]
-                + ::overact::math::wide::signed(base_parameters[47], qd_3_leg4);
+            let fv_3_leg4 = base_parameters[43];
+            let fs_3_leg4 = base_parameters[47];
+            let tau_3_leg4 = qd_3_leg4 * fv_3_leg4
+                + math::wide::signed(fs_3_leg4, qd_3_leg4);
             let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
             let minus_rate_dot_1_leg4 = k1_leg4 * (minus_a_on_f1_leg4 + t2_leg4);
-            let tau_1_leg4 = base_parameters[19]
-                - (minus_rate_1_leg4 * base_parameters[11]
-                    + ::overact::math::wide::signed(
-                        base_parameters[15],
-                        minus_rate_1_leg4,
-                    ));
+            let zz_1_leg4R = base_parameters[7];
+            let fv_1_leg4 = base_parameters[11];
+            let fs_1_leg4 = base_parameters[15];
+            let off_1_leg4R = base_parameters[19];
+            let tau_1_leg4 = off_1_leg4R
+                - (minus_rate_1_leg4 * fv_1_leg4
+                    + math::wide::signed(fs_1_leg4, minus_rate_1_leg4));
             let force_on_u1_leg4 = a_on_f2_leg4 * inv_l_ab_my_2_leg4
-                - base_parameters[7] * minus_rate_dot_1_leg4 + tau_1_leg4
-                - tau_2_leg4;
-            let mass_platform = base_parameters[3] + base_parameters[52];
+                - zz_1_leg4R * minus_rate_dot_1_leg4 + tau_1_leg4 - tau_2_leg4;
+            let m_platformR = base_parameters[3];
+            let m_payload = base_parameters[52];
+            let mass_platform = m_platformR + m_payload;
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let first_y_platform = base_parameters[2] + base_parameters[51];
+            let my_platformR = base_parameters[2];
+            let my_payload = base_parameters[51];
+            let first_y_platform = my_platformR + my_payload;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let first_x_platform = base_parameters[1] + base_parameters[50];
+            // --- platform
+            let mx_platform = base_parameters[1];
+            let mx_payload = base_parameters[50];
+            let first_x_platform = mx_platform + mx_payload;
             let force_x_platform = dvx * mass_platform
                 + inv_r_p_a_arm_x_leg1 * first_y_platform
                 - inv_r_p_a_arm_y_leg3 * first_x_platform;
@@ -12632,7 +11903,9 @@ impl DualV {
                 + tau_3_leg2 + g1_wz_leg3 * force_on_u1_leg3
                 - minus_g2_wz_leg3 * force_on_u2_leg3 + tau_3_leg3;
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
-            let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+            let zz_platformR = base_parameters[0];
+            let zz_payload = base_parameters[49];
+            let inertia_zz_platform = zz_platformR + zz_payload;
             let moment_z_platform = dvy
                 * (c_phi * first_x_platform - s_phi * first_y_platform)
                 - dvx * (s_phi * first_x_platform + c_phi * first_y_platform)
@@ -12641,12 +11914,12 @@ impl DualV {
                 - minus_g1_wz_leg4 * force_on_u1_leg4 + tau_3_leg4
                 + moment_z_platform - l_3_1 * t1_platform - l_3_2 * t7;
             let t9 = inv_pivot_3 * t8;
-            ::overact::guard::size(t9, 1e60)?;
+            guard::size(t9, 1e60)?;
             let t10 = inv_pivot_2 * t7 - l_3_2 * t9;
-            ::overact::guard::size(t10, 1e60)?;
+            guard::size(t10, 1e60)?;
             let t11 = t1_platform / s_1_1 - l_2_1 * t10 - l_3_1 * t9;
-            ::overact::guard::size(t11, 1e60)?;
-            ::core::result::Result::Ok([
+            guard::size(t11, 1e60)?;
+            Ok([
                 g1_vx_leg1 * t11 + g1_vy_leg1 * t10 - minus_g1_wz_leg1 * t9,
                 g1_wz_leg2 * t9 - (minus_g1_vx_leg2 * t11 + minus_g1_vy_leg2 * t10),
                 g1_vx_leg3 * t11 + g1_vy_leg3 * t10 + g1_wz_leg3 * t9,
@@ -12668,49 +11941,52 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix(
-        pose: &[::core::primitive::f64; 3],
-        parameters: &[::core::primitive::f64; 68],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
-        ::overact::guard::within(
-            &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
-        )?;
+        pose: &[f64; 3],
+        parameters: &[f64; 68],
+    ) -> Result<[[f64; 3]; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("parameters", parameters, 1e12)])?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            parameters: &'a [::core::primitive::f64; 68],
+            pose: &'a [f64; 3],
+            parameters: &'a [f64; 68],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [[::core::primitive::f64; 3]; 3],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[[f64; 3]; 3], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, parameters } = self;
                 /// 1 / l_ab²
-                const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+                const INV_L_AB_SQUARED: f64 = 12.755102040816327;
                 /// l_ab = l_bc
-                const L_AB: ::core::primitive::f64 = 0.28;
+                const L_AB: f64 = 0.28;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 // --- platform
-                let mass_platform = parameters[63] + parameters[67];
-                let first_x_platform = parameters[61] + parameters[65];
-                let first_y_platform = parameters[62] + parameters[66];
-                let inertia_zz_platform = parameters[60] + parameters[64];
-                // --- what the legs add: a row for each number, in it one for each leg
+                let m_platform = parameters[63];
+                let m_payload = parameters[67];
+                let mass_platform = m_platform + m_payload;
+                let mx_platform = parameters[61];
+                let mx_payload = parameters[65];
+                let first_x_platform = mx_platform + mx_payload;
+                let my_platform = parameters[62];
+                let my_payload = parameters[66];
+                let first_y_platform = my_platform + my_payload;
+                let zz_platform = parameters[60];
+                let zz_payload = parameters[64];
+                let inertia_zz_platform = zz_platform + zz_payload;
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 6];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -12723,80 +11999,59 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_parameters = [
-                        ::overact::simd::scattered(parameters, [8, 15], at),
-                        ::overact::simd::scattered(parameters, [0, 15], at),
-                        ::overact::simd::scattered(parameters, [1, 15], at),
-                        ::overact::simd::scattered(parameters, [6, 15], at),
-                        ::overact::simd::scattered(parameters, [7, 15], at),
-                        ::overact::simd::scattered(parameters, [5, 15], at),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let g1_vx_leg = l2_x_leg / det_leg;
-                    let masses_leg_1_1 = own_parameters[1]
-                        + L_AB_SQUARED * own_parameters[0] + own_parameters[2];
+                    let m_2_leg = simd::scattered(parameters, [8, 15], at);
+                    let zz_1_leg = simd::scattered(parameters, [0, 15], at);
+                    let ia_1_leg = simd::scattered(parameters, [1, 15], at);
+                    let masses_leg_1_1 = zz_1_leg + L_AB_SQUARED * m_2_leg + ia_1_leg;
                     let minus_g2_vx_leg = l1_x_leg / det_leg;
                     let c2_leg = 6.377551020408164
                         * (rho_squared_leg - TWICE_L_AB_SQUARED);
+                    let mx_2_leg = simd::scattered(parameters, [6, 15], at);
                     let s2_leg = INV_L_AB_SQUARED * det_leg;
-                    let force1_y_by_2_leg = c2_leg * own_parameters[3]
-                        - s2_leg * own_parameters[4];
+                    let my_2_leg = simd::scattered(parameters, [7, 15], at);
+                    let force1_y_by_2_leg = c2_leg * mx_2_leg - s2_leg * my_2_leg;
                     let masses_leg_1_2 = L_AB * force1_y_by_2_leg;
+                    let zz_2_leg = simd::scattered(parameters, [5, 15], at);
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                     let l2_y_leg = d_y_leg - l1_y_leg;
                     let g1_vy_leg = l2_y_leg / det_leg;
                     let minus_g2_vy_leg = l1_y_leg / det_leg;
                     let t1_leg = g1_vy_leg * masses_leg_1_1
                         - minus_g2_vy_leg * masses_leg_1_2;
-                    let t2_leg = g1_vy_leg * masses_leg_1_2
-                        - minus_g2_vy_leg * own_parameters[5];
+                    let t2_leg = g1_vy_leg * masses_leg_1_2 - minus_g2_vy_leg * zz_2_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
                     let t3_leg = g2_wz_leg * masses_leg_1_2
                         - minus_g1_wz_leg * masses_leg_1_1;
-                    let t4_leg = g2_wz_leg * own_parameters[5]
-                        - minus_g1_wz_leg * masses_leg_1_2;
+                    let t4_leg = g2_wz_leg * zz_2_leg - minus_g1_wz_leg * masses_leg_1_2;
                     failed.result()?;
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
@@ -12804,72 +12059,70 @@ impl DualV {
                             * (g1_vx_leg * masses_leg_1_1
                                 - minus_g2_vx_leg * masses_leg_1_2)
                             - minus_g2_vx_leg
-                                * (g1_vx_leg * masses_leg_1_2
-                                    - minus_g2_vx_leg * own_parameters[5]),
+                                * (g1_vx_leg * masses_leg_1_2 - minus_g2_vx_leg * zz_2_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t1_leg - minus_g2_vx_leg * t2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * t1_leg - minus_g2_vy_leg * t2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         g2_wz_leg * t4_leg - minus_g1_wz_leg * t3_leg,
                     );
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    mass_platform + ::overact::simd::sum(&added[0]),
-                    ::overact::simd::sum(&added[1]),
+                    mass_platform + simd::sum(&added[0]), simd::sum(&added[1]),
                     -(s_phi * first_x_platform + c_phi * first_y_platform)
-                        + ::overact::simd::sum(&added[2]),
-                    mass_platform + ::overact::simd::sum(&added[3]),
+                        + simd::sum(&added[2]),
+                    mass_platform + simd::sum(&added[3]),
                     c_phi * first_x_platform - s_phi * first_y_platform
-                        + ::overact::simd::sum(&added[4]),
-                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
+                        + simd::sum(&added[4]),
+                    inertia_zz_platform + simd::sum(&added[5]),
                 ];
                 let output = [
                     [sums[0], sums[1], sums[2]], [sums[1], sums[3], sums[4]],
                     [sums[2], sums[4], sums[5]],
                 ];
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        if ::overact::simd::four() {
-            return ::overact::simd::few(Legs { pose, parameters });
+        if simd::four() {
+            return simd::few(Legs { pose, parameters });
         }
         /// 1 / l_ab²
-        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        const INV_L_AB_SQUARED: f64 = 12.755102040816327;
         /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
+        const L_AB: f64 = 0.28;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
+        const R_P: f64 = 0.11;
         /// 2 l_ab²
-        const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const TWICE_L_AB_SQUARED: f64 = 0.1568;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
@@ -12881,106 +12134,124 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l1_x_leg1 = half_d_x_leg4_minus_p_x_leg3 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
-        let masses_leg1_1_1 = parameters[0] + L_AB_SQUARED * parameters[8]
-            + parameters[1];
+        let m_2_leg1 = parameters[8];
+        let zz_1_leg1 = parameters[0];
+        let ia_1_leg1 = parameters[1];
+        let masses_leg1_1_1 = zz_1_leg1 + L_AB_SQUARED * m_2_leg1 + ia_1_leg1;
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let c2_leg1 = 6.377551020408164 * (rho_squared_leg1 - TWICE_L_AB_SQUARED);
+        let mx_2_leg1 = parameters[6];
         let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
-        let force1_y_by_2_leg1 = c2_leg1 * parameters[6] - s2_leg1 * parameters[7];
+        let my_2_leg1 = parameters[7];
+        let force1_y_by_2_leg1 = c2_leg1 * mx_2_leg1 - s2_leg1 * my_2_leg1;
         let masses_leg1_1_2 = L_AB * force1_y_by_2_leg1;
+        let zz_2_leg1 = parameters[5];
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let half_d_x_leg3 = 0.5 * d_x_leg3;
         // --- leg2
         let half_d_x_minus_p_x_leg3 = half_d_x_leg3 - p_x_leg3;
         let d_x_leg2 = half_d_x_minus_p_x_leg3 + half_d_x_minus_p_x_leg3;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_x_leg2 = half_d_x_minus_p_x_leg3 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         let g2_vx_leg2 = l1_x_leg2 / det_leg2;
+        let zz_2_leg2 = parameters[20];
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 / det_leg2;
         let c2_leg2 = 6.377551020408164 * (rho_squared_leg2 - TWICE_L_AB_SQUARED);
+        let mx_2_leg2 = parameters[21];
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-        let force1_y_by_2_leg2 = c2_leg2 * parameters[21]
-            + minus_s2_leg2 * parameters[22];
+        let my_2_leg2 = parameters[22];
+        let force1_y_by_2_leg2 = c2_leg2 * mx_2_leg2 + minus_s2_leg2 * my_2_leg2;
         let masses_leg2_1_2 = L_AB * force1_y_by_2_leg2;
-        let masses_leg2_1_1 = parameters[15] + L_AB_SQUARED * parameters[23]
-            + parameters[16];
+        let m_2_leg2 = parameters[23];
+        let zz_1_leg2 = parameters[15];
+        let ia_1_leg2 = parameters[16];
+        let masses_leg2_1_1 = zz_1_leg2 + L_AB_SQUARED * m_2_leg2 + ia_1_leg2;
         let t1_leg2 = g1_vx_leg1
             * (g1_vx_leg1 * masses_leg1_1_1 - minus_g2_vx_leg1 * masses_leg1_1_2)
             - minus_g2_vx_leg1
-                * (g1_vx_leg1 * masses_leg1_1_2 - minus_g2_vx_leg1 * parameters[5])
-            + g2_vx_leg2
-                * (g2_vx_leg2 * parameters[20] - minus_g1_vx_leg2 * masses_leg2_1_2)
+                * (g1_vx_leg1 * masses_leg1_1_2 - minus_g2_vx_leg1 * zz_2_leg1)
+            + g2_vx_leg2 * (g2_vx_leg2 * zz_2_leg2 - minus_g1_vx_leg2 * masses_leg2_1_2)
             - minus_g1_vx_leg2
                 * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * masses_leg2_1_1);
         // --- leg3
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_x_leg3 = half_d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
-        let masses_leg3_1_1 = parameters[30] + L_AB_SQUARED * parameters[38]
-            + parameters[31];
+        let m_2_leg3 = parameters[38];
+        let zz_1_leg3 = parameters[30];
+        let ia_1_leg3 = parameters[31];
+        let masses_leg3_1_1 = zz_1_leg3 + L_AB_SQUARED * m_2_leg3 + ia_1_leg3;
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let c2_leg3 = 6.377551020408164 * (rho_squared_leg3 - TWICE_L_AB_SQUARED);
+        let mx_2_leg3 = parameters[36];
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
-        let force1_y_by_2_leg3 = c2_leg3 * parameters[36] - s2_leg3 * parameters[37];
+        let my_2_leg3 = parameters[37];
+        let force1_y_by_2_leg3 = c2_leg3 * mx_2_leg3 - s2_leg3 * my_2_leg3;
         let masses_leg3_1_2 = L_AB * force1_y_by_2_leg3;
+        let zz_2_leg3 = parameters[35];
         let t1_leg3 = t1_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1 - minus_g2_vx_leg3 * masses_leg3_1_2)
             - minus_g2_vx_leg3
-                * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * parameters[35]);
+                * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * zz_2_leg3);
         // --- leg4
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l1_x_leg4 = half_d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let zz_2_leg4 = parameters[50];
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let c2_leg4 = 6.377551020408164 * (rho_squared_leg4 - TWICE_L_AB_SQUARED);
+        let mx_2_leg4 = parameters[51];
         let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-        let force1_y_by_2_leg4 = c2_leg4 * parameters[51]
-            + minus_s2_leg4 * parameters[52];
+        let my_2_leg4 = parameters[52];
+        let force1_y_by_2_leg4 = c2_leg4 * mx_2_leg4 + minus_s2_leg4 * my_2_leg4;
         let masses_leg4_1_2 = L_AB * force1_y_by_2_leg4;
-        let masses_leg4_1_1 = parameters[45] + L_AB_SQUARED * parameters[53]
-            + parameters[46];
+        let m_2_leg4 = parameters[53];
+        let zz_1_leg4 = parameters[45];
+        let ia_1_leg4 = parameters[46];
+        let masses_leg4_1_1 = zz_1_leg4 + L_AB_SQUARED * m_2_leg4 + ia_1_leg4;
         let t1_leg4 = t1_leg3
-            + g2_vx_leg4
-                * (g2_vx_leg4 * parameters[50] - minus_g1_vx_leg4 * masses_leg4_1_2)
+            + g2_vx_leg4 * (g2_vx_leg4 * zz_2_leg4 - minus_g1_vx_leg4 * masses_leg4_1_2)
             - minus_g1_vx_leg4
                 * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * masses_leg4_1_1);
-        let mass_platform = parameters[63] + parameters[67];
+        let m_platform = parameters[63];
+        let m_payload = parameters[67];
+        let mass_platform = m_platform + m_payload;
         // --- leg1
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
@@ -12988,13 +12259,13 @@ impl DualV {
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
         let t1_leg1 = g1_vy_leg1 * masses_leg1_1_1 - minus_g2_vy_leg1 * masses_leg1_1_2;
-        let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2 - minus_g2_vy_leg1 * parameters[5];
+        let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2 - minus_g2_vy_leg1 * zz_2_leg1;
         // --- leg2
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let g2_vy_leg2 = l1_y_leg2 / det_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 / det_leg2;
-        let t2_leg2 = g2_vy_leg2 * parameters[20] - minus_g1_vy_leg2 * masses_leg2_1_2;
+        let t2_leg2 = g2_vy_leg2 * zz_2_leg2 - minus_g1_vy_leg2 * masses_leg2_1_2;
         let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * masses_leg2_1_1;
         // --- leg3
         let half_d_y_leg3 = 0.5 * d_y_leg3;
@@ -13003,7 +12274,7 @@ impl DualV {
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
         let t2_leg3 = g1_vy_leg3 * masses_leg3_1_1 - minus_g2_vy_leg3 * masses_leg3_1_2;
-        let t3_leg3 = g1_vy_leg3 * masses_leg3_1_2 - minus_g2_vy_leg3 * parameters[35];
+        let t3_leg3 = g1_vy_leg3 * masses_leg3_1_2 - minus_g2_vy_leg3 * zz_2_leg3;
         let t4_leg3 = g1_vx_leg1 * t1_leg1 - minus_g2_vx_leg1 * t2_leg1
             + g2_vx_leg2 * t2_leg2 - minus_g1_vx_leg2 * t3_leg2 + g1_vx_leg3 * t2_leg3
             - minus_g2_vx_leg3 * t3_leg3;
@@ -13012,34 +12283,39 @@ impl DualV {
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
-        let t2_leg4 = g2_vy_leg4 * parameters[50] - minus_g1_vy_leg4 * masses_leg4_1_2;
+        let t2_leg4 = g2_vy_leg4 * zz_2_leg4 - minus_g1_vy_leg4 * masses_leg4_1_2;
         let t3_leg4 = g2_vy_leg4 * masses_leg4_1_2 - minus_g1_vy_leg4 * masses_leg4_1_1;
         let t4_leg4 = t4_leg3 + g2_vx_leg4 * t2_leg4 - minus_g1_vx_leg4 * t3_leg4;
         // --- leg1
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let t3_leg1 = g2_wz_leg1 * masses_leg1_1_2 - minus_g1_wz_leg1 * masses_leg1_1_1;
-        let t4_leg1 = g2_wz_leg1 * parameters[5] - minus_g1_wz_leg1 * masses_leg1_1_2;
+        let t4_leg1 = g2_wz_leg1 * zz_2_leg1 - minus_g1_wz_leg1 * masses_leg1_1_2;
         // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let t4_leg2 = g1_wz_leg2 * masses_leg2_1_2 - minus_g2_wz_leg2 * parameters[20];
+        let t4_leg2 = g1_wz_leg2 * masses_leg2_1_2 - minus_g2_wz_leg2 * zz_2_leg2;
         let t5_leg2 = g1_wz_leg2 * masses_leg2_1_1 - minus_g2_wz_leg2 * masses_leg2_1_2;
         // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
         let t5_leg3 = g1_wz_leg3 * masses_leg3_1_1 - minus_g2_wz_leg3 * masses_leg3_1_2;
-        let t6_leg3 = g1_wz_leg3 * masses_leg3_1_2 - minus_g2_wz_leg3 * parameters[35];
+        let t6_leg3 = g1_wz_leg3 * masses_leg3_1_2 - minus_g2_wz_leg3 * zz_2_leg3;
         let t7_leg3 = g1_vx_leg1 * t3_leg1 - minus_g2_vx_leg1 * t4_leg1
             + g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2 + g1_vx_leg3 * t5_leg3
             - minus_g2_vx_leg3 * t6_leg3;
         // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let t5_leg4 = g2_wz_leg4 * parameters[50] - minus_g1_wz_leg4 * masses_leg4_1_2;
+        let t5_leg4 = g2_wz_leg4 * zz_2_leg4 - minus_g1_wz_leg4 * masses_leg4_1_2;
         let t6_leg4 = g2_wz_leg4 * masses_leg4_1_2 - minus_g1_wz_leg4 * masses_leg4_1_1;
-        let first_x_platform = parameters[61] + parameters[65];
-        let first_y_platform = parameters[62] + parameters[66];
+        // --- platform
+        let mx_platform = parameters[61];
+        let mx_payload = parameters[65];
+        let first_x_platform = mx_platform + mx_payload;
+        let my_platform = parameters[62];
+        let my_payload = parameters[66];
+        let first_y_platform = my_platform + my_payload;
         let t1_platform = t7_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
             - (s_phi * first_x_platform + c_phi * first_y_platform);
         let t8_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
@@ -13053,8 +12329,10 @@ impl DualV {
         let t10_leg3 = g2_wz_leg1 * t4_leg1 - minus_g1_wz_leg1 * t3_leg1
             + g1_wz_leg2 * t5_leg2 - minus_g2_wz_leg2 * t4_leg2 + g1_wz_leg3 * t5_leg3
             - minus_g2_wz_leg3 * t6_leg3;
-        let inertia_zz_platform = parameters[60] + parameters[64];
-        ::core::result::Result::Ok([
+        let zz_platform = parameters[60];
+        let zz_payload = parameters[64];
+        let inertia_zz_platform = zz_platform + zz_payload;
+        Ok([
             [t1_leg4 + mass_platform, t4_leg4, t1_platform],
             [
                 t4_leg4,
@@ -13082,51 +12360,56 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix_base(
-        pose: &[::core::primitive::f64; 3],
-        base_parameters: &[::core::primitive::f64; 53],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        base_parameters: &[f64; 53],
+    ) -> Result<[[f64; 3]; 3], Error> {
+        guard::within(
             &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            base_parameters: &'a [::core::primitive::f64; 53],
+            pose: &'a [f64; 3],
+            base_parameters: &'a [f64; 53],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [[::core::primitive::f64; 3]; 3],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[[f64; 3]; 3], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, base_parameters } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// 1 / l_ab²
-                const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+                const INV_L_AB_SQUARED: f64 = 12.755102040816327;
                 /// l_ab = l_bc
-                const L_AB: ::core::primitive::f64 = 0.28;
+                const L_AB: f64 = 0.28;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 // --- platform
-                let mass_platform = base_parameters[3] + base_parameters[52];
-                let first_x_platform = base_parameters[1] + base_parameters[50];
-                let first_y_platform = base_parameters[2] + base_parameters[51];
-                let inertia_zz_platform = base_parameters[0] + base_parameters[49];
-                // --- what the legs add: a row for each number, in it one for each leg
+                let m_platformR = base_parameters[3];
+                let m_payload = base_parameters[52];
+                let mass_platform = m_platformR + m_payload;
+                let mx_platform = base_parameters[1];
+                let mx_payload = base_parameters[50];
+                let first_x_platform = mx_platform + mx_payload;
+                let my_platformR = base_parameters[2];
+                let my_payload = base_parameters[51];
+                let first_y_platform = my_platformR + my_payload;
+                let zz_platformR = base_parameters[0];
+                let zz_payload = base_parameters[49];
+                let inertia_zz_platform = zz_platformR + zz_payload;
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 6];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -13139,145 +12422,127 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_base_parameters = [
-                        ::overact::simd::scattered(base_parameters, [4, 1], at),
-                        ::overact::simd::scattered(base_parameters, [24, 1], at),
-                        ::overact::simd::scattered(base_parameters, [20, 1], at),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
+                    let zz_1_leg1R = simd::scattered(base_parameters, [4, 1], at);
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
                     let s2_leg = INV_L_AB_SQUARED * det_leg;
-                    let minus_first1_x_leg = s2_leg * own_base_parameters[1];
+                    let my_2_leg = simd::scattered(base_parameters, [24, 1], at);
+                    let minus_first1_x_leg = s2_leg * my_2_leg;
                     let minus_masses_leg_1_2 = L_AB * minus_first1_x_leg;
                     let c1_leg = INV_L_AB * l1_x_leg;
                     let c2_leg = 6.377551020408164
                         * (rho_squared_leg - TWICE_L_AB_SQUARED);
-                    let first1_y_leg = c2_leg * own_base_parameters[1];
+                    let first1_y_leg = c2_leg * my_2_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                     let s1_leg = INV_L_AB * l1_y_leg;
+                    let zz_2_leg1R = simd::scattered(base_parameters, [20, 1], at);
                     let t1_leg = g1_vx_leg
-                        * (g1_vx_leg * own_base_parameters[0]
+                        * (g1_vx_leg * zz_1_leg1R
                             + minus_g2_vx_leg * minus_masses_leg_1_2)
                         + minus_g2_vx_leg
                             * (c1_leg * first1_y_leg - s1_leg * minus_first1_x_leg
-                                + minus_g2_vx_leg * own_base_parameters[2]);
+                                + minus_g2_vx_leg * zz_2_leg1R);
                     let l2_y_leg = d_y_leg - l1_y_leg;
                     let g1_vy_leg = l2_y_leg * k1_leg;
                     let minus_g2_vy_leg = l1_y_leg * k1_leg;
-                    let t2_leg = g1_vy_leg * own_base_parameters[0]
+                    let t2_leg = g1_vy_leg * zz_1_leg1R
                         + minus_g2_vy_leg * minus_masses_leg_1_2;
                     let t3_leg = c1_leg * minus_first1_x_leg + s1_leg * first1_y_leg
-                        + minus_g2_vy_leg * own_base_parameters[2];
+                        + minus_g2_vy_leg * zz_2_leg1R;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
-                    let t4_leg = minus_g1_wz_leg * own_base_parameters[0]
+                    let t4_leg = minus_g1_wz_leg * zz_1_leg1R
                         + g2_wz_leg * minus_masses_leg_1_2;
                     let t5_leg = minus_g1_wz_leg * minus_masses_leg_1_2
-                        + g2_wz_leg * own_base_parameters[2];
+                        + g2_wz_leg * zz_2_leg1R;
                     failed.result()?;
-                    ::overact::simd::put(&mut added[0], [0, 1], at, t1_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut added[0], [0, 1], at, t1_leg);
+                    simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t2_leg + minus_g2_vx_leg * t3_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         -(g1_vx_leg * t4_leg + minus_g2_vx_leg * t5_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * t2_leg + minus_g2_vy_leg * t3_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         -(g1_vy_leg * t4_leg + minus_g2_vy_leg * t5_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         minus_g1_wz_leg * t4_leg + g2_wz_leg * t5_leg,
                     );
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    mass_platform + ::overact::simd::sum(&added[0]),
-                    ::overact::simd::sum(&added[1]),
+                    mass_platform + simd::sum(&added[0]), simd::sum(&added[1]),
                     -(s_phi * first_x_platform + c_phi * first_y_platform)
-                        + ::overact::simd::sum(&added[2]),
-                    mass_platform + ::overact::simd::sum(&added[3]),
+                        + simd::sum(&added[2]),
+                    mass_platform + simd::sum(&added[3]),
                     c_phi * first_x_platform - s_phi * first_y_platform
-                        + ::overact::simd::sum(&added[4]),
-                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
+                        + simd::sum(&added[4]),
+                    inertia_zz_platform + simd::sum(&added[5]),
                 ];
                 let output = [
                     [sums[0], sums[1], sums[2]], [sums[1], sums[3], sums[4]],
                     [sums[2], sums[4], sums[5]],
                 ];
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        if ::overact::simd::four() {
-            return ::overact::simd::few(Legs { pose, base_parameters });
+        if simd::four() {
+            return simd::few(Legs { pose, base_parameters });
         }
         /// 1 / l_ab²
-        const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+        const INV_L_AB_SQUARED: f64 = 12.755102040816327;
         /// l_ab = l_bc
-        const L_AB: ::core::primitive::f64 = 0.28;
+        const L_AB: f64 = 0.28;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -13286,126 +12551,128 @@ impl DualV {
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
+        let zz_1_leg1R = base_parameters[4];
         let minus_g2_vx_leg1 = l1_x_leg1 * k1_leg1;
         let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
-        let minus_first1_x_leg1 = s2_leg1 * base_parameters[24];
+        let my_2_leg1 = base_parameters[24];
+        let minus_first1_x_leg1 = s2_leg1 * my_2_leg1;
         let minus_masses_leg1_1_2 = L_AB * minus_first1_x_leg1;
+        let zz_2_leg1R = base_parameters[20];
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
         let k1_leg2 = 1.0 / det_leg2;
         let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
+        let zz_2_leg2R = base_parameters[21];
         let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
         let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
         let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-        let first1_x_leg2 = minus_s2_leg2 * base_parameters[25];
+        let my_2_leg2 = base_parameters[25];
+        let first1_x_leg2 = minus_s2_leg2 * my_2_leg2;
         let masses_leg2_1_2 = L_AB * first1_x_leg2;
+        let zz_1_leg2R = base_parameters[5];
         let t1_leg2 = g1_vx_leg1
-            * (g1_vx_leg1 * base_parameters[4]
-                + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
+            * (g1_vx_leg1 * zz_1_leg1R + minus_g2_vx_leg1 * minus_masses_leg1_1_2)
             + minus_g2_vx_leg1
-                * (g1_vx_leg1 * minus_masses_leg1_1_2
-                    + minus_g2_vx_leg1 * base_parameters[20])
-            + g2_vx_leg2
-                * (g2_vx_leg2 * base_parameters[21] - minus_g1_vx_leg2 * masses_leg2_1_2)
+                * (g1_vx_leg1 * minus_masses_leg1_1_2 + minus_g2_vx_leg1 * zz_2_leg1R)
+            + g2_vx_leg2 * (g2_vx_leg2 * zz_2_leg2R - minus_g1_vx_leg2 * masses_leg2_1_2)
             - minus_g1_vx_leg2
-                * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * base_parameters[5]);
+                * (g2_vx_leg2 * masses_leg2_1_2 - minus_g1_vx_leg2 * zz_1_leg2R);
         // --- leg3
         let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
         let k1_leg3 = 1.0 / det_leg3;
         let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
+        let zz_1_leg3R = base_parameters[6];
         let minus_g2_vx_leg3 = l1_x_leg3 * k1_leg3;
         let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
-        let minus_first1_x_leg3 = s2_leg3 * base_parameters[26];
+        let my_2_leg3 = base_parameters[26];
+        let minus_first1_x_leg3 = s2_leg3 * my_2_leg3;
         let minus_masses_leg3_1_2 = L_AB * minus_first1_x_leg3;
+        let zz_2_leg3R = base_parameters[22];
         let t1_leg3 = t1_leg2
             + g1_vx_leg3
-                * (g1_vx_leg3 * base_parameters[6]
-                    + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
+                * (g1_vx_leg3 * zz_1_leg3R + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
-                    + minus_g2_vx_leg3 * base_parameters[22]);
+                * (g1_vx_leg3 * minus_masses_leg3_1_2 + minus_g2_vx_leg3 * zz_2_leg3R);
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg4 = 1.0 / det_leg4;
         let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
+        let zz_2_leg4R = base_parameters[23];
         let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
         let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
         let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-        let first1_x_leg4 = minus_s2_leg4 * base_parameters[27];
+        let my_2_leg4 = base_parameters[27];
+        let first1_x_leg4 = minus_s2_leg4 * my_2_leg4;
         let masses_leg4_1_2 = L_AB * first1_x_leg4;
+        let zz_1_leg4R = base_parameters[7];
         let t1_leg4 = t1_leg3
-            + g2_vx_leg4
-                * (g2_vx_leg4 * base_parameters[23] - minus_g1_vx_leg4 * masses_leg4_1_2)
+            + g2_vx_leg4 * (g2_vx_leg4 * zz_2_leg4R - minus_g1_vx_leg4 * masses_leg4_1_2)
             - minus_g1_vx_leg4
-                * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * base_parameters[7]);
-        let mass_platform = base_parameters[3] + base_parameters[52];
+                * (g2_vx_leg4 * masses_leg4_1_2 - minus_g1_vx_leg4 * zz_1_leg4R);
+        let m_platformR = base_parameters[3];
+        let m_payload = base_parameters[52];
+        let mass_platform = m_platformR + m_payload;
         // --- leg1
         let half_d_y_leg1 = 0.5 * d_y_leg1;
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l2_y_leg1 = d_y_leg1 - l1_y_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let minus_g2_vy_leg1 = l1_y_leg1 * k1_leg1;
-        let t1_leg1 = g1_vy_leg1 * base_parameters[4]
-            + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        let t2_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
-            + minus_g2_vy_leg1 * base_parameters[20];
+        let t1_leg1 = g1_vy_leg1 * zz_1_leg1R + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
+        let t2_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1 + minus_g2_vy_leg1 * zz_2_leg1R;
         // --- leg2
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l2_y_leg2 = d_y_leg1 - l1_y_leg2;
         let minus_g1_vy_leg2 = l2_y_leg2 * k1_leg2;
         let g2_vy_leg2 = l1_y_leg2 * k1_leg2;
-        let t2_leg2 = g2_vy_leg2 * base_parameters[21]
-            - masses_leg2_1_2 * minus_g1_vy_leg2;
-        let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2
-            - minus_g1_vy_leg2 * base_parameters[5];
+        let t2_leg2 = g2_vy_leg2 * zz_2_leg2R - masses_leg2_1_2 * minus_g1_vy_leg2;
+        let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2 - minus_g1_vy_leg2 * zz_1_leg2R;
         // --- leg3
         let half_d_y_leg3 = 0.5 * d_y_leg3;
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let g1_vy_leg3 = l2_y_leg3 * k1_leg3;
         let minus_g2_vy_leg3 = l1_y_leg3 * k1_leg3;
-        let t2_leg3 = g1_vy_leg3 * base_parameters[6]
-            + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t3_leg3 = minus_masses_leg3_1_2 * g1_vy_leg3
-            + minus_g2_vy_leg3 * base_parameters[22];
+        let t2_leg3 = g1_vy_leg3 * zz_1_leg3R + minus_g2_vy_leg3 * minus_masses_leg3_1_2;
+        let t3_leg3 = minus_masses_leg3_1_2 * g1_vy_leg3 + minus_g2_vy_leg3 * zz_2_leg3R;
         let t4_leg3 = g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1
             + g2_vx_leg2 * t2_leg2 - minus_g1_vx_leg2 * t3_leg2 + g1_vx_leg3 * t2_leg3
             + minus_g2_vx_leg3 * t3_leg3;
@@ -13414,44 +12681,39 @@ impl DualV {
         let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
         let minus_g1_vy_leg4 = l2_y_leg4 * k1_leg4;
         let g2_vy_leg4 = l1_y_leg4 * k1_leg4;
-        let t2_leg4 = g2_vy_leg4 * base_parameters[23]
-            - masses_leg4_1_2 * minus_g1_vy_leg4;
-        let t3_leg4 = g2_vy_leg4 * masses_leg4_1_2
-            - minus_g1_vy_leg4 * base_parameters[7];
+        let t2_leg4 = g2_vy_leg4 * zz_2_leg4R - masses_leg4_1_2 * minus_g1_vy_leg4;
+        let t3_leg4 = g2_vy_leg4 * masses_leg4_1_2 - minus_g1_vy_leg4 * zz_1_leg4R;
         let t4_leg4 = t4_leg3 + g2_vx_leg4 * t2_leg4 - minus_g1_vx_leg4 * t3_leg4;
         // --- leg2
         let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2 + p_y_leg1 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = p_x_leg3 * g2_vy_leg2 + p_y_leg1 * g2_vx_leg2;
-        let t4_leg2 = g1_wz_leg2 * masses_leg2_1_2
-            - minus_g2_wz_leg2 * base_parameters[21];
-        let t5_leg2 = g1_wz_leg2 * base_parameters[5]
-            - minus_g2_wz_leg2 * masses_leg2_1_2;
+        let t4_leg2 = g1_wz_leg2 * masses_leg2_1_2 - minus_g2_wz_leg2 * zz_2_leg2R;
+        let t5_leg2 = g1_wz_leg2 * zz_1_leg2R - minus_g2_wz_leg2 * masses_leg2_1_2;
         // --- leg1
         let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
         let g2_wz_leg1 = p_x_leg3 * minus_g2_vy_leg1 + p_y_leg1 * minus_g2_vx_leg1;
-        let t3_leg1 = minus_g1_wz_leg1 * base_parameters[4]
-            + g2_wz_leg1 * minus_masses_leg1_1_2;
-        let t4_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2
-            + g2_wz_leg1 * base_parameters[20];
+        let t3_leg1 = minus_g1_wz_leg1 * zz_1_leg1R + g2_wz_leg1 * minus_masses_leg1_1_2;
+        let t4_leg1 = minus_g1_wz_leg1 * minus_masses_leg1_1_2 + g2_wz_leg1 * zz_2_leg1R;
         // --- leg3
         let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
         let minus_g2_wz_leg3 = p_x_leg3 * minus_g2_vy_leg3 + p_y_leg1 * minus_g2_vx_leg3;
-        let t5_leg3 = g1_wz_leg3 * base_parameters[6]
-            + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
-        let t6_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2
-            + minus_g2_wz_leg3 * base_parameters[22];
+        let t5_leg3 = g1_wz_leg3 * zz_1_leg3R + minus_g2_wz_leg3 * minus_masses_leg3_1_2;
+        let t6_leg3 = g1_wz_leg3 * minus_masses_leg3_1_2 + minus_g2_wz_leg3 * zz_2_leg3R;
         let t7_leg3 = g2_vx_leg2 * t4_leg2 - minus_g1_vx_leg2 * t5_leg2
             - (g1_vx_leg1 * t3_leg1 + minus_g2_vx_leg1 * t4_leg1) + g1_vx_leg3 * t5_leg3
             + minus_g2_vx_leg3 * t6_leg3;
         // --- leg4
         let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
         let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4 + p_y_leg1 * minus_g1_vx_leg4;
-        let t5_leg4 = g2_wz_leg4 * base_parameters[23]
-            - minus_g1_wz_leg4 * masses_leg4_1_2;
-        let t6_leg4 = g2_wz_leg4 * masses_leg4_1_2
-            - minus_g1_wz_leg4 * base_parameters[7];
-        let first_x_platform = base_parameters[1] + base_parameters[50];
-        let first_y_platform = base_parameters[2] + base_parameters[51];
+        let t5_leg4 = g2_wz_leg4 * zz_2_leg4R - minus_g1_wz_leg4 * masses_leg4_1_2;
+        let t6_leg4 = g2_wz_leg4 * masses_leg4_1_2 - minus_g1_wz_leg4 * zz_1_leg4R;
+        // --- platform
+        let mx_platform = base_parameters[1];
+        let mx_payload = base_parameters[50];
+        let first_x_platform = mx_platform + mx_payload;
+        let my_platformR = base_parameters[2];
+        let my_payload = base_parameters[51];
+        let first_y_platform = my_platformR + my_payload;
         let t1_platform = t7_leg3 + g2_vx_leg4 * t5_leg4 - minus_g1_vx_leg4 * t6_leg4
             - (s_phi * first_x_platform + c_phi * first_y_platform);
         let t8_leg3 = g1_vy_leg1 * t1_leg1 + minus_g2_vy_leg1 * t2_leg1
@@ -13465,8 +12727,10 @@ impl DualV {
         let t10_leg3 = minus_g1_wz_leg1 * t3_leg1 + g2_wz_leg1 * t4_leg1
             + g1_wz_leg2 * t5_leg2 - minus_g2_wz_leg2 * t4_leg2 + g1_wz_leg3 * t5_leg3
             + minus_g2_wz_leg3 * t6_leg3;
-        let inertia_zz_platform = base_parameters[0] + base_parameters[49];
-        ::core::result::Result::Ok([
+        let zz_platformR = base_parameters[0];
+        let zz_payload = base_parameters[49];
+        let inertia_zz_platform = zz_platformR + zz_payload;
+        Ok([
             [t1_leg4 + mass_platform, t4_leg4, t1_platform],
             [
                 t4_leg4,
@@ -13495,61 +12759,63 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        parameters: &[::core::primitive::f64; 68],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        parameters: &[f64; 68],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
             ],
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            parameters: &'a [::core::primitive::f64; 68],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            parameters: &'a [f64; 68],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [::core::primitive::f64; 3],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[f64; 3], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, parameters } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// 1 / l_ab²
-                const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+                const INV_L_AB_SQUARED: f64 = 12.755102040816327;
                 /// 1 / (2 l_ab)
-                const INV_TWICE_L_AB: ::core::primitive::f64 = 1.7857142857142858;
+                const INV_TWICE_L_AB: f64 = 1.7857142857142858;
                 /// l_ab = l_bc
-                const L_AB: ::core::primitive::f64 = 0.28;
+                const L_AB: f64 = 0.28;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let s_phi_rate_3_squared_leg = s_phi * rate_3_squared_leg;
-                let first_y_platform = parameters[62] + parameters[66];
+                let my_platform = parameters[62];
+                let my_payload = parameters[66];
+                let first_y_platform = my_platform + my_payload;
                 let c_phi_rate_3_squared_leg = c_phi * rate_3_squared_leg;
-                let first_x_platform = parameters[61] + parameters[65];
+                // --- platform
+                let mx_platform = parameters[61];
+                let mx_payload = parameters[65];
+                let first_x_platform = mx_platform + mx_payload;
                 let force_x_platform = s_phi_rate_3_squared_leg * first_y_platform
                     - c_phi_rate_3_squared_leg * first_x_platform;
                 let minus_force_y_platform = s_phi_rate_3_squared_leg * first_x_platform
                     + c_phi_rate_3_squared_leg * first_y_platform;
-                // --- what the legs add: a row for each number, in it one for each leg
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 3];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -13562,61 +12828,29 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_parameters = [
-                        ::overact::simd::scattered(parameters, [3, 15], at),
-                        ::overact::simd::scattered(parameters, [7, 15], at),
-                        ::overact::simd::scattered(parameters, [6, 15], at),
-                        ::overact::simd::scattered(parameters, [2, 15], at),
-                        ::overact::simd::scattered(parameters, [4, 15], at),
-                        ::overact::simd::scattered(parameters, [8, 15], at),
-                        ::overact::simd::scattered(parameters, [0, 15], at),
-                        ::overact::simd::scattered(parameters, [1, 15], at),
-                        ::overact::simd::scattered(parameters, [9, 15], at),
-                        ::overact::simd::scattered(parameters, [10, 15], at),
-                        ::overact::simd::scattered(parameters, [11, 15], at),
-                        ::overact::simd::scattered(parameters, [5, 15], at),
-                        ::overact::simd::scattered(parameters, [12, 15], at),
-                        ::overact::simd::scattered(parameters, [13, 15], at),
-                        ::overact::simd::scattered(parameters, [14, 15], at),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_v_arm_x_leg = p_y_leg * twist[2];
@@ -13627,6 +12861,7 @@ impl DualV {
                     let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
                     let v_end_y_leg = twist[1] - minus_v_arm_y_leg;
                     let rate_1_leg = g1_vx_leg * v_end_x_leg + g1_vy_leg * v_end_y_leg;
+                    let fs_1_leg = simd::scattered(parameters, [3, 15], at);
                     let s2_leg = INV_L_AB_SQUARED * det_leg;
                     let bias_a_end_x_leg = twist[2] * minus_v_arm_y_leg;
                     let minus_bias_a_end_y_leg = twist[2] * minus_v_arm_x_leg;
@@ -13647,60 +12882,66 @@ impl DualV {
                         * rate_2_squared_leg;
                     let minus_bias_rate_dot_2_leg = k1_leg
                         * (bias_a_on_f2_leg + c2_leg * l_ab_squared_rate_2_squared_leg);
-                    let force2_x_leg = own_parameters[1] * minus_bias_rate_dot_2_leg
-                        - own_parameters[2] * rate_2_squared_leg;
-                    let minus_force2_y_leg = own_parameters[2]
-                        * minus_bias_rate_dot_2_leg
-                        + own_parameters[1] * rate_2_squared_leg;
+                    let my_2_leg = simd::scattered(parameters, [7, 15], at);
+                    let mx_2_leg = simd::scattered(parameters, [6, 15], at);
+                    let force2_x_leg = my_2_leg * minus_bias_rate_dot_2_leg
+                        - mx_2_leg * rate_2_squared_leg;
+                    let minus_force2_y_leg = mx_2_leg * minus_bias_rate_dot_2_leg
+                        + my_2_leg * rate_2_squared_leg;
+                    let fv_1_leg = simd::scattered(parameters, [2, 15], at);
+                    let off_1_leg = simd::scattered(parameters, [4, 15], at);
                     let bias_a_on_f1_leg = l2_y_leg * minus_bias_a_end_y_leg
                         - l2_x_leg * bias_a_end_x_leg - l_ab_squared_rate_2_squared_leg;
                     let minus_bias_rate_dot_1_leg = k1_leg
                         * (bias_a_on_f1_leg - l_ab_squared_rate_1_squared_leg * c2_leg);
-                    let t2_leg = own_parameters[4]
-                        + ::overact::simd::signed(own_parameters[0], rate_1_leg, at)
+                    let m_2_leg = simd::scattered(parameters, [8, 15], at);
+                    let zz_1_leg = simd::scattered(parameters, [0, 15], at);
+                    let ia_1_leg = simd::scattered(parameters, [1, 15], at);
+                    let t2_leg = off_1_leg + simd::signed(fs_1_leg, rate_1_leg, at)
                         + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
-                        + own_parameters[3] * rate_1_leg
+                        + fv_1_leg * rate_1_leg
                         - minus_bias_rate_dot_1_leg
-                            * (own_parameters[6] + L_AB_SQUARED * own_parameters[5]
-                                + own_parameters[7]);
+                            * (zz_1_leg + L_AB_SQUARED * m_2_leg + ia_1_leg);
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let tau_2_leg = own_parameters[10]
-                        - (own_parameters[8] * minus_qd_2_leg
-                            + ::overact::simd::signed(
-                                own_parameters[9],
-                                minus_qd_2_leg,
-                                at,
-                            ));
+                    let fv_2_leg = simd::scattered(parameters, [9, 15], at);
+                    let fs_2_leg = simd::scattered(parameters, [10, 15], at);
+                    let off_2_leg = simd::scattered(parameters, [11, 15], at);
+                    let tau_2_leg = off_2_leg
+                        - (fv_2_leg * minus_qd_2_leg
+                            + simd::signed(fs_2_leg, minus_qd_2_leg, at));
                     let force_on_u1_leg = t2_leg - tau_2_leg;
                     let bias_a2_y_leg = INV_L_AB * (det_leg * rate_1_squared_leg)
                         - INV_TWICE_L_AB * (t1_leg * minus_bias_rate_dot_1_leg);
                     let minus_bias_a2_x_leg = INV_L_AB * bias_a_on_f1_leg;
-                    let moment2_z_leg = own_parameters[2] * bias_a2_y_leg
-                        + own_parameters[1] * minus_bias_a2_x_leg
-                        - own_parameters[11] * minus_bias_rate_dot_2_leg;
+                    let zz_2_leg = simd::scattered(parameters, [5, 15], at);
+                    let moment2_z_leg = mx_2_leg * bias_a2_y_leg
+                        + my_2_leg * minus_bias_a2_x_leg
+                        - zz_2_leg * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
-                    let tau_3_leg = own_parameters[12] * qd_3_leg
-                        + ::overact::simd::signed(own_parameters[13], qd_3_leg, at)
-                        + own_parameters[14];
+                    let fv_3_leg = simd::scattered(parameters, [12, 15], at);
+                    let fs_3_leg = simd::scattered(parameters, [13, 15], at);
+                    let off_3_leg = simd::scattered(parameters, [14, 15], at);
+                    let tau_3_leg = fv_3_leg * qd_3_leg
+                        + simd::signed(fs_3_leg, qd_3_leg, at) + off_3_leg;
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
                     failed.result()?;
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
@@ -13708,17 +12949,16 @@ impl DualV {
                             + tau_3_leg,
                     );
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    force_x_platform + ::overact::simd::sum(&added[0]),
-                    -minus_force_y_platform + ::overact::simd::sum(&added[1]),
-                    ::overact::simd::sum(&added[2]),
+                    force_x_platform + simd::sum(&added[0]),
+                    -minus_force_y_platform + simd::sum(&added[1]), simd::sum(&added[2]),
                 ];
                 let output = [sums[0], sums[1], sums[2]];
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        ::overact::simd::few(Legs { pose, twist, parameters })
+        simd::few(Legs { pose, twist, parameters })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -13734,13 +12974,13 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias_base(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        base_parameters: &[::core::primitive::f64; 53],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        base_parameters: &[f64; 53],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9),
                 ("base_parameters", base_parameters, 1e12),
@@ -13748,42 +12988,44 @@ impl DualV {
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            base_parameters: &'a [::core::primitive::f64; 53],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            base_parameters: &'a [f64; 53],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [::core::primitive::f64; 3],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[f64; 3], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, base_parameters } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let s_phi_rate_3_squared_leg = s_phi * rate_3_squared_leg;
-                let first_y_platform = base_parameters[2] + base_parameters[51];
+                let my_platformR = base_parameters[2];
+                let my_payload = base_parameters[51];
+                let first_y_platform = my_platformR + my_payload;
                 let c_phi_rate_3_squared_leg = c_phi * rate_3_squared_leg;
-                let first_x_platform = base_parameters[1] + base_parameters[50];
+                // --- platform
+                let mx_platform = base_parameters[1];
+                let mx_payload = base_parameters[50];
+                let first_x_platform = mx_platform + mx_payload;
                 let force_x_platform = s_phi_rate_3_squared_leg * first_y_platform
                     - c_phi_rate_3_squared_leg * first_x_platform;
                 let minus_force_y_platform = s_phi_rate_3_squared_leg * first_x_platform
                     + c_phi_rate_3_squared_leg * first_y_platform;
-                // --- what the legs add: a row for each number, in it one for each leg
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 3];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -13796,63 +13038,29 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_base_parameters = [
-                        ::overact::simd::scattered(base_parameters, [24, 1], at),
-                        ::overact::simd::scattered(base_parameters, [4, 1], at),
-                        ::overact::simd::scattered(base_parameters, [8, 1], at),
-                        ::overact::simd::scattered(base_parameters, [12, 1], at),
-                        ::overact::simd::scattered(base_parameters, [16, 1], at),
-                        ::overact::simd::scattered(base_parameters, [28, 1], at),
-                        ::overact::simd::scattered(base_parameters, [32, 1], at),
-                        ::overact::simd::scattered(base_parameters, [36, 1], at),
-                        ::overact::simd::scattered(base_parameters, [20, 1], at),
-                        ::overact::simd::scattered(base_parameters, [40, 1], at),
-                        ::overact::simd::scattered(base_parameters, [44, 1], at),
-                        ::overact::simd::scattered_of_first(
-                            base_parameters,
-                            [48, 0],
-                            1,
-                            at,
-                        ),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
                     let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
@@ -13869,7 +13077,8 @@ impl DualV {
                     let bias_a_on_f2_leg = l1_x_leg * bias_a_end_x_leg
                         - l1_y_leg * minus_bias_a_end_y_leg
                         + L_AB_SQUARED * rate_1_squared_leg;
-                    let t1_leg = own_base_parameters[0] * INV_L_AB;
+                    let my_2_leg = simd::scattered(base_parameters, [24, 1], at);
+                    let my_2_inv_l_ab_leg = my_2_leg * INV_L_AB;
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
                     let minus_g2_vy_leg = l1_y_leg * k1_leg;
                     let minus_rate_2_leg = minus_g2_vx_leg * v_end_x_leg
@@ -13878,50 +13087,59 @@ impl DualV {
                     let bias_a_on_f1_leg = l2_y_leg * minus_bias_a_end_y_leg
                         - l2_x_leg * bias_a_end_x_leg
                         - L_AB_SQUARED * rate_2_squared_leg;
-                    let t2_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
+                    let t1_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
                     let minus_bias_rate_dot_1_leg = k1_leg
-                        * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
-                    let tau_1_leg = own_base_parameters[2] * rate_1_leg
-                        + ::overact::simd::signed(own_base_parameters[3], rate_1_leg, at)
-                        + own_base_parameters[4];
+                        * (bias_a_on_f1_leg - rate_1_squared_leg * t1_leg);
+                    let zz_1_leg1R = simd::scattered(base_parameters, [4, 1], at);
+                    let fv_1_leg = simd::scattered(base_parameters, [8, 1], at);
+                    let fs_1_leg = simd::scattered(base_parameters, [12, 1], at);
+                    let off_1_leg1R = simd::scattered(base_parameters, [16, 1], at);
+                    let tau_1_leg = fv_1_leg * rate_1_leg
+                        + simd::signed(fs_1_leg, rate_1_leg, at) + off_1_leg1R;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let tau_2_leg = own_base_parameters[7]
-                        - (own_base_parameters[5] * minus_qd_2_leg
-                            + ::overact::simd::signed(
-                                own_base_parameters[6],
-                                minus_qd_2_leg,
-                                at,
-                            ));
-                    let force_on_u1_leg = bias_a_on_f2_leg * t1_leg
-                        - own_base_parameters[1] * minus_bias_rate_dot_1_leg + tau_1_leg
-                        - tau_2_leg;
+                    let fv_2_leg = simd::scattered(base_parameters, [28, 1], at);
+                    let fs_2_leg = simd::scattered(base_parameters, [32, 1], at);
+                    let off_2_leg1R = simd::scattered(base_parameters, [36, 1], at);
+                    let tau_2_leg = off_2_leg1R
+                        - (fv_2_leg * minus_qd_2_leg
+                            + simd::signed(fs_2_leg, minus_qd_2_leg, at));
+                    let force_on_u1_leg = bias_a_on_f2_leg * my_2_inv_l_ab_leg
+                        - zz_1_leg1R * minus_bias_rate_dot_1_leg + tau_1_leg - tau_2_leg;
                     let minus_bias_rate_dot_2_leg = k1_leg
-                        * (bias_a_on_f2_leg + rate_2_squared_leg * t2_leg);
-                    let moment2_z_leg = bias_a_on_f1_leg * t1_leg
-                        - own_base_parameters[8] * minus_bias_rate_dot_2_leg;
+                        * (bias_a_on_f2_leg + rate_2_squared_leg * t1_leg);
+                    let zz_2_leg1R = simd::scattered(base_parameters, [20, 1], at);
+                    let moment2_z_leg = bias_a_on_f1_leg * my_2_inv_l_ab_leg
+                        - zz_2_leg1R * minus_bias_rate_dot_2_leg;
                     let qd_3_leg = minus_rate_2_leg + twist[2];
-                    let tau_3_leg = own_base_parameters[9] * qd_3_leg
-                        + ::overact::simd::signed(own_base_parameters[10], qd_3_leg, at)
-                        + own_base_parameters[11];
+                    let fv_3_leg = simd::scattered(base_parameters, [40, 1], at);
+                    let fs_3_leg = simd::scattered(base_parameters, [44, 1], at);
+                    let off_3_leg1R = simd::scattered_of_first(
+                        base_parameters,
+                        [48, 0],
+                        1,
+                        at,
+                    );
+                    let tau_3_leg = fv_3_leg * qd_3_leg
+                        + simd::signed(fs_3_leg, qd_3_leg, at) + off_3_leg1R;
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
                     failed.result()?;
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
                         g1_vx_leg * force_on_u1_leg - minus_g2_vx_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vy_leg * force_on_u1_leg - minus_g2_vy_leg * force_on_u2_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
@@ -13929,17 +13147,16 @@ impl DualV {
                             + tau_3_leg,
                     );
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    force_x_platform + ::overact::simd::sum(&added[0]),
-                    -minus_force_y_platform + ::overact::simd::sum(&added[1]),
-                    ::overact::simd::sum(&added[2]),
+                    force_x_platform + simd::sum(&added[0]),
+                    -minus_force_y_platform + simd::sum(&added[1]), simd::sum(&added[2]),
                 ];
                 let output = [sums[0], sums[1], sums[2]];
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        ::overact::simd::few(Legs {
+        simd::few(Legs {
             pose,
             twist,
             base_parameters,
@@ -13960,14 +13177,14 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        torques: &[::core::primitive::f64; 4],
-        parameters: &[::core::primitive::f64; 68],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        torques: &[f64; 4],
+        parameters: &[f64; 68],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
                 ("parameters", parameters, 1e12),
@@ -13975,50 +13192,55 @@ impl DualV {
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            torques: &'a [::core::primitive::f64; 4],
-            parameters: &'a [::core::primitive::f64; 68],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            torques: &'a [f64; 4],
+            parameters: &'a [f64; 68],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [::core::primitive::f64; 3],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[f64; 3], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, torques, parameters } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// 1 / l_ab²
-                const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+                const INV_L_AB_SQUARED: f64 = 12.755102040816327;
                 /// 1 / (2 l_ab)
-                const INV_TWICE_L_AB: ::core::primitive::f64 = 1.7857142857142858;
+                const INV_TWICE_L_AB: f64 = 1.7857142857142858;
                 /// l_ab = l_bc
-                const L_AB: ::core::primitive::f64 = 0.28;
+                const L_AB: f64 = 0.28;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 // --- platform
-                let mass_platform = parameters[63] + parameters[67];
-                let first_x_platform = parameters[61] + parameters[65];
-                let first_y_platform = parameters[62] + parameters[66];
+                let m_platform = parameters[63];
+                let m_payload = parameters[67];
+                let mass_platform = m_platform + m_payload;
+                let mx_platform = parameters[61];
+                let mx_payload = parameters[65];
+                let first_x_platform = mx_platform + mx_payload;
+                let my_platform = parameters[62];
+                let my_payload = parameters[66];
+                let first_y_platform = my_platform + my_payload;
                 let t1_platform = s_phi * first_x_platform + c_phi * first_y_platform;
                 let t2_platform = c_phi * first_x_platform - s_phi * first_y_platform;
-                let inertia_zz_platform = parameters[60] + parameters[64];
+                let zz_platform = parameters[60];
+                let zz_payload = parameters[64];
+                let inertia_zz_platform = zz_platform + zz_payload;
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let minus_force_x_platform = t2_platform * rate_3_squared_leg;
                 let minus_force_y_platform = t1_platform * rate_3_squared_leg;
-                // --- what the legs add: a row for each number, in it one for each leg
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 9];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -14031,90 +13253,60 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- the legs' own
-                    let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- inputs of the legs in this batch
+                    let torques = simd::elements::<1, _, _, _>(torques, at);
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_parameters = [
-                        ::overact::simd::scattered(parameters, [8, 15], at),
-                        ::overact::simd::scattered(parameters, [0, 15], at),
-                        ::overact::simd::scattered(parameters, [1, 15], at),
-                        ::overact::simd::scattered(parameters, [6, 15], at),
-                        ::overact::simd::scattered(parameters, [7, 15], at),
-                        ::overact::simd::scattered(parameters, [5, 15], at),
-                        ::overact::simd::scattered(parameters, [9, 15], at),
-                        ::overact::simd::scattered(parameters, [10, 15], at),
-                        ::overact::simd::scattered(parameters, [11, 15], at),
-                        ::overact::simd::scattered(parameters, [12, 15], at),
-                        ::overact::simd::scattered(parameters, [13, 15], at),
-                        ::overact::simd::scattered(parameters, [14, 15], at),
-                        ::overact::simd::scattered(parameters, [3, 15], at),
-                        ::overact::simd::scattered(parameters, [2, 15], at),
-                        ::overact::simd::scattered(parameters, [4, 15], at),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
-                    let masses_leg_1_1 = own_parameters[1]
-                        + L_AB_SQUARED * own_parameters[0] + own_parameters[2];
+                    let m_2_leg = simd::scattered(parameters, [8, 15], at);
+                    let zz_1_leg = simd::scattered(parameters, [0, 15], at);
+                    let ia_1_leg = simd::scattered(parameters, [1, 15], at);
+                    let masses_leg_1_1 = zz_1_leg + L_AB_SQUARED * m_2_leg + ia_1_leg;
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
                     let t1_leg = rho_squared_leg - TWICE_L_AB_SQUARED;
                     let c2_leg = 6.377551020408164 * t1_leg;
+                    let mx_2_leg = simd::scattered(parameters, [6, 15], at);
                     let s2_leg = INV_L_AB_SQUARED * det_leg;
-                    let force1_y_by_2_leg = c2_leg * own_parameters[3]
-                        - s2_leg * own_parameters[4];
+                    let my_2_leg = simd::scattered(parameters, [7, 15], at);
+                    let force1_y_by_2_leg = c2_leg * mx_2_leg - s2_leg * my_2_leg;
                     let masses_leg_1_2 = L_AB * force1_y_by_2_leg;
+                    let zz_2_leg = simd::scattered(parameters, [5, 15], at);
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                     let l2_y_leg = d_y_leg - l1_y_leg;
                     let g1_vy_leg = l2_y_leg * k1_leg;
                     let minus_g2_vy_leg = l1_y_leg * k1_leg;
                     let t2_leg = g1_vy_leg * masses_leg_1_1
                         - minus_g2_vy_leg * masses_leg_1_2;
-                    let t3_leg = g1_vy_leg * masses_leg_1_2
-                        - minus_g2_vy_leg * own_parameters[5];
+                    let t3_leg = g1_vy_leg * masses_leg_1_2 - minus_g2_vy_leg * zz_2_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
                     let t4_leg = g2_wz_leg * masses_leg_1_2
                         - minus_g1_wz_leg * masses_leg_1_1;
-                    let t5_leg = g2_wz_leg * own_parameters[5]
-                        - minus_g1_wz_leg * masses_leg_1_2;
+                    let t5_leg = g2_wz_leg * zz_2_leg - minus_g1_wz_leg * masses_leg_1_2;
                     let minus_v_arm_x_leg = p_y_leg * twist[2];
                     let v_end_x_leg = twist[0] - minus_v_arm_x_leg;
                     let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
@@ -14142,38 +13334,38 @@ impl DualV {
                         + l_ab_squared_rate_1_squared_leg;
                     let minus_bias_rate_dot_2_leg = k1_leg
                         * (bias_a_on_f2_leg + c2_leg * l_ab_squared_rate_2_squared_leg);
-                    let moment2_z_leg = own_parameters[3] * bias_a2_y_leg
-                        + own_parameters[4] * minus_bias_a2_x_leg
-                        - own_parameters[5] * minus_bias_rate_dot_2_leg;
+                    let moment2_z_leg = mx_2_leg * bias_a2_y_leg
+                        + my_2_leg * minus_bias_a2_x_leg
+                        - zz_2_leg * minus_bias_rate_dot_2_leg;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let tau_2_leg = own_parameters[8]
-                        - (own_parameters[6] * minus_qd_2_leg
-                            + ::overact::simd::signed(
-                                own_parameters[7],
-                                minus_qd_2_leg,
-                                at,
-                            ));
+                    let fv_2_leg = simd::scattered(parameters, [9, 15], at);
+                    let fs_2_leg = simd::scattered(parameters, [10, 15], at);
+                    let off_2_leg = simd::scattered(parameters, [11, 15], at);
+                    let tau_2_leg = off_2_leg
+                        - (fv_2_leg * minus_qd_2_leg
+                            + simd::signed(fs_2_leg, minus_qd_2_leg, at));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
-                    let tau_3_leg = own_parameters[9] * qd_3_leg
-                        + ::overact::simd::signed(own_parameters[10], qd_3_leg, at)
-                        + own_parameters[11];
+                    let fv_3_leg = simd::scattered(parameters, [12, 15], at);
+                    let fs_3_leg = simd::scattered(parameters, [13, 15], at);
+                    let off_3_leg = simd::scattered(parameters, [14, 15], at);
+                    let tau_3_leg = fv_3_leg * qd_3_leg
+                        + simd::signed(fs_3_leg, qd_3_leg, at) + off_3_leg;
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
-                    let force2_x_leg = own_parameters[4] * minus_bias_rate_dot_2_leg
-                        - own_parameters[3] * rate_2_squared_leg;
-                    let minus_force2_y_leg = own_parameters[3]
-                        * minus_bias_rate_dot_2_leg
-                        + own_parameters[4] * rate_2_squared_leg;
-                    let t6_leg = ::overact::simd::signed(
-                        own_parameters[12],
-                        rate_1_leg,
-                        at,
-                    ) + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
-                        + own_parameters[13] * rate_1_leg + own_parameters[14]
+                    let fs_1_leg = simd::scattered(parameters, [3, 15], at);
+                    let force2_x_leg = my_2_leg * minus_bias_rate_dot_2_leg
+                        - mx_2_leg * rate_2_squared_leg;
+                    let minus_force2_y_leg = mx_2_leg * minus_bias_rate_dot_2_leg
+                        + my_2_leg * rate_2_squared_leg;
+                    let fv_1_leg = simd::scattered(parameters, [2, 15], at);
+                    let off_1_leg = simd::scattered(parameters, [4, 15], at);
+                    let t6_leg = simd::signed(fs_1_leg, rate_1_leg, at)
+                        + L_AB * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
+                        + fv_1_leg * rate_1_leg + off_1_leg
                         - masses_leg_1_1 * minus_bias_rate_dot_1_leg;
                     let force_on_u1_leg = t6_leg - tau_2_leg;
-                    let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
+                    let tau1_minus_force_on_u1_leg_leg = torques[0] - force_on_u1_leg;
                     failed.result()?;
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
@@ -14181,99 +13373,95 @@ impl DualV {
                             * (g1_vx_leg * masses_leg_1_1
                                 - minus_g2_vx_leg * masses_leg_1_2)
                             - minus_g2_vx_leg
-                                * (g1_vx_leg * masses_leg_1_2
-                                    - minus_g2_vx_leg * own_parameters[5]),
+                                * (g1_vx_leg * masses_leg_1_2 - minus_g2_vx_leg * zz_2_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t2_leg - minus_g2_vx_leg * t3_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         g1_vx_leg * t4_leg - minus_g2_vx_leg * t5_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         g1_vy_leg * t2_leg - minus_g2_vy_leg * t3_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         g1_vy_leg * t4_leg - minus_g2_vy_leg * t5_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
                         g2_wz_leg * t5_leg - minus_g1_wz_leg * t4_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         minus_g2_vx_leg * force_on_u2_leg
-                            + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
+                            + g1_vx_leg * tau1_minus_force_on_u1_leg_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         minus_g2_vy_leg * force_on_u2_leg
-                            + g1_vy_leg * tau1_minus_force_on_u1_leg_leg1,
+                            + g1_vy_leg * tau1_minus_force_on_u1_leg_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
                         -(tau_3_leg + g2_wz_leg * force_on_u2_leg
-                            + minus_g1_wz_leg * tau1_minus_force_on_u1_leg_leg1),
+                            + minus_g1_wz_leg * tau1_minus_force_on_u1_leg_leg),
                     );
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    mass_platform + ::overact::simd::sum(&added[0]),
-                    ::overact::simd::sum(&added[1]), -t1_platform + ::overact::simd::sum(&added[2]),
-                    mass_platform + ::overact::simd::sum(&added[3]),
-                    t2_platform + ::overact::simd::sum(&added[4]),
-                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
-                    minus_force_x_platform + ::overact::simd::sum(&added[6]),
-                    minus_force_y_platform + ::overact::simd::sum(&added[7]),
-                    ::overact::simd::sum(&added[8]),
+                    mass_platform + simd::sum(&added[0]), simd::sum(&added[1]),
+                    -t1_platform + simd::sum(&added[2]), mass_platform + simd::sum(&added[3]),
+                    t2_platform + simd::sum(&added[4]), inertia_zz_platform + simd::sum(&added[5]),
+                    minus_force_x_platform + simd::sum(&added[6]),
+                    minus_force_y_platform + simd::sum(&added[7]), simd::sum(&added[8]),
                 ];
                 let output = {
                     let inv_pivot_1 = 1.0 / sums[0];
-                    ::overact::guard::mass(sums[0])?;
+                    guard::mass(sums[0])?;
                     let l_2_1 = sums[1] * inv_pivot_1;
                     let pivot_2 = sums[3] - sums[1] * l_2_1;
-                    ::overact::guard::mass(pivot_2)?;
+                    guard::mass(pivot_2)?;
                     let inv_pivot_2 = 1.0 / pivot_2;
                     let t1 = sums[7] - l_2_1 * sums[6];
                     let l_3_1 = sums[2] * inv_pivot_1;
                     let schur_2_3 = sums[4] - sums[1] * l_3_1;
                     let l_3_2 = schur_2_3 * inv_pivot_2;
                     let pivot_3 = sums[5] - sums[2] * l_3_1 - schur_2_3 * l_3_2;
-                    ::overact::guard::mass(pivot_3)?;
-                    ::overact::guard::size(inv_pivot_1, 1e100)?;
-                    ::overact::guard::size(inv_pivot_2, 1e100)?;
-                    ::overact::guard::size(l_3_2, 1e100)?;
+                    guard::mass(pivot_3)?;
+                    guard::size(inv_pivot_1, 1e100)?;
+                    guard::size(inv_pivot_2, 1e100)?;
+                    guard::size(l_3_2, 1e100)?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = inv_pivot_2 * t1 - l_3_2 * t2;
-                    ::overact::guard::size(t3, 1e100)?;
-                    ::overact::guard::size(pivot_3, 1e100)?;
-                    ::overact::guard::size(t2, 1e100)?;
+                    guard::size(t3, 1e100)?;
+                    guard::size(pivot_3, 1e100)?;
+                    guard::size(t2, 1e100)?;
                     [inv_pivot_1 * sums[6] - l_2_1 * t3 - l_3_1 * t2, t3, t2]
                 };
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        ::overact::simd::few(Legs {
+        simd::few(Legs {
             pose,
             twist,
             torques,
@@ -14295,14 +13483,14 @@ impl DualV {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        torques: &[::core::primitive::f64; 4],
-        base_parameters: &[::core::primitive::f64; 53],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        torques: &[f64; 4],
+        base_parameters: &[f64; 53],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
                 ("base_parameters", base_parameters, 1e12),
@@ -14310,48 +13498,53 @@ impl DualV {
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 3],
-            twist: &'a [::core::primitive::f64; 3],
-            torques: &'a [::core::primitive::f64; 4],
-            base_parameters: &'a [::core::primitive::f64; 53],
+            pose: &'a [f64; 3],
+            twist: &'a [f64; 3],
+            torques: &'a [f64; 4],
+            base_parameters: &'a [f64; 53],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [::core::primitive::f64; 3],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[f64; 3], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, torques, base_parameters } = self;
                 /// 1 / l_ab
-                const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+                const INV_L_AB: f64 = 3.5714285714285716;
                 /// 1 / l_ab²
-                const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+                const INV_L_AB_SQUARED: f64 = 12.755102040816327;
                 /// l_ab = l_bc
-                const L_AB: ::core::primitive::f64 = 0.28;
+                const L_AB: f64 = 0.28;
                 /// l_ab²
-                const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+                const L_AB_SQUARED: f64 = 0.0784;
                 /// 2 l_ab²
-                const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-                let [(s_phi, c_phi)] = ::overact::math::wide::sin_cos_all([pose[2]]);
+                const TWICE_L_AB_SQUARED: f64 = 0.1568;
+                let [(s_phi, c_phi)] = math::wide::sin_cos_all([pose[2]]);
                 // --- platform
-                let mass_platform = base_parameters[3] + base_parameters[52];
-                let first_x_platform = base_parameters[1] + base_parameters[50];
-                let first_y_platform = base_parameters[2] + base_parameters[51];
+                let m_platformR = base_parameters[3];
+                let m_payload = base_parameters[52];
+                let mass_platform = m_platformR + m_payload;
+                let mx_platform = base_parameters[1];
+                let mx_payload = base_parameters[50];
+                let first_x_platform = mx_platform + mx_payload;
+                let my_platformR = base_parameters[2];
+                let my_payload = base_parameters[51];
+                let first_y_platform = my_platformR + my_payload;
                 let t1_platform = s_phi * first_x_platform + c_phi * first_y_platform;
                 let t2_platform = c_phi * first_x_platform - s_phi * first_y_platform;
-                let inertia_zz_platform = base_parameters[0] + base_parameters[49];
+                let zz_platformR = base_parameters[0];
+                let zz_payload = base_parameters[49];
+                let inertia_zz_platform = zz_platformR + zz_payload;
                 let rate_3_squared_leg = twist[2] * twist[2];
                 let minus_force_x_platform = t2_platform * rate_3_squared_leg;
                 let minus_force_y_platform = t1_platform * rate_3_squared_leg;
-                // --- what the legs add: a row for each number, in it one for each leg
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 4]; 9];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: y of the end
                 /// 1: 0.41 * cos(gamma of `1`)
                 /// 2: 0.41 * sin(gamma of `1`)
-                /// 3: sign of a root in the closed form, beside that of `leg1`
-                static OF_LEG: [[::core::primitive::f64; 4]; 4] = [
+                /// 3: sign of a root in the closed form, relative to that of `leg1`
+                static OF_LEG: [[f64; 4]; 4] = [
                     [0.11, 0.11, -0.11, -0.11],
                     [
                         0.3950502153918333, -0.39505021539183327, -0.39505021539183327,
@@ -14364,97 +13557,66 @@ impl DualV {
                     [1.0, -1.0, 1.0, -1.0],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 4] = [
-                    "leg1", "leg2", "leg3", "leg4",
-                ];
-                for at in ::overact::simd::places::<V, 4>(lanes) {
-                    // --- the legs' own
-                    let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+                for at in simd::places::<V, 4>(lanes) {
+                    // --- inputs of the legs in this batch
+                    let torques = simd::elements::<1, _, _, _>(torques, at);
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_base_parameters = [
-                        ::overact::simd::scattered(base_parameters, [4, 1], at),
-                        ::overact::simd::scattered(base_parameters, [24, 1], at),
-                        ::overact::simd::scattered(base_parameters, [20, 1], at),
-                        ::overact::simd::scattered(base_parameters, [28, 1], at),
-                        ::overact::simd::scattered(base_parameters, [32, 1], at),
-                        ::overact::simd::scattered(base_parameters, [36, 1], at),
-                        ::overact::simd::scattered(base_parameters, [40, 1], at),
-                        ::overact::simd::scattered(base_parameters, [44, 1], at),
-                        ::overact::simd::scattered_of_first(
-                            base_parameters,
-                            [48, 0],
-                            1,
-                            at,
-                        ),
-                        ::overact::simd::scattered(base_parameters, [8, 1], at),
-                        ::overact::simd::scattered(base_parameters, [12, 1], at),
-                        ::overact::simd::scattered(base_parameters, [16, 1], at),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let minus_p_x_leg = s_phi * of_leg[0];
                     let d_x_leg = pose[0] - minus_p_x_leg - of_leg[1];
                     let p_y_leg = c_phi * of_leg[0];
                     let d_y_leg = pose[1] + p_y_leg - of_leg[2];
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1561; 4],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1561; 4], &LEGS, at);
                     let h_squared_leg = L_AB_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2524; 4],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2524; 4], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let signed_h_leg = h_leg * of_leg[3];
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * signed_h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let det_leg = rho_squared_leg * signed_h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.0784; 4], &LEGS, at);
                     let k1_leg = 1.0 / det_leg;
                     let g1_vx_leg = l2_x_leg * k1_leg;
+                    let zz_1_leg1R = simd::scattered(base_parameters, [4, 1], at);
                     let minus_g2_vx_leg = l1_x_leg * k1_leg;
-                    let t1_leg = INV_L_AB_SQUARED * own_base_parameters[1];
-                    let minus_first1_x_leg = det_leg * t1_leg;
+                    let my_2_leg = simd::scattered(base_parameters, [24, 1], at);
+                    let inv_l_ab_squared_my_2_leg = INV_L_AB_SQUARED * my_2_leg;
+                    let minus_first1_x_leg = det_leg * inv_l_ab_squared_my_2_leg;
                     let minus_masses_leg_1_2 = L_AB * minus_first1_x_leg;
                     let c1_leg = INV_L_AB * l1_x_leg;
-                    let t2_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
-                    let first1_y_leg = t2_leg * t1_leg;
+                    let t1_leg = 0.5 * (rho_squared_leg - TWICE_L_AB_SQUARED);
+                    let first1_y_leg = t1_leg * inv_l_ab_squared_my_2_leg;
                     let l1_y_leg = 0.5 * d_y_leg - d_x_leg * signed_h_leg;
                     let s1_leg = INV_L_AB * l1_y_leg;
-                    let t3_leg = g1_vx_leg
-                        * (g1_vx_leg * own_base_parameters[0]
+                    let zz_2_leg1R = simd::scattered(base_parameters, [20, 1], at);
+                    let t2_leg = g1_vx_leg
+                        * (g1_vx_leg * zz_1_leg1R
                             + minus_g2_vx_leg * minus_masses_leg_1_2)
                         + minus_g2_vx_leg
                             * (c1_leg * first1_y_leg - s1_leg * minus_first1_x_leg
-                                + minus_g2_vx_leg * own_base_parameters[2]);
+                                + minus_g2_vx_leg * zz_2_leg1R);
                     let l2_y_leg = d_y_leg - l1_y_leg;
                     let g1_vy_leg = l2_y_leg * k1_leg;
                     let minus_g2_vy_leg = l1_y_leg * k1_leg;
-                    let t4_leg = g1_vy_leg * own_base_parameters[0]
+                    let t3_leg = g1_vy_leg * zz_1_leg1R
                         + minus_g2_vy_leg * minus_masses_leg_1_2;
-                    let t5_leg = c1_leg * minus_first1_x_leg + s1_leg * first1_y_leg
-                        + minus_g2_vy_leg * own_base_parameters[2];
+                    let t4_leg = c1_leg * minus_first1_x_leg + s1_leg * first1_y_leg
+                        + minus_g2_vy_leg * zz_2_leg1R;
                     let minus_g1_wz_leg = minus_p_x_leg * g1_vy_leg
                         + p_y_leg * g1_vx_leg;
                     let g2_wz_leg = minus_p_x_leg * minus_g2_vy_leg
                         + p_y_leg * minus_g2_vx_leg;
-                    let t6_leg = minus_g1_wz_leg * own_base_parameters[0]
+                    let t5_leg = minus_g1_wz_leg * zz_1_leg1R
                         + g2_wz_leg * minus_masses_leg_1_2;
-                    let t7_leg = minus_g1_wz_leg * minus_masses_leg_1_2
-                        + g2_wz_leg * own_base_parameters[2];
+                    let t6_leg = minus_g1_wz_leg * minus_masses_leg_1_2
+                        + g2_wz_leg * zz_2_leg1R;
                     let minus_v_arm_x_leg = p_y_leg * twist[2];
                     let minus_bias_a_end_y_leg = twist[2] * minus_v_arm_x_leg;
                     let minus_v_arm_y_leg = minus_p_x_leg * twist[2];
@@ -14467,133 +13629,134 @@ impl DualV {
                     let bias_a_on_f1_leg = l2_y_leg * minus_bias_a_end_y_leg
                         - l2_x_leg * bias_a_end_x_leg
                         - L_AB_SQUARED * rate_2_squared_leg;
-                    let t8_leg = own_base_parameters[1] * INV_L_AB;
+                    let my_2_inv_l_ab_leg = my_2_leg * INV_L_AB;
                     let rate_1_leg = g1_vx_leg * v_end_x_leg + g1_vy_leg * v_end_y_leg;
                     let rate_1_squared_leg = rate_1_leg * rate_1_leg;
                     let bias_a_on_f2_leg = l1_x_leg * bias_a_end_x_leg
                         - l1_y_leg * minus_bias_a_end_y_leg
                         + L_AB_SQUARED * rate_1_squared_leg;
                     let minus_bias_rate_dot_2_leg = k1_leg
-                        * (bias_a_on_f2_leg + rate_2_squared_leg * t2_leg);
-                    let moment2_z_leg = bias_a_on_f1_leg * t8_leg
-                        - own_base_parameters[2] * minus_bias_rate_dot_2_leg;
+                        * (bias_a_on_f2_leg + rate_2_squared_leg * t1_leg);
+                    let moment2_z_leg = bias_a_on_f1_leg * my_2_inv_l_ab_leg
+                        - zz_2_leg1R * minus_bias_rate_dot_2_leg;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let tau_2_leg = own_base_parameters[5]
-                        - (own_base_parameters[3] * minus_qd_2_leg
-                            + ::overact::simd::signed(
-                                own_base_parameters[4],
-                                minus_qd_2_leg,
-                                at,
-                            ));
+                    let fv_2_leg = simd::scattered(base_parameters, [28, 1], at);
+                    let fs_2_leg = simd::scattered(base_parameters, [32, 1], at);
+                    let off_2_leg1R = simd::scattered(base_parameters, [36, 1], at);
+                    let tau_2_leg = off_2_leg1R
+                        - (fv_2_leg * minus_qd_2_leg
+                            + simd::signed(fs_2_leg, minus_qd_2_leg, at));
                     let qd_3_leg = minus_rate_2_leg + twist[2];
-                    let tau_3_leg = own_base_parameters[6] * qd_3_leg
-                        + ::overact::simd::signed(own_base_parameters[7], qd_3_leg, at)
-                        + own_base_parameters[8];
+                    let fv_3_leg = simd::scattered(base_parameters, [40, 1], at);
+                    let fs_3_leg = simd::scattered(base_parameters, [44, 1], at);
+                    let off_3_leg1R = simd::scattered_of_first(
+                        base_parameters,
+                        [48, 0],
+                        1,
+                        at,
+                    );
+                    let tau_3_leg = fv_3_leg * qd_3_leg
+                        + simd::signed(fs_3_leg, qd_3_leg, at) + off_3_leg1R;
                     let force_on_u2_leg = moment2_z_leg + tau_2_leg - tau_3_leg;
                     let minus_bias_rate_dot_1_leg = k1_leg
-                        * (bias_a_on_f1_leg - rate_1_squared_leg * t2_leg);
-                    let tau_1_leg = own_base_parameters[9] * rate_1_leg
-                        + ::overact::simd::signed(
-                            own_base_parameters[10],
-                            rate_1_leg,
-                            at,
-                        ) + own_base_parameters[11];
-                    let force_on_u1_leg = bias_a_on_f2_leg * t8_leg
-                        - own_base_parameters[0] * minus_bias_rate_dot_1_leg + tau_1_leg
-                        - tau_2_leg;
-                    let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
+                        * (bias_a_on_f1_leg - rate_1_squared_leg * t1_leg);
+                    let fv_1_leg = simd::scattered(base_parameters, [8, 1], at);
+                    let fs_1_leg = simd::scattered(base_parameters, [12, 1], at);
+                    let off_1_leg1R = simd::scattered(base_parameters, [16, 1], at);
+                    let tau_1_leg = fv_1_leg * rate_1_leg
+                        + simd::signed(fs_1_leg, rate_1_leg, at) + off_1_leg1R;
+                    let force_on_u1_leg = bias_a_on_f2_leg * my_2_inv_l_ab_leg
+                        - zz_1_leg1R * minus_bias_rate_dot_1_leg + tau_1_leg - tau_2_leg;
+                    let tau1_minus_force_on_u1_leg_leg = torques[0] - force_on_u1_leg;
                     failed.result()?;
-                    ::overact::simd::put(&mut added[0], [0, 1], at, t3_leg);
-                    ::overact::simd::put(
+                    simd::put(&mut added[0], [0, 1], at, t2_leg);
+                    simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
-                        g1_vx_leg * t4_leg + minus_g2_vx_leg * t5_leg,
+                        g1_vx_leg * t3_leg + minus_g2_vx_leg * t4_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
-                        -(g1_vx_leg * t6_leg + minus_g2_vx_leg * t7_leg),
+                        -(g1_vx_leg * t5_leg + minus_g2_vx_leg * t6_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
-                        g1_vy_leg * t4_leg + minus_g2_vy_leg * t5_leg,
+                        g1_vy_leg * t3_leg + minus_g2_vy_leg * t4_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
-                        -(g1_vy_leg * t6_leg + minus_g2_vy_leg * t7_leg),
+                        -(g1_vy_leg * t5_leg + minus_g2_vy_leg * t6_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[5],
                         [0, 1],
                         at,
-                        minus_g1_wz_leg * t6_leg + g2_wz_leg * t7_leg,
+                        minus_g1_wz_leg * t5_leg + g2_wz_leg * t6_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[6],
                         [0, 1],
                         at,
                         minus_g2_vx_leg * force_on_u2_leg
-                            + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
+                            + g1_vx_leg * tau1_minus_force_on_u1_leg_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[7],
                         [0, 1],
                         at,
                         minus_g2_vy_leg * force_on_u2_leg
-                            + g1_vy_leg * tau1_minus_force_on_u1_leg_leg1,
+                            + g1_vy_leg * tau1_minus_force_on_u1_leg_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[8],
                         [0, 1],
                         at,
-                        -(minus_g1_wz_leg * tau1_minus_force_on_u1_leg_leg1 + tau_3_leg
+                        -(minus_g1_wz_leg * tau1_minus_force_on_u1_leg_leg + tau_3_leg
                             + g2_wz_leg * force_on_u2_leg),
                     );
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    mass_platform + ::overact::simd::sum(&added[0]),
-                    ::overact::simd::sum(&added[1]), -t1_platform + ::overact::simd::sum(&added[2]),
-                    mass_platform + ::overact::simd::sum(&added[3]),
-                    t2_platform + ::overact::simd::sum(&added[4]),
-                    inertia_zz_platform + ::overact::simd::sum(&added[5]),
-                    minus_force_x_platform + ::overact::simd::sum(&added[6]),
-                    minus_force_y_platform + ::overact::simd::sum(&added[7]),
-                    ::overact::simd::sum(&added[8]),
+                    mass_platform + simd::sum(&added[0]), simd::sum(&added[1]),
+                    -t1_platform + simd::sum(&added[2]), mass_platform + simd::sum(&added[3]),
+                    t2_platform + simd::sum(&added[4]), inertia_zz_platform + simd::sum(&added[5]),
+                    minus_force_x_platform + simd::sum(&added[6]),
+                    minus_force_y_platform + simd::sum(&added[7]), simd::sum(&added[8]),
                 ];
                 let output = {
                     let inv_pivot_1 = 1.0 / sums[0];
-                    ::overact::guard::mass(sums[0])?;
+                    guard::mass(sums[0])?;
                     let l_2_1 = sums[1] * inv_pivot_1;
                     let pivot_2 = sums[3] - sums[1] * l_2_1;
-                    ::overact::guard::mass(pivot_2)?;
+                    guard::mass(pivot_2)?;
                     let inv_pivot_2 = 1.0 / pivot_2;
                     let t1 = sums[7] - l_2_1 * sums[6];
                     let l_3_1 = sums[2] * inv_pivot_1;
                     let schur_2_3 = sums[4] - sums[1] * l_3_1;
                     let l_3_2 = schur_2_3 * inv_pivot_2;
                     let pivot_3 = sums[5] - sums[2] * l_3_1 - schur_2_3 * l_3_2;
-                    ::overact::guard::mass(pivot_3)?;
-                    ::overact::guard::size(inv_pivot_1, 1e100)?;
-                    ::overact::guard::size(inv_pivot_2, 1e100)?;
-                    ::overact::guard::size(l_3_2, 1e100)?;
+                    guard::mass(pivot_3)?;
+                    guard::size(inv_pivot_1, 1e100)?;
+                    guard::size(inv_pivot_2, 1e100)?;
+                    guard::size(l_3_2, 1e100)?;
                     let t2 = (sums[8] - l_3_1 * sums[6] - l_3_2 * t1) / pivot_3;
                     let t3 = inv_pivot_2 * t1 - l_3_2 * t2;
-                    ::overact::guard::size(t3, 1e100)?;
-                    ::overact::guard::size(pivot_3, 1e100)?;
-                    ::overact::guard::size(t2, 1e100)?;
+                    guard::size(t3, 1e100)?;
+                    guard::size(pivot_3, 1e100)?;
+                    guard::size(t2, 1e100)?;
                     [inv_pivot_1 * sums[6] - l_2_1 * t3 - l_3_1 * t2, t3, t2]
                 };
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        ::overact::simd::few(Legs {
+        simd::few(Legs {
             pose,
             twist,
             torques,
@@ -14614,38 +13777,38 @@ impl DualV {
     /// 580 operations (238 additions, 332 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 12 signs, 17 guards, 583 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_preloaded(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-        parameters: &[::core::primitive::f64; 68],
-        preload: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+        parameters: &[f64; 68],
+        preload: &[f64; 1],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("parameters", parameters, 1e12), ("preload", preload, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_ab
-            const INV_L_AB: ::core::primitive::f64 = 3.5714285714285716;
+            const INV_L_AB: f64 = 3.5714285714285716;
             /// 1 / l_ab²
-            const INV_L_AB_SQUARED: ::core::primitive::f64 = 12.755102040816327;
+            const INV_L_AB_SQUARED: f64 = 12.755102040816327;
             /// 1 / r_p
-            const INV_R_P: ::core::primitive::f64 = 9.090909090909092;
+            const INV_R_P: f64 = 9.090909090909092;
             /// 1 / (2 l_ab)
-            const INV_TWICE_L_AB: ::core::primitive::f64 = 1.7857142857142858;
+            const INV_TWICE_L_AB: f64 = 1.7857142857142858;
             /// l_ab = l_bc
-            const L_AB: ::core::primitive::f64 = 0.28;
+            const L_AB: f64 = 0.28;
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -14654,14 +13817,14 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
@@ -14689,51 +13852,60 @@ impl DualV {
             let t2_leg1 = 0.5 * t1_leg1;
             let rate_dot_1_leg1 = k1_leg1
                 * (minus_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
             let s2_leg1 = INV_L_AB_SQUARED * det_leg1;
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-            let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1
-                - parameters[6] * rate_2_squared_leg1;
+            let my_2_leg1 = parameters[7];
+            let mx_2_leg1 = parameters[6];
+            let force2_x_leg1 = my_2_leg1 * minus_rate_dot_2_leg1
+                - mx_2_leg1 * rate_2_squared_leg1;
             let c2_leg1 = 6.377551020408164 * t1_leg1;
-            let minus_force2_y_leg1 = parameters[6] * minus_rate_dot_2_leg1
-                + parameters[7] * rate_2_squared_leg1;
-            let tau_1_leg1 = parameters[1] * rate_dot_1_leg1
-                + parameters[2] * rate_1_leg1
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
-                + parameters[4];
+            let minus_force2_y_leg1 = mx_2_leg1 * minus_rate_dot_2_leg1
+                + my_2_leg1 * rate_2_squared_leg1;
+            let ia_1_leg1 = parameters[1];
+            let fv_1_leg1 = parameters[2];
+            let fs_1_leg1 = parameters[3];
+            let off_1_leg1 = parameters[4];
+            let tau_1_leg1 = ia_1_leg1 * rate_dot_1_leg1 + fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let tau_2_leg1 = parameters[11]
-                - (parameters[9] * minus_qd_2_leg1
-                    + ::overact::math::wide::signed(
-                        parameters[10],
-                        minus_qd_2_leg1,
-                    ));
+            let fv_2_leg1 = parameters[9];
+            let fs_2_leg1 = parameters[10];
+            let off_2_leg1 = parameters[11];
+            let tau_2_leg1 = off_2_leg1
+                - (fv_2_leg1 * minus_qd_2_leg1
+                    + math::wide::signed(fs_2_leg1, minus_qd_2_leg1));
             let force_on_u1_leg1 = rate_dot_1_leg1
-                * (parameters[0] + L_AB_SQUARED * parameters[8])
+                * (zz_1_leg1 + L_AB_SQUARED * m_2_leg1)
                 + L_AB * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
                 + tau_1_leg1 - tau_2_leg1;
             let a2_y_leg1 = INV_L_AB * (det_leg1 * rate_1_squared_leg1)
                 + INV_TWICE_L_AB * (t1_leg1 * rate_dot_1_leg1);
             let a2_x_leg1 = INV_L_AB * minus_a_on_f1_leg1;
-            let moment2_z_leg1 = parameters[6] * a2_y_leg1
-                - parameters[7] * a2_x_leg1 - parameters[5] * minus_rate_dot_2_leg1;
+            let zz_2_leg1 = parameters[5];
+            let moment2_z_leg1 = mx_2_leg1 * a2_y_leg1 - my_2_leg1 * a2_x_leg1
+                - zz_2_leg1 * minus_rate_dot_2_leg1;
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
-            let tau_3_leg1 = parameters[12] * qd_3_leg1
-                + ::overact::math::wide::signed(parameters[13], qd_3_leg1)
-                + parameters[14];
+            let fv_3_leg1 = parameters[12];
+            let fs_3_leg1 = parameters[13];
+            let off_3_leg1 = parameters[14];
+            let tau_3_leg1 = fv_3_leg1 * qd_3_leg1
+                + math::wide::signed(fs_3_leg1, qd_3_leg1) + off_3_leg1;
             let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1 - tau_3_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let g2_vx_leg2 = l1_x_leg2 * k1_leg2;
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
@@ -14753,56 +13925,64 @@ impl DualV {
             let t2_leg2 = 0.5 * t1_leg2;
             let rate_dot_2_leg2 = k1_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * t2_leg2);
+            let zz_2_leg2 = parameters[20];
             let minus_a_on_f1_leg2 = l2_x_leg2 * a_end_x_leg1
                 + l2_y_leg2 * a_end_y_leg1 + L_AB_SQUARED * rate_2_squared_leg2;
             let minus_rate_dot_1_leg2 = k1_leg2
                 * (minus_a_on_f1_leg2 + rate_1_squared_leg2 * t2_leg2);
             let minus_a2_y_leg2 = INV_L_AB * (det_leg2 * rate_1_squared_leg2)
                 + INV_TWICE_L_AB * (t1_leg2 * minus_rate_dot_1_leg2);
+            let mx_2_leg2 = parameters[21];
             let a2_x_leg2 = INV_L_AB * minus_a_on_f1_leg2;
-            let moment2_z_leg2 = parameters[20] * rate_dot_2_leg2
-                - (parameters[21] * minus_a2_y_leg2 + parameters[22] * a2_x_leg2);
+            let my_2_leg2 = parameters[22];
+            let moment2_z_leg2 = zz_2_leg2 * rate_dot_2_leg2
+                - (mx_2_leg2 * minus_a2_y_leg2 + my_2_leg2 * a2_x_leg2);
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
-            let tau_2_leg2 = parameters[24] * qd_2_leg2
-                + ::overact::math::wide::signed(parameters[25], qd_2_leg2)
-                + parameters[26];
+            let fv_2_leg2 = parameters[24];
+            let fs_2_leg2 = parameters[25];
+            let off_2_leg2 = parameters[26];
+            let tau_2_leg2 = fv_2_leg2 * qd_2_leg2
+                + math::wide::signed(fs_2_leg2, qd_2_leg2) + off_2_leg2;
             let qd_3_leg2 = twist[2] - rate_2_leg2;
-            let tau_3_leg2 = parameters[27] * qd_3_leg2
-                + ::overact::math::wide::signed(parameters[28], qd_3_leg2)
-                + parameters[29];
+            let fv_3_leg2 = parameters[27];
+            let fs_3_leg2 = parameters[28];
+            let off_3_leg2 = parameters[29];
+            let tau_3_leg2 = fv_3_leg2 * qd_3_leg2
+                + math::wide::signed(fs_3_leg2, qd_3_leg2) + off_3_leg2;
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
             let minus_s2_leg2 = INV_L_AB_SQUARED * det_leg2;
-            let minus_force2_x_leg2 = parameters[21] * rate_2_squared_leg2
-                + parameters[22] * rate_dot_2_leg2;
+            let minus_force2_x_leg2 = mx_2_leg2 * rate_2_squared_leg2
+                + my_2_leg2 * rate_dot_2_leg2;
             let c2_leg2 = 6.377551020408164 * t1_leg2;
-            let force2_y_leg2 = parameters[21] * rate_dot_2_leg2
-                - parameters[22] * rate_2_squared_leg2;
-            let tau_1_leg2 = parameters[19]
-                - (parameters[16] * minus_rate_dot_1_leg2
-                    + parameters[17] * minus_rate_1_leg2
-                    + ::overact::math::wide::signed(
-                        parameters[18],
-                        minus_rate_1_leg2,
-                    ));
+            let force2_y_leg2 = mx_2_leg2 * rate_dot_2_leg2
+                - my_2_leg2 * rate_2_squared_leg2;
+            let m_2_leg2 = parameters[23];
+            let zz_1_leg2 = parameters[15];
+            let ia_1_leg2 = parameters[16];
+            let fv_1_leg2 = parameters[17];
+            let fs_1_leg2 = parameters[18];
+            let off_1_leg2 = parameters[19];
+            let tau_1_leg2 = off_1_leg2
+                - (ia_1_leg2 * minus_rate_dot_1_leg2 + fv_1_leg2 * minus_rate_1_leg2
+                    + math::wide::signed(fs_1_leg2, minus_rate_1_leg2));
             let force_on_u1_leg2 = L_AB
                 * (minus_s2_leg2 * minus_force2_x_leg2 + c2_leg2 * force2_y_leg2)
-                - minus_rate_dot_1_leg2
-                    * (parameters[15] + L_AB_SQUARED * parameters[23]) + tau_1_leg2
-                - tau_2_leg2;
+                - minus_rate_dot_1_leg2 * (zz_1_leg2 + L_AB_SQUARED * m_2_leg2)
+                + tau_1_leg2 - tau_2_leg2;
             // --- leg3
             let x_plus_p_x_leg3 = pose[0] + p_x_leg3;
             let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
@@ -14826,41 +14006,49 @@ impl DualV {
             let t2_leg3 = 0.5 * t1_leg3;
             let rate_dot_1_leg3 = k1_leg3
                 * (minus_a_on_f1_leg3 + rate_1_squared_leg3 * t2_leg3);
+            let m_2_leg3 = parameters[38];
+            let zz_1_leg3 = parameters[30];
             let s2_leg3 = INV_L_AB_SQUARED * det_leg3;
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
                 * (a_on_f2_leg3 + rate_2_squared_leg3 * t2_leg3);
-            let force2_x_leg3 = parameters[37] * minus_rate_dot_2_leg3
-                - parameters[36] * rate_2_squared_leg3;
+            let my_2_leg3 = parameters[37];
+            let mx_2_leg3 = parameters[36];
+            let force2_x_leg3 = my_2_leg3 * minus_rate_dot_2_leg3
+                - mx_2_leg3 * rate_2_squared_leg3;
             let c2_leg3 = 6.377551020408164 * t1_leg3;
-            let minus_force2_y_leg3 = parameters[36] * minus_rate_dot_2_leg3
-                + parameters[37] * rate_2_squared_leg3;
-            let tau_1_leg3 = parameters[31] * rate_dot_1_leg3
-                + parameters[32] * rate_1_leg3
-                + ::overact::math::wide::signed(parameters[33], rate_1_leg3)
-                + parameters[34];
+            let minus_force2_y_leg3 = mx_2_leg3 * minus_rate_dot_2_leg3
+                + my_2_leg3 * rate_2_squared_leg3;
+            let ia_1_leg3 = parameters[31];
+            let fv_1_leg3 = parameters[32];
+            let fs_1_leg3 = parameters[33];
+            let off_1_leg3 = parameters[34];
+            let tau_1_leg3 = ia_1_leg3 * rate_dot_1_leg3 + fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-            let tau_2_leg3 = parameters[41]
-                - (parameters[39] * minus_qd_2_leg3
-                    + ::overact::math::wide::signed(
-                        parameters[40],
-                        minus_qd_2_leg3,
-                    ));
+            let fv_2_leg3 = parameters[39];
+            let fs_2_leg3 = parameters[40];
+            let off_2_leg3 = parameters[41];
+            let tau_2_leg3 = off_2_leg3
+                - (fv_2_leg3 * minus_qd_2_leg3
+                    + math::wide::signed(fs_2_leg3, minus_qd_2_leg3));
             let force_on_u1_leg3 = rate_dot_1_leg3
-                * (parameters[30] + L_AB_SQUARED * parameters[38])
+                * (zz_1_leg3 + L_AB_SQUARED * m_2_leg3)
                 + L_AB * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
                 + tau_1_leg3 - tau_2_leg3;
             let a2_y_leg3 = INV_L_AB * (det_leg3 * rate_1_squared_leg3)
                 + INV_TWICE_L_AB * (t1_leg3 * rate_dot_1_leg3);
             let a2_x_leg3 = INV_L_AB * minus_a_on_f1_leg3;
-            let moment2_z_leg3 = parameters[36] * a2_y_leg3
-                - parameters[37] * a2_x_leg3
-                - parameters[35] * minus_rate_dot_2_leg3;
+            let zz_2_leg3 = parameters[35];
+            let moment2_z_leg3 = mx_2_leg3 * a2_y_leg3 - my_2_leg3 * a2_x_leg3
+                - zz_2_leg3 * minus_rate_dot_2_leg3;
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
-            let tau_3_leg3 = parameters[42] * qd_3_leg3
-                + ::overact::math::wide::signed(parameters[43], qd_3_leg3)
-                + parameters[44];
+            let fv_3_leg3 = parameters[42];
+            let fs_3_leg3 = parameters[43];
+            let off_3_leg3 = parameters[44];
+            let tau_3_leg3 = fv_3_leg3 * qd_3_leg3
+                + math::wide::signed(fs_3_leg3, qd_3_leg3) + off_3_leg3;
             let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
             let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1
                 - minus_g2_vx_leg1 * force_on_u2_leg1 + g2_vx_leg2 * force_on_u2_leg2
@@ -14869,13 +14057,13 @@ impl DualV {
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let g2_vx_leg4 = l1_x_leg4 * k1_leg4;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
@@ -14895,47 +14083,62 @@ impl DualV {
             let t2_leg4 = 0.5 * t1_leg4;
             let rate_dot_2_leg4 = k1_leg4
                 * (a_on_f2_leg4 + rate_2_squared_leg4 * t2_leg4);
+            let zz_2_leg4 = parameters[50];
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
                 + l2_y_leg4 * a_end_y_leg3 + L_AB_SQUARED * rate_2_squared_leg4;
             let minus_rate_dot_1_leg4 = k1_leg4
                 * (minus_a_on_f1_leg4 + rate_1_squared_leg4 * t2_leg4);
             let minus_a2_y_leg4 = INV_L_AB * (det_leg4 * rate_1_squared_leg4)
                 + INV_TWICE_L_AB * (t1_leg4 * minus_rate_dot_1_leg4);
+            let mx_2_leg4 = parameters[51];
             let a2_x_leg4 = INV_L_AB * minus_a_on_f1_leg4;
-            let moment2_z_leg4 = parameters[50] * rate_dot_2_leg4
-                - (parameters[51] * minus_a2_y_leg4 + parameters[52] * a2_x_leg4);
+            let my_2_leg4 = parameters[52];
+            let moment2_z_leg4 = zz_2_leg4 * rate_dot_2_leg4
+                - (mx_2_leg4 * minus_a2_y_leg4 + my_2_leg4 * a2_x_leg4);
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
-            let tau_2_leg4 = parameters[54] * qd_2_leg4
-                + ::overact::math::wide::signed(parameters[55], qd_2_leg4)
-                + parameters[56];
+            let fv_2_leg4 = parameters[54];
+            let fs_2_leg4 = parameters[55];
+            let off_2_leg4 = parameters[56];
+            let tau_2_leg4 = fv_2_leg4 * qd_2_leg4
+                + math::wide::signed(fs_2_leg4, qd_2_leg4) + off_2_leg4;
             let qd_3_leg4 = twist[2] - rate_2_leg4;
-            let tau_3_leg4 = parameters[57] * qd_3_leg4
-                + ::overact::math::wide::signed(parameters[58], qd_3_leg4)
-                + parameters[59];
+            let fv_3_leg4 = parameters[57];
+            let fs_3_leg4 = parameters[58];
+            let off_3_leg4 = parameters[59];
+            let tau_3_leg4 = fv_3_leg4 * qd_3_leg4
+                + math::wide::signed(fs_3_leg4, qd_3_leg4) + off_3_leg4;
             let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
             let minus_s2_leg4 = INV_L_AB_SQUARED * det_leg4;
-            let minus_force2_x_leg4 = parameters[51] * rate_2_squared_leg4
-                + parameters[52] * rate_dot_2_leg4;
+            let minus_force2_x_leg4 = mx_2_leg4 * rate_2_squared_leg4
+                + my_2_leg4 * rate_dot_2_leg4;
             let c2_leg4 = 6.377551020408164 * t1_leg4;
-            let force2_y_leg4 = parameters[51] * rate_dot_2_leg4
-                - parameters[52] * rate_2_squared_leg4;
-            let tau_1_leg4 = parameters[49]
-                - (parameters[46] * minus_rate_dot_1_leg4
-                    + parameters[47] * minus_rate_1_leg4
-                    + ::overact::math::wide::signed(
-                        parameters[48],
-                        minus_rate_1_leg4,
-                    ));
+            let force2_y_leg4 = mx_2_leg4 * rate_dot_2_leg4
+                - my_2_leg4 * rate_2_squared_leg4;
+            let m_2_leg4 = parameters[53];
+            let zz_1_leg4 = parameters[45];
+            let ia_1_leg4 = parameters[46];
+            let fv_1_leg4 = parameters[47];
+            let fs_1_leg4 = parameters[48];
+            let off_1_leg4 = parameters[49];
+            let tau_1_leg4 = off_1_leg4
+                - (ia_1_leg4 * minus_rate_dot_1_leg4 + fv_1_leg4 * minus_rate_1_leg4
+                    + math::wide::signed(fs_1_leg4, minus_rate_1_leg4));
             let force_on_u1_leg4 = L_AB
                 * (minus_s2_leg4 * minus_force2_x_leg4 + c2_leg4 * force2_y_leg4)
-                - minus_rate_dot_1_leg4
-                    * (parameters[45] + L_AB_SQUARED * parameters[53]) + tau_1_leg4
-                - tau_2_leg4;
-            let mass_platform = parameters[63] + parameters[67];
+                - minus_rate_dot_1_leg4 * (zz_1_leg4 + L_AB_SQUARED * m_2_leg4)
+                + tau_1_leg4 - tau_2_leg4;
+            let m_platform = parameters[63];
+            let m_payload = parameters[67];
+            let mass_platform = m_platform + m_payload;
             let inv_r_p_a_arm_x_leg1 = INV_R_P * a_arm_x_leg1;
-            let first_y_platform = parameters[62] + parameters[66];
+            let my_platform = parameters[62];
+            let my_payload = parameters[66];
+            let first_y_platform = my_platform + my_payload;
             let inv_r_p_a_arm_y_leg3 = INV_R_P * a_arm_y_leg3;
-            let first_x_platform = parameters[61] + parameters[65];
+            // --- platform
+            let mx_platform = parameters[61];
+            let mx_payload = parameters[65];
+            let first_x_platform = mx_platform + mx_payload;
             let force_x_platform = acceleration[0] * mass_platform
                 + inv_r_p_a_arm_x_leg1 * first_y_platform
                 - inv_r_p_a_arm_y_leg3 * first_x_platform;
@@ -14947,11 +14150,7 @@ impl DualV {
             let t1 = g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3;
             let t2 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
             let det_ja = g1_wz_leg3 * t2;
-            ::overact::guard::platform(
-                det_ja,
-                3.538,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
             let half_per_det_ja = 0.5 / det_ja;
             let vx_by_a1 = t1 * half_per_det_ja;
             let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
@@ -14979,7 +14178,9 @@ impl DualV {
             let g2_wz_leg4 = p_x_leg3 * g2_vy_leg4 + p_y_leg1 * g2_vx_leg4;
             let minus_g1_wz_leg4 = p_x_leg3 * minus_g1_vy_leg4
                 + p_y_leg1 * minus_g1_vx_leg4;
-            let inertia_zz_platform = parameters[60] + parameters[64];
+            let zz_platform = parameters[60];
+            let zz_payload = parameters[64];
+            let inertia_zz_platform = zz_platform + zz_payload;
             let moment_z_platform = acceleration[1]
                 * (c_phi * first_x_platform - s_phi * first_y_platform)
                 - acceleration[0]
@@ -15002,11 +14203,11 @@ impl DualV {
             let share_2_4 = t9 * t6 - t10 * t7 + t11 * t8;
             let wz_by_a3 = t2 * half_per_det_ja;
             let minus_share_3_4 = 2.0 * (minus_g1_wz_leg4 * wz_by_a3);
-            let norm_4 = ::overact::math::wide::sqrt(
+            let norm_4 = math::wide::sqrt(
                 1.0 + share_1_4 * share_1_4 + share_2_4 * share_2_4
                     + minus_share_3_4 * minus_share_3_4,
             );
-            ::overact::guard::platform(norm_4, 2.0, ::overact::ActuatorGroup::All)?;
+            guard::platform(norm_4, 2.0, ActuatorGroup::All)?;
             let inv_norm_4 = 1.0 / norm_4;
             let share_1_4_inv_norm_4 = share_1_4 * inv_norm_4;
             let share_2_4_inv_norm_4 = share_2_4 * inv_norm_4;
@@ -15023,12 +14224,12 @@ impl DualV {
             let t14 = preload[0] + share_1_4_inv_norm_4 * t5
                 + share_2_4_inv_norm_4 * t12 - minus_share_3_4_inv_norm_4 * t13;
             let t15 = t5 - share_1_4_inv_norm_4 * t14;
-            ::overact::guard::size(t15, 1e100)?;
+            guard::size(t15, 1e100)?;
             let t16 = t12 - share_2_4_inv_norm_4 * t14;
-            ::overact::guard::size(t16, 1e100)?;
+            guard::size(t16, 1e100)?;
             let t17 = t13 + minus_share_3_4_inv_norm_4 * t14;
-            ::overact::guard::size(t17, 1e100)?;
-            ::core::result::Result::Ok([t15, t16, t17, inv_norm_4 * t14])
+            guard::size(t17, 1e100)?;
+            Ok([t15, t16, t17, inv_norm_4 * t14])
         })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
@@ -15042,18 +14243,18 @@ impl DualV {
     /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_torques(
-        pose: &[::core::primitive::f64; 3],
-        torques: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
-        ::overact::with_avx2(#[inline(always)] || {
+        pose: &[f64; 3],
+        torques: &[f64; 4],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        with_avx2(#[inline(always)] || {
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const R_P: f64 = 0.11;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -15062,25 +14263,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -15089,30 +14290,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
                 + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
@@ -15132,11 +14333,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
                 + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
@@ -15162,16 +14359,12 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let t4 = t3 / pivot_3;
-            ::overact::guard::size(t4, 1e60)?;
+            guard::size(t4, 1e60)?;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
                 g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
                 g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
@@ -15190,16 +14383,14 @@ impl DualV {
     /// 135 operations (47 additions, 78 multiplications, 10 divisions), 5 square roots, 1 trigonometric pair, 14 guards, 3 negations, 138 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn null_space(
-        pose: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_x_leg3 = R_P * s_phi;
         let p_y_leg1 = R_P * c_phi;
@@ -15211,7 +14402,7 @@ impl DualV {
         // --- leg2
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l2_y_leg2 = half_d_y_leg1 - d_x_leg2 * h_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
         let k1_leg2 = 1.0 / det_leg2;
@@ -15226,7 +14417,7 @@ impl DualV {
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         let k1_leg3 = 1.0 / det_leg3;
@@ -15239,7 +14430,7 @@ impl DualV {
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l2_y_leg4 = half_d_y_leg3 - d_x_leg4 * h_leg4;
         let det_leg4 = rho_squared_leg4 * h_leg4;
         let k1_leg4 = 1.0 / det_leg4;
@@ -15247,22 +14438,22 @@ impl DualV {
         // --- leg1
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = half_d_y_leg1 + d_x_leg1 * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+        guard::leg(det_leg1, 0.0784, "leg1")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        guard::leg(det_leg2, 0.0784, "leg2")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        guard::leg(det_leg3, 0.0784, "leg3")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        guard::leg(det_leg4, 0.0784, "leg4")?;
         let k1_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_y_leg1 * k1_leg1;
         let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
@@ -15271,7 +14462,7 @@ impl DualV {
         let t1 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
         let t2 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
         let det_ja = g1_vx_leg3 * t1 - g1_vy_leg3 * t2;
-        ::overact::guard::platform(det_ja, 3.538, ::overact::ActuatorGroup::Kept)?;
+        guard::platform(det_ja, 3.538, ActuatorGroup::Kept)?;
         let half_per_det_ja = 0.5 / det_ja;
         let t3 = minus_g1_vy_leg4 * half_per_det_ja;
         let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
@@ -15286,12 +14477,12 @@ impl DualV {
             - (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t4
             + (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t5;
         let share_3_4 = 2.0 * (t2 * t3 - t1 * t4);
-        let norm_4 = ::overact::math::sqrt(
+        let norm_4 = math::sqrt(
             1.0 + share_1_4 * share_1_4 + share_2_4 * share_2_4 + share_3_4 * share_3_4,
         );
-        ::overact::guard::platform(norm_4, 2.0, ::overact::ActuatorGroup::All)?;
+        guard::platform(norm_4, 2.0, ActuatorGroup::All)?;
         let inv_norm_4 = 1.0 / norm_4;
-        ::core::result::Result::Ok([
+        Ok([
             [-(share_1_4 * inv_norm_4)], [-(share_2_4 * inv_norm_4)], [-(share_3_4 * inv_norm_4)],
             [inv_norm_4],
         ])
@@ -15299,29 +14490,24 @@ impl DualV {
     /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`. The iteration starts from `pose_in_closed_form` if that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps. If that fails, the result is in the assembly mode of the home configuration.
     ///
     /// # Errors
-    /// An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
+    /// An input is infinite, NaN or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
     pub fn pose_from_actuators(
-        actuators: &[::core::primitive::f64; Self::ACTUATORS],
-        start: &[::core::primitive::f64; Self::POSE],
-    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::within(
-            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
-        )?;
+        actuators: &[f64; Self::ACTUATORS],
+        start: &[f64; Self::POSE],
+    ) -> Result<[f64; Self::POSE], Error> {
+        guard::within(&[("actuators", actuators, 1e12), ("start", start, 1e6)])?;
         let closed = Self::pose_in_closed_form(actuators).ok();
         ::overact::forward::from_closed_form(
             closed,
             *start,
-            |mut pose: [::core::primitive::f64; Self::POSE]| {
+            |mut pose: [f64; Self::POSE]| {
                 let mut stepped = pose;
-                let find = |
-                    pose: &[::core::primitive::f64],
-                    step: &mut [::core::primitive::f64]|
-                {
+                let find = |pose: &[f64], step: &mut [f64]| {
                     ::overact::block::write(
                         &Self::pose_step(::overact::block::array(pose)?, actuators)?,
                         step,
                     );
-                    ::core::result::Result::Ok(())
+                    Ok(())
                 };
                 if ::overact::forward::steps(
                     &mut stepped,
@@ -15329,7 +14515,7 @@ impl DualV {
                     find,
                     ::overact::forward::displace,
                 ) {
-                    return ::core::result::Result::Ok(stepped);
+                    return Ok(stepped);
                 }
                 ::overact::forward::gauss_newton(
                         ::overact::forward::Measured {
@@ -15353,7 +14539,7 @@ impl DualV {
                                 &Self::inverse_jacobian(pose)?,
                                 jacobian,
                             );
-                            ::core::result::Result::Ok(())
+                            Ok(())
                         },
                         ::overact::forward::displace,
                     )
@@ -15393,9 +14579,9 @@ impl ::overact::Model for DualV {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[::core::primitive::f64]],
-        output: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::SampleError> {
+        inputs: &[&[f64]],
+        output: &mut [f64],
+    ) -> Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::PoseInClosedForm => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
@@ -15606,9 +14792,9 @@ impl ::overact::Model for DualV {
                     .each(|row| Self::null_space(row.row(0)?))
             }
             other => {
-                ::core::result::Result::Err(::overact::SampleError {
+                Err(::overact::SampleError {
                     sample: 0,
-                    error: ::overact::Error::NotOffered {
+                    error: Error::NotOffered {
                         function: other.name(),
                     },
                 })
@@ -15617,14 +14803,15 @@ impl ::overact::Model for DualV {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[::core::primitive::f64],
-        pose: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::Error> {
+        actuators: &[f64],
+        pose: &mut [f64],
+    ) -> Result<(), Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        ::core::result::Result::Ok(())
+        Ok(())
     }
 }
+};

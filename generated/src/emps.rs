@@ -44,6 +44,7 @@
 /// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
 /// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
 /// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
+/// Parameters have the names in `PARAMETERS` and `BASE_PARAMETERS`; those of any leg end in `_leg`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -56,42 +57,48 @@ pub struct Emps;
 #[allow(
     clippy::all,
     clippy::pedantic,
+    non_local_definitions,
     nonstandard_style,
     unused,
     unused_qualifications,
     reason = "straight-line code with the names of the derivation, in any scope"
 )]
+const _: () = {
+use ::core::primitive::{bool, f64, str, usize};
+use ::core::result::Result::{Err, Ok};
+use ::core::result::Result;
+use ::overact::{Error, guard, math, zeroed_then_fill};
 impl Emps {
     /// The robot's name.
-    pub const NAME: &'static ::core::primitive::str = "Emps";
+    pub const NAME: &'static str = "Emps";
     /// Numbers in a pose.
-    pub const POSE: ::core::primitive::usize = 1;
+    pub const POSE: usize = 1;
     /// r, independent platform coordinates.
-    pub const DOF: ::core::primitive::usize = 1;
+    pub const DOF: usize = 1;
     /// n, actuated joints.
-    pub const ACTUATORS: ::core::primitive::usize = 1;
+    pub const ACTUATORS: usize = 1;
     /// n_t, joints of all legs.
-    pub const JOINTS: ::core::primitive::usize = 1;
+    pub const JOINTS: usize = 1;
     /// Names of the legs.
-    pub const LEGS: [&'static ::core::primitive::str; 1] = ["axis"];
+    pub const LEGS: [&'static str; 1] = ["axis"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 1] = ["1"];
+    pub const ACTUATOR_NAMES: [&'static str; 1] = ["1"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static ::core::primitive::str; 1] = ["1"];
+    pub const JOINT_NAMES: [&'static str; 1] = ["1"];
     /// Names of the independent coordinates, in the order of the twist.
-    pub const COORDINATES: [&'static ::core::primitive::str; 1] = ["1"];
+    pub const COORDINATES: [&'static str; 1] = ["1"];
     /// Names of the pose coordinates.
-    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 1] = ["q_1"];
+    pub const POSE_COORDINATES: [&'static str; 1] = ["q_1"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0];
+    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0];
     /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [false];
+    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [false];
     /// Kept actuators of the actuator projection (case 2).
-    pub const KEPT_ACTUATORS: [::core::primitive::usize; 1] = [0];
+    pub const KEPT_ACTUATORS: [usize; 1] = [0];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0];
+    pub const HOME_POSE: [f64; Self::POSE] = [0.0];
     /// Joint positions of the home configuration, which defines the working mode (m, rad).
-    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [0.0];
+    pub const HOME_JOINTS: [f64; Self::JOINTS] = [0.0];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 5] = {
         use ::overact::{Parameter, StandardParameter};
@@ -124,12 +131,10 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
-    pub fn joints(
-        joints: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(&[("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([joints[0]])
+    /// An input is infinite, NaN or too large.
+    pub fn joints(joints: &[f64; 1]) -> Result<[f64; 1], Error> {
+        guard::within(&[("joints", joints, 1e12)])?;
+        Ok([joints[0]])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -141,12 +146,10 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
-    pub fn actuator_positions(
-        joints: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(&[("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([joints[0]])
+    /// An input is infinite, NaN or too large.
+    pub fn actuator_positions(joints: &[f64; 1]) -> Result<[f64; 1], Error> {
+        guard::within(&[("joints", joints, 1e12)])?;
+        Ok([joints[0]])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -158,12 +161,10 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
-    pub fn inverse_jacobian(
-        joints: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
-        ::overact::guard::within(&[("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([[1.0]])
+    /// An input is infinite, NaN or too large.
+    pub fn inverse_jacobian(joints: &[f64; 1]) -> Result<[[f64; 1]; 1], Error> {
+        guard::within(&[("joints", joints, 1e12)])?;
+        Ok([[1.0]])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -176,15 +177,15 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn joint_velocities(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9)],
         )?;
-        ::core::result::Result::Ok([joint_velocities[0]])
+        Ok([joint_velocities[0]])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
@@ -198,19 +199,19 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn joint_accelerations(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        joint_accelerations: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        joint_accelerations: &[f64; 1],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
-        ::core::result::Result::Ok([joint_accelerations[0]])
+        Ok([joint_accelerations[0]])
     }
     /// The twist v from the actuator velocities, by least squares, eq. (21).
     ///
@@ -223,17 +224,17 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn twist_from_actuators(
-        joints: &[::core::primitive::f64; 1],
-        actuator_velocities: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        actuator_velocities: &[f64; 1],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
             ],
         )?;
-        ::core::result::Result::Ok([actuator_velocities[0]])
+        Ok([actuator_velocities[0]])
     }
     /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
     ///
@@ -247,19 +248,19 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn acceleration_from_actuators(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        actuator_accelerations: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        actuator_accelerations: &[f64; 1],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
-        ::core::result::Result::Ok([actuator_accelerations[0]])
+        Ok([actuator_accelerations[0]])
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
@@ -274,13 +275,13 @@ impl Emps {
     /// 0 operations, 1 sign.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn idm_red_platform(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        joint_accelerations: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        joint_accelerations: &[f64; 1],
+    ) -> Result<[[f64; 5]; 1], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_into(
             joints,
             joint_velocities,
             joint_accelerations,
@@ -292,12 +293,12 @@ impl Emps {
     /// # Errors
     /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        joint_accelerations: &[::core::primitive::f64; 1],
-        output: &mut [[::core::primitive::f64; 5]; 1],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        joint_accelerations: &[f64; 1],
+        output: &mut [[f64; 5]; 1],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
@@ -306,8 +307,8 @@ impl Emps {
         output[0][0..2].fill(joint_accelerations[0]);
         output[0][2] = joint_velocities[0]; // fv_1
         output[0][4] = 1.0; // off_1
-        output[0][3] = ::overact::math::sign(joint_velocities[0]); // fs_1
-        ::core::result::Result::Ok(())
+        output[0][3] = math::sign(joint_velocities[0]); // fs_1
+        Ok(())
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
@@ -322,13 +323,13 @@ impl Emps {
     /// 0 operations, 1 sign.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn idm_red_platform_base(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        joint_accelerations: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 1], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        joint_accelerations: &[f64; 1],
+    ) -> Result<[[f64; 4]; 1], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             joints,
             joint_velocities,
             joint_accelerations,
@@ -340,12 +341,12 @@ impl Emps {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        joint_accelerations: &[::core::primitive::f64; 1],
-        output: &mut [[::core::primitive::f64; 4]; 1],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        joint_accelerations: &[f64; 1],
+        output: &mut [[f64; 4]; 1],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
@@ -354,8 +355,8 @@ impl Emps {
         output[0][0] = joint_accelerations[0]; // m_1R
         output[0][1] = joint_velocities[0]; // fv_1
         output[0][3] = 1.0; // off_1
-        output[0][2] = ::overact::math::sign(joint_velocities[0]); // fs_1
-        ::core::result::Result::Ok(())
+        output[0][2] = math::sign(joint_velocities[0]); // fs_1
+        Ok(())
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -368,15 +369,13 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn project_platform(
-        joints: &[::core::primitive::f64; 1],
-        torques: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
-            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
-        )?;
-        ::core::result::Result::Ok([torques[0]])
+        joints: &[f64; 1],
+        torques: &[f64; 1],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(&[("joints", joints, 1e12), ("torques", torques, 1e12)])?;
+        Ok([torques[0]])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
@@ -391,24 +390,29 @@ impl Emps {
     /// 7 operations (4 additions, 3 multiplications, 0 divisions), 1 sign, 6 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn inverse_dynamics(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        joint_accelerations: &[::core::primitive::f64; 1],
-        parameters: &[::core::primitive::f64; 5],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        joint_accelerations: &[f64; 1],
+        parameters: &[f64; 5],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        let force_on_u1_axis = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0]) + parameters[4]
-            + joint_accelerations[0] * (parameters[0] + parameters[1]);
-        ::core::result::Result::Ok([force_on_u1_axis])
+        let fv_1 = parameters[2];
+        let fs_1 = parameters[3];
+        let off_1 = parameters[4];
+        let m_1 = parameters[0];
+        let ia_1 = parameters[1];
+        let force_on_u1_axis = joint_velocities[0] * fv_1
+            + math::signed(fs_1, joint_velocities[0]) + off_1
+            + joint_accelerations[0] * (m_1 + ia_1);
+        Ok([force_on_u1_axis])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
@@ -423,26 +427,29 @@ impl Emps {
     /// 6 operations (3 additions, 3 multiplications, 0 divisions), 1 sign, 5 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn inverse_dynamics_base(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        joint_accelerations: &[::core::primitive::f64; 1],
-        base_parameters: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        joint_accelerations: &[f64; 1],
+        base_parameters: &[f64; 4],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        let force1_z_axis = joint_accelerations[0] * base_parameters[0];
-        let tau_1_axis = joint_velocities[0] * base_parameters[1]
-            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
-            + base_parameters[3];
+        let m_1R = base_parameters[0];
+        let force1_z_axis = joint_accelerations[0] * m_1R;
+        let fv_1 = base_parameters[1];
+        let fs_1 = base_parameters[2];
+        let off_1 = base_parameters[3];
+        let tau_1_axis = joint_velocities[0] * fv_1
+            + math::signed(fs_1, joint_velocities[0]) + off_1;
         let force_on_u1_axis = force1_z_axis + tau_1_axis;
-        ::core::result::Result::Ok([force_on_u1_axis])
+        Ok([force_on_u1_axis])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -455,17 +462,17 @@ impl Emps {
     /// 1 operation (1 addition, 0 multiplications, 0 divisions).
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn mass_matrix(
-        joints: &[::core::primitive::f64; 1],
-        parameters: &[::core::primitive::f64; 5],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
-        ::overact::guard::within(
-            &[("joints", joints, 1e12), ("parameters", parameters, 1e12)],
-        )?;
+        joints: &[f64; 1],
+        parameters: &[f64; 5],
+    ) -> Result<[[f64; 1]; 1], Error> {
+        guard::within(&[("joints", joints, 1e12), ("parameters", parameters, 1e12)])?;
         // --- axis
-        let masses_axis_1_1 = parameters[0] + parameters[1];
-        ::core::result::Result::Ok([[masses_axis_1_1]])
+        let m_1 = parameters[0];
+        let ia_1 = parameters[1];
+        let masses_axis_1_1 = m_1 + ia_1;
+        Ok([[masses_axis_1_1]])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -478,15 +485,16 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn mass_matrix_base(
-        joints: &[::core::primitive::f64; 1],
-        base_parameters: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        base_parameters: &[f64; 4],
+    ) -> Result<[[f64; 1]; 1], Error> {
+        guard::within(
             &[("joints", joints, 1e12), ("base_parameters", base_parameters, 1e12)],
         )?;
-        ::core::result::Result::Ok([[base_parameters[0]]])
+        let m_1R = base_parameters[0];
+        Ok([[m_1R]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -500,22 +508,24 @@ impl Emps {
     /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn bias(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        parameters: &[::core::primitive::f64; 5],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        parameters: &[f64; 5],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        let tau_1_axis = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
-        ::core::result::Result::Ok([tau_1_axis])
+        let fv_1 = parameters[2];
+        let fs_1 = parameters[3];
+        let off_1 = parameters[4];
+        let tau_1_axis = joint_velocities[0] * fv_1
+            + math::signed(fs_1, joint_velocities[0]) + off_1;
+        Ok([tau_1_axis])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -529,22 +539,24 @@ impl Emps {
     /// 4 operations (2 additions, 2 multiplications, 0 divisions), 1 sign, 3 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn bias_base(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        base_parameters: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        base_parameters: &[f64; 4],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        let tau_1_axis = joint_velocities[0] * base_parameters[1]
-            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
-            + base_parameters[3];
-        ::core::result::Result::Ok([tau_1_axis])
+        let fv_1 = base_parameters[1];
+        let fs_1 = base_parameters[2];
+        let off_1 = base_parameters[3];
+        let tau_1_axis = joint_velocities[0] * fv_1
+            + math::signed(fs_1, joint_velocities[0]) + off_1;
+        Ok([tau_1_axis])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -559,28 +571,32 @@ impl Emps {
     /// 7 operations (4 additions, 2 multiplications, 1 division), 1 sign, 2 guards, 6 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        torques: &[::core::primitive::f64; 1],
-        parameters: &[::core::primitive::f64; 5],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        torques: &[f64; 1],
+        parameters: &[f64; 5],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("torques", torques, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        let tau_1_axis = joint_velocities[0] * parameters[2]
-            + ::overact::math::signed(parameters[3], joint_velocities[0])
-            + parameters[4];
+        let fv_1 = parameters[2];
+        let fs_1 = parameters[3];
+        let off_1 = parameters[4];
+        let tau_1_axis = joint_velocities[0] * fv_1
+            + math::signed(fs_1, joint_velocities[0]) + off_1;
         // --- axis
-        let masses_axis_1_1 = parameters[0] + parameters[1];
-        ::overact::guard::mass(masses_axis_1_1)?;
+        let m_1 = parameters[0];
+        let ia_1 = parameters[1];
+        let masses_axis_1_1 = m_1 + ia_1;
+        guard::mass(masses_axis_1_1)?;
         let t1 = (torques[0] - tau_1_axis) / masses_axis_1_1;
-        ::overact::guard::size(t1, 1e100)?;
-        ::core::result::Result::Ok([t1])
+        guard::size(t1, 1e100)?;
+        Ok([t1])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -595,26 +611,29 @@ impl Emps {
     /// 6 operations (3 additions, 2 multiplications, 1 division), 1 sign, 2 guards, 5 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
-        joints: &[::core::primitive::f64; 1],
-        joint_velocities: &[::core::primitive::f64; 1],
-        torques: &[::core::primitive::f64; 1],
-        base_parameters: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 1],
+        joint_velocities: &[f64; 1],
+        torques: &[f64; 1],
+        base_parameters: &[f64; 4],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("torques", torques, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::guard::mass(base_parameters[0])?;
-        let tau_1_axis = joint_velocities[0] * base_parameters[1]
-            + ::overact::math::signed(base_parameters[2], joint_velocities[0])
-            + base_parameters[3];
-        let t1 = (torques[0] - tau_1_axis) / base_parameters[0];
-        ::overact::guard::size(t1, 1e100)?;
-        ::core::result::Result::Ok([t1])
+        let fv_1 = base_parameters[1];
+        let m_1R = base_parameters[0];
+        guard::mass(m_1R)?;
+        let fs_1 = base_parameters[2];
+        let off_1 = base_parameters[3];
+        let tau_1_axis = joint_velocities[0] * fv_1
+            + math::signed(fs_1, joint_velocities[0]) + off_1;
+        let t1 = (torques[0] - tau_1_axis) / m_1R;
+        guard::size(t1, 1e100)?;
+        Ok([t1])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
     ///
@@ -627,28 +646,24 @@ impl Emps {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn project_torques(
-        joints: &[::core::primitive::f64; 1],
-        torques: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
-        ::overact::guard::within(
-            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
-        )?;
-        ::core::result::Result::Ok([torques[0]])
+        joints: &[f64; 1],
+        torques: &[f64; 1],
+    ) -> Result<[f64; 1], Error> {
+        guard::within(&[("joints", joints, 1e12), ("torques", torques, 1e12)])?;
+        Ok([torques[0]])
     }
     /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`.
     ///
     /// # Errors
-    /// An input is not finite or too large. The pose of a robot without loops is its joint positions.
+    /// An input is infinite, NaN or too large. The pose of a robot without loops is its joint positions.
     pub fn pose_from_actuators(
-        actuators: &[::core::primitive::f64; Self::ACTUATORS],
-        start: &[::core::primitive::f64; Self::POSE],
-    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::within(
-            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
-        )?;
-        ::core::result::Result::Ok(*actuators)
+        actuators: &[f64; Self::ACTUATORS],
+        start: &[f64; Self::POSE],
+    ) -> Result<[f64; Self::POSE], Error> {
+        guard::within(&[("actuators", actuators, 1e12), ("start", start, 1e6)])?;
+        Ok(*actuators)
     }
 }
 impl Emps {
@@ -682,9 +697,9 @@ impl ::overact::Model for Emps {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[::core::primitive::f64]],
-        output: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::SampleError> {
+        inputs: &[&[f64]],
+        output: &mut [f64],
+    ) -> Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
@@ -801,9 +816,9 @@ impl ::overact::Model for Emps {
                     .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             other => {
-                ::core::result::Result::Err(::overact::SampleError {
+                Err(::overact::SampleError {
                     sample: 0,
-                    error: ::overact::Error::NotOffered {
+                    error: Error::NotOffered {
                         function: other.name(),
                     },
                 })
@@ -812,14 +827,15 @@ impl ::overact::Model for Emps {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[::core::primitive::f64],
-        pose: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::Error> {
+        actuators: &[f64],
+        pose: &mut [f64],
+    ) -> Result<(), Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        ::core::result::Result::Ok(())
+        Ok(())
     }
 }
+};

@@ -71,7 +71,7 @@
 /// | `l1_x_left` | l₁ e₁ | vector along the proximal link, in the leg's plane, m |
 /// | `l2_x_left` | l₂ e₂ | vector along the distal link, in the leg's plane, m |
 /// | `det_left` | det J_k | determinant or pivot of the leg's Jacobian J_k, eq. (13), up to a constant factor |
-/// | `k_left` | k | common factor of the leg's wrenches, up to sign: a constant by the determinant |
+/// | `k_left` | k | common factor of the leg's wrenches, up to sign: a constant divided by the determinant |
 /// | `k1_left` | k_i | common factor of one of the leg's wrenches |
 /// | `fk1_x_left` | f_i/k | this force without the factor k, in the leg's axes |
 /// | `rate_1_left` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
@@ -102,6 +102,7 @@
 /// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
 /// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
 /// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
+/// Parameters have the names in `PARAMETERS` and `BASE_PARAMETERS`; those of any leg end in `_leg`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -114,46 +115,52 @@ pub struct FiveBar;
 #[allow(
     clippy::all,
     clippy::pedantic,
+    non_local_definitions,
     nonstandard_style,
     unused,
     unused_qualifications,
     reason = "straight-line code with the names of the derivation, in any scope"
 )]
+const _: () = {
+use ::core::primitive::{bool, f64, str, usize};
+use ::core::result::Result::{Err, Ok};
+use ::core::result::Result;
+use ::overact::{
+    ActuatorGroup, Error, guard, math, with_avx2, with_avx512, zeroed_then_fill,
+};
 impl FiveBar {
     /// The robot's name.
-    pub const NAME: &'static ::core::primitive::str = "FiveBar";
+    pub const NAME: &'static str = "FiveBar";
     /// Numbers in a pose.
-    pub const POSE: ::core::primitive::usize = 2;
+    pub const POSE: usize = 2;
     /// r, independent platform coordinates.
-    pub const DOF: ::core::primitive::usize = 2;
+    pub const DOF: usize = 2;
     /// n, actuated joints.
-    pub const ACTUATORS: ::core::primitive::usize = 2;
+    pub const ACTUATORS: usize = 2;
     /// n_t, joints of all legs.
-    pub const JOINTS: ::core::primitive::usize = 4;
+    pub const JOINTS: usize = 4;
     /// Names of the legs.
-    pub const LEGS: [&'static ::core::primitive::str; 2] = ["left", "right"];
+    pub const LEGS: [&'static str; 2] = ["left", "right"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 2] = ["left", "right"];
+    pub const ACTUATOR_NAMES: [&'static str; 2] = ["left", "right"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static ::core::primitive::str; 4] = [
+    pub const JOINT_NAMES: [&'static str; 4] = [
         "left.1", "left.2", "right.1", "right.2",
     ];
     /// Names of the independent coordinates, in the order of the twist.
-    pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
+    pub const COORDINATES: [&'static str; 2] = ["x", "y"];
     /// Names of the pose coordinates.
-    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
+    pub const POSE_COORDINATES: [&'static str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2];
+    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 2];
     /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
-        true, true,
-    ];
+    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true];
     /// Kept actuators of the actuator projection (case 2).
-    pub const KEPT_ACTUATORS: [::core::primitive::usize; 2] = [0, 1];
+    pub const KEPT_ACTUATORS: [usize; 2] = [0, 1];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.3];
+    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.3];
     /// Joint positions of the home configuration, which defines the working mode (m, rad).
-    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
         2.160380669573568, -1.595798931694268, 0.981211984016226, 1.5957989316942673,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -244,21 +251,19 @@ impl FiveBar {
     /// 22 operations (10 additions, 11 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 25 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn pose_in_closed_form(
-        actuators: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("actuators", actuators, 1e12)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn pose_in_closed_form(actuators: &[f64; 2]) -> Result<[f64; 2], Error> {
+        guard::within(&[("actuators", actuators, 1e12)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
+        const L_1: f64 = 0.2;
         /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
+        const L_2: f64 = 0.25;
         /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        const L_2_SQUARED: f64 = 0.0625;
         // --- sines and cosines
-        let [(s1_left, c1_left), (s1_right, c1_right)] = ::overact::math::sin_cos_all([
+        let [(s1_left, c1_left), (s1_right, c1_right)] = math::sin_cos_all([
             actuators[0], actuators[1],
         ]);
         let l_1_c1_minus_half_left = L_1 * c1_left - HALF;
@@ -266,11 +271,11 @@ impl FiveBar {
         let s1_right_minus_s1_left = s1_right - s1_left;
         let t2 = L_1 * s1_right_minus_s1_left;
         let t3 = t1 * t1 + t2 * t2;
-        ::overact::guard::platform(t3, 0.1784, ::overact::ActuatorGroup::All)?;
+        guard::platform(t3, 0.1784, ActuatorGroup::All)?;
         let t4 = (L_2_SQUARED - L_2 * t3) / t3;
-        ::overact::guard::reach(t4, 0.1003, "left")?;
-        let t5 = ::overact::math::sqrt(t4);
-        ::core::result::Result::Ok([
+        guard::reach(t4, 0.1003, "left")?;
+        let t5 = math::sqrt(t4);
+        Ok([
             l_1_c1_minus_half_left + 0.5 * t1 - t2 * t5,
             L_1 * s1_left + HALF * s1_right_minus_s1_left + t1 * t5,
         ])
@@ -285,25 +290,23 @@ impl FiveBar {
     /// 63 operations (26 additions, 35 multiplications, 2 divisions), 2 square roots, 4 arc tangents, 4 guards, 2 negations, 67 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn joints(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn joints(pose: &[f64; 2]) -> Result<[f64; 4], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
@@ -311,30 +314,30 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let det_right = rho_squared_right * h_right;
         let t2_right = rho_squared_right - 0.1025;
-        ::core::result::Result::Ok([
-            ::overact::math::atan2(
+        Ok([
+            math::atan2(
                 -(2.7800779418373094 * l1_y_left + 4.155859313945749 * l1_x_left),
                 4.155859313945749 * l1_y_left - 2.7800779418373094 * l1_x_left,
             ) + 2.160380669573568,
-            ::overact::math::atan2(
+            math::atan2(
                 0.500000000000205 * det_left + 9.9968745115661 * t2_left,
                 19.9937490231322 * det_left - 0.2500000000001025 * t2_left,
             ) - 1.595798931694268,
-            ::overact::math::atan2(
+            math::atan2(
                 2.7800779418373054 * l1_y_right - 4.155859313945751 * l1_x_right,
                 2.7800779418373054 * l1_x_right + 4.155859313945751 * l1_y_right,
             ) + 0.981211984016226,
-            ::overact::math::atan2(
+            math::atan2(
                 -(0.5000000000001916 * det_right + 9.996874511566102 * t2_right),
                 19.993749023132203 * det_right - 0.2500000000000958 * t2_right,
             ) + 1.5957989316942673,
@@ -350,44 +353,42 @@ impl FiveBar {
     /// 45 operations (18 additions, 25 multiplications, 2 divisions), 2 square roots, 2 arc tangents, 4 guards, 1 negation, 48 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn actuator_positions(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn actuator_positions(pose: &[f64; 2]) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
-        ::core::result::Result::Ok([
-            ::overact::math::atan2(
+        Ok([
+            math::atan2(
                 -(2.7800779418373094 * l1_y_left + 4.155859313945749 * l1_x_left),
                 4.155859313945749 * l1_y_left - 2.7800779418373094 * l1_x_left,
             ) + 2.160380669573568,
-            ::overact::math::atan2(
+            math::atan2(
                 2.7800779418373054 * l1_y_right - 4.155859313945751 * l1_x_right,
                 2.7800779418373054 * l1_x_right + 4.155859313945751 * l1_y_right,
             ) + 0.981211984016226,
@@ -404,51 +405,46 @@ impl FiveBar {
     /// 67 operations (23 additions, 39 multiplications, 5 divisions), 2 square roots, 2 trigonometric pairs, 2 arc tangents, 7 guards, 1 negation, 73 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn pose_step(
-        pose: &[::core::primitive::f64; 2],
-        actuators: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
-            &[("pose", pose, 1e6), ("actuators", actuators, 1e12)],
-        )?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn pose_step(pose: &[f64; 2], actuators: &[f64; 2]) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("actuators", actuators, 1e12)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- sines and cosines
-        let [(s_actuator_1, c_actuator_1), (s_actuator_2, c_actuator_2)] = ::overact::math::sin_cos_all([
+        let [(s_actuator_1, c_actuator_1), (s_actuator_2, c_actuator_2)] = math::sin_cos_all([
             actuators[0], actuators[1],
         ]);
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -458,17 +454,17 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+        guard::platform(t1, 22.62, ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
-        let missed_1 = ::overact::math::atan2(
+        let missed_1 = math::atan2(
             l1_x_left * s_actuator_1 - l1_y_left * c_actuator_1,
             l1_x_left * c_actuator_1 + l1_y_left * s_actuator_1,
         );
-        let missed_2 = ::overact::math::atan2(
+        let missed_2 = math::atan2(
             l1_x_right * s_actuator_2 - l1_y_right * c_actuator_2,
             l1_x_right * c_actuator_2 + l1_y_right * s_actuator_2,
         );
-        ::core::result::Result::Ok([
+        Ok([
             -(t2 * (g1_vy_right * missed_1 + minus_g1_vy_left * missed_2)),
             t2 * (g1_vx_right * missed_1 + minus_g1_vx_left * missed_2),
         ])
@@ -483,44 +479,42 @@ impl FiveBar {
     /// 43 operations (16 additions, 23 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 41 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn inverse_jacobian(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn inverse_jacobian(pose: &[f64; 2]) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -529,9 +523,7 @@ impl FiveBar {
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right * k_right;
-        ::core::result::Result::Ok([
-            [-minus_g1_vx_left, -minus_g1_vy_left], [g1_vx_right, g1_vy_right],
-        ])
+        Ok([[-minus_g1_vx_left, -minus_g1_vy_left], [g1_vx_right, g1_vy_right]])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -544,32 +536,28 @@ impl FiveBar {
     /// 8 operations (2 additions, 4 multiplications, 2 divisions), 4 trigonometric pairs, 2 guards, 10 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+    ) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
+        const INV_L_1: f64 = 5.0;
         let q1_plus_q2_left = joints[0] + joints[1];
         let q1_plus_q2_right = joints[2] + joints[3];
         // --- sines and cosines
         let [(s12_left, c12_left), (s2_left, _), (s12_right, c12_right), (s2_right, _),
-        ] = ::overact::math::sin_cos_all([
-            q1_plus_q2_left, joints[1], q1_plus_q2_right, joints[3],
-        ]);
-        ::overact::guard::leg(s2_left, 0.9997, "left")?;
-        ::overact::guard::leg(s2_right, 0.9997, "right")?;
+        ] = math::sin_cos_all([q1_plus_q2_left, joints[1], q1_plus_q2_right, joints[3]]);
+        guard::leg(s2_left, 0.9997, "left")?;
+        guard::leg(s2_right, 0.9997, "right")?;
         let k1_left = INV_L_1 / s2_left;
         let g1_vx_left = c12_left * k1_left;
         let k1_right = INV_L_1 / s2_right;
         let g1_vx_right = c12_right * k1_right;
         let g1_vy_left = s12_left * k1_left;
         let g1_vy_right = s12_right * k1_right;
-        ::core::result::Result::Ok([
-            [g1_vx_left, g1_vy_left], [g1_vx_right, g1_vy_right],
-        ])
+        Ok([[g1_vx_left, g1_vy_left], [g1_vx_right, g1_vy_right]])
     }
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
@@ -581,15 +569,13 @@ impl FiveBar {
     /// 51 operations (17 additions, 29 multiplications, 5 divisions), 2 square roots, 7 guards, 2 negations, 49 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn jacobian(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn jacobian(pose: &[f64; 2]) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
@@ -597,7 +583,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        let h_right = math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
@@ -606,19 +592,19 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -628,9 +614,9 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+        guard::platform(t1, 22.62, ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
-        ::core::result::Result::Ok([
+        Ok([
             [-(g1_vy_right * t2), -(minus_g1_vy_left * t2)],
             [g1_vx_right * t2, minus_g1_vx_left * t2],
         ])
@@ -646,28 +632,28 @@ impl FiveBar {
     /// 14 operations (6 additions, 8 multiplications, 0 divisions), 4 trigonometric pairs, 4 negations, 14 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn legs_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+    ) -> Result<[[f64; 4]; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
+        const L_1: f64 = 0.2;
         /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
+        const L_2: f64 = 0.25;
         let q1_plus_q2_left = joints[0] + joints[1];
         let q1_plus_q2_right = joints[2] + joints[3];
         // --- sines and cosines
         let [(s1_left, c1_left), (s12_left, c12_left), (s1_right, c1_right),
-        (s12_right, c12_right)] = ::overact::math::sin_cos_all([
+        (s12_right, c12_right)] = math::sin_cos_all([
             joints[0], q1_plus_q2_left, joints[2], q1_plus_q2_right,
         ]);
         let l_2_s12_left = L_2 * s12_left;
         let l_2_c12_left = L_2 * c12_left;
         let l_2_s12_right = L_2 * s12_right;
         let l_2_c12_right = L_2 * c12_right;
-        ::core::result::Result::Ok([
+        Ok([
             [-(L_1 * s1_left + l_2_s12_left), -l_2_s12_left, 0.0, 0.0],
             [L_1 * c1_left + l_2_c12_left, l_2_c12_left, 0.0, 0.0],
             [0.0, 0.0, -(L_1 * s1_right + l_2_s12_right), -l_2_s12_right],
@@ -685,13 +671,13 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]])
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+    ) -> Result<[[f64; 2]; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        Ok([[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]])
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
@@ -704,23 +690,21 @@ impl FiveBar {
     /// 6 operations (2 additions, 4 multiplications, 0 divisions), 2 trigonometric pairs, 6 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+    ) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
+        const L_2: f64 = 0.25;
         let q1_plus_q2_left = joints[0] + joints[1];
         let q1_plus_q2_right = joints[2] + joints[3];
         // --- sines and cosines
-        let [(s12_left, c12_left), (s12_right, c12_right)] = ::overact::math::sin_cos_all([
+        let [(s12_left, c12_left), (s12_right, c12_right)] = math::sin_cos_all([
             q1_plus_q2_left, q1_plus_q2_right,
         ]);
-        ::core::result::Result::Ok([
-            [L_2 * c12_left, L_2 * s12_left], [L_2 * c12_right, L_2 * s12_right],
-        ])
+        Ok([[L_2 * c12_left, L_2 * s12_left], [L_2 * c12_right, L_2 * s12_right]])
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
@@ -733,21 +717,17 @@ impl FiveBar {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 2 trigonometric pairs, 2 negations, 2 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn closure_actuator_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+    ) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// half / 2
-        const HALF_HALF: ::core::primitive::f64 = 0.05;
+        const HALF_HALF: f64 = 0.05;
         // --- sines and cosines
-        let [(s2_left, _), (s2_right, _)] = ::overact::math::sin_cos_all([
-            joints[1], joints[3],
-        ]);
-        ::core::result::Result::Ok([
-            [-(HALF_HALF * s2_left), 0.0], [0.0, -(HALF_HALF * s2_right)],
-        ])
+        let [(s2_left, _), (s2_right, _)] = math::sin_cos_all([joints[1], joints[3]]);
+        Ok([[-(HALF_HALF * s2_left), 0.0], [0.0, -(HALF_HALF * s2_right)]])
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
     ///
@@ -760,30 +740,30 @@ impl FiveBar {
     /// 61 operations (22 additions, 35 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 59 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_velocities(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -798,16 +778,16 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vx_right = l2_x_right * k_right;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -819,9 +799,7 @@ impl FiveBar {
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        ::core::result::Result::Ok([
-            -minus_rate_1_left, qd_2_left, rate_1_right, -minus_qd_2_right,
-        ])
+        Ok([-minus_rate_1_left, qd_2_left, rate_1_right, -minus_qd_2_right])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
@@ -835,35 +813,35 @@ impl FiveBar {
     /// 101 operations (36 additions, 61 multiplications, 4 divisions), 2 square roots, 6 guards, 2 negations, 99 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_accelerations(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        const L_2_SQUARED: f64 = 0.0625;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
@@ -891,14 +869,14 @@ impl FiveBar {
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
@@ -923,9 +901,7 @@ impl FiveBar {
         let minus_rate_dot_2_right = k_right
             * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
         let minus_qdd_2_right = rate_dot_1_right + minus_rate_dot_2_right;
-        ::core::result::Result::Ok([
-            -minus_rate_dot_1_left, qdd_2_left, rate_dot_1_right, -minus_qdd_2_right,
-        ])
+        Ok([-minus_rate_dot_1_left, qdd_2_left, rate_dot_1_right, -minus_qdd_2_right])
     }
     /// The twist v from the actuator velocities, by least squares, eq. (21).
     ///
@@ -938,47 +914,47 @@ impl FiveBar {
     /// 55 operations (19 additions, 31 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 55 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn twist_from_actuators(
-        pose: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[("pose", pose, 1e6), ("actuator_velocities", actuator_velocities, 1e9)],
         )?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -988,9 +964,9 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+        guard::platform(t1, 22.62, ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
-        ::core::result::Result::Ok([
+        Ok([
             -(t2
                 * (g1_vy_right * actuator_velocities[0]
                     + minus_g1_vy_left * actuator_velocities[1])),
@@ -1011,53 +987,53 @@ impl FiveBar {
     /// 89 operations (29 additions, 55 multiplications, 5 divisions), 2 square roots, 7 guards, 1 negation, 89 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn acceleration_from_actuators(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         /// l_2²
-        const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+        const L_2_SQUARED: f64 = 0.0625;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_right = 1.0 / det_right;
         let g1_vy_right = l2_y_right * k_right;
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -1067,7 +1043,7 @@ impl FiveBar {
         let l2_x_right = d_x_right - l1_x_right;
         let g1_vx_right = l2_x_right * k_right;
         let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+        guard::platform(t1, 22.62, ActuatorGroup::All)?;
         let t2 = 1.0 / t1;
         // --- left
         let g2_vx_left = l1_x_left * k_left;
@@ -1097,7 +1073,7 @@ impl FiveBar {
                 + rate_1_squared_right * (0.5 * (rho_squared_right - 0.1025)));
         let qdd1_minus_bias_rate_dot_1_right = actuator_accelerations[1]
             - bias_rate_dot_1_right;
-        ::core::result::Result::Ok([
+        Ok([
             -(t2
                 * (g1_vy_right * qdd1_minus_bias_rate_dot_1_left
                     + minus_g1_vy_left * qdd1_minus_bias_rate_dot_1_right)),
@@ -1119,13 +1095,13 @@ impl FiveBar {
     /// 194 operations (55 additions, 132 multiplications, 7 divisions), 2 square roots, 4 signs, 6 guards, 10 negations, 152 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 25]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_into(
             pose,
             twist,
             acceleration,
@@ -1137,55 +1113,55 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 25]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 25]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// 1 / l_1²
-            const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+            const INV_L_1_SQUARED: f64 = 25.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             output[0][24] = acceleration[0]; // m_platform
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let m_platform_on_vy = acceleration[1] + 9.81;
             output[1][24] = m_platform_on_vy;
             // --- left
@@ -1208,14 +1184,8 @@ impl FiveBar {
                 + minus_g1_vy_left * twist[1];
             output[0][4] = minus_g1_vx_left * minus_rate_1_left; // fv_1_left
             output[1][4] = minus_g1_vy_left * minus_rate_1_left; // fv_1_left
-            output[0][5] = ::overact::math::wide::signed(
-                minus_g1_vx_left,
-                minus_rate_1_left,
-            ); // fs_1_left
-            output[1][5] = ::overact::math::wide::signed(
-                minus_g1_vy_left,
-                minus_rate_1_left,
-            ); // fs_1_left
+            output[0][5] = math::wide::signed(minus_g1_vx_left, minus_rate_1_left); // fs_1_left
+            output[1][5] = math::wide::signed(minus_g1_vy_left, minus_rate_1_left); // fs_1_left
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
@@ -1243,7 +1213,7 @@ impl FiveBar {
             let zz_2_left_on_vx = g2_vx_left * rate_dot_2_left;
             output[0][7] = zz_2_left_on_vx;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            let t4_left = math::wide::signed(k_left, qd_2_left);
             output[0][11] = d_x_left * t4_left; // fs_2_left
             output[1][9] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
                 + g2_vy_left * a2_x_left); // my_2_left
@@ -1290,8 +1260,8 @@ impl FiveBar {
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             output[0][16] = g1_vx_right * rate_1_right; // fv_1_right
             output[1][16] = g1_vy_right * rate_1_right; // fv_1_right
-            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
-            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
+            output[0][17] = math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
+            output[1][17] = math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
@@ -1319,7 +1289,7 @@ impl FiveBar {
             let zz_2_right_on_vx = minus_g2_vx_right * minus_rate_dot_2_right;
             output[0][19] = zz_2_right_on_vx;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let t4_right = ::overact::math::wide::sign(minus_qd_2_right) / det_right;
+            let t4_right = math::wide::sign(minus_qd_2_right) / det_right;
             output[0][23] = d_x_right * t4_right; // fs_2_right
             output[1][21] = g1_vy_right * minus_inv_l_2_a_on_f2_right
                 + minus_g2_vy_right * a2_x_right; // my_2_right
@@ -1345,7 +1315,7 @@ impl FiveBar {
             let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
             output[1][12] = zz_1_right_on_vy;
             output[1][15] = zz_1_right_on_vy; // ia_1_right
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -1362,14 +1332,14 @@ impl FiveBar {
     /// 161 operations (43 additions, 116 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 124 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 25]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
             pose,
             joints,
             twist,
@@ -1382,40 +1352,40 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_platform_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 25]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 25]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 5.0;
+            const INV_L_1: f64 = 5.0;
             /// 1 / l_1²
-            const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+            const INV_L_1_SQUARED: f64 = 25.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1 / l_2
-            const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+            const L_1_PER_L_2: f64 = 0.8;
             /// l_2
-            const L_2: ::core::primitive::f64 = 0.25;
+            const L_2: f64 = 0.25;
             output[0][24] = acceleration[0]; // m_platform
             // --- sines and cosines
             let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
-            (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
+            (s1_right, c1_right)] = math::wide::sin_cos_all([
                 joints[1], joints[3], joints[0], joints[2],
             ]);
-            ::overact::guard::leg(s2_left, 0.9997, "left")?;
-            ::overact::guard::leg(s2_right, 0.9997, "right")?;
+            guard::leg(s2_left, 0.9997, "left")?;
+            guard::leg(s2_right, 0.9997, "right")?;
             let m_platform_on_vy = acceleration[1] + 9.81;
             output[1][24] = m_platform_on_vy;
             // --- left
@@ -1435,8 +1405,8 @@ impl FiveBar {
             let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
             output[0][4] = g1_vx_left * rate_1_left; // fv_1_left
             output[1][4] = g1_vy_left * rate_1_left; // fv_1_left
-            output[0][5] = ::overact::math::wide::signed(g1_vx_left, rate_1_left); // fs_1_left
-            output[1][5] = ::overact::math::wide::signed(g1_vy_left, rate_1_left); // fs_1_left
+            output[0][5] = math::wide::signed(g1_vx_left, rate_1_left); // fs_1_left
+            output[1][5] = math::wide::signed(g1_vy_left, rate_1_left); // fs_1_left
             let k2_left = k1_left * L_1_PER_L_2;
             let minus_g2_vx_left = c1_left * k2_left;
             let minus_g2_vy_left = s1_left * k2_left;
@@ -1471,15 +1441,9 @@ impl FiveBar {
                 + minus_g2_vy_left * a2_x_left; // my_2_left
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
             let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
-            output[1][11] = ::overact::math::wide::signed(
-                minus_gq2_vy_left,
-                minus_qd_2_left,
-            ); // fs_2_left
+            output[1][11] = math::wide::signed(minus_gq2_vy_left, minus_qd_2_left); // fs_2_left
             let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
-            output[0][11] = ::overact::math::wide::signed(
-                minus_gq2_vx_left,
-                minus_qd_2_left,
-            ); // fs_2_left
+            output[0][11] = math::wide::signed(minus_gq2_vx_left, minus_qd_2_left); // fs_2_left
             let zz_2_left_on_vx = minus_g2_vx_left * minus_rate_dot_2_left;
             output[0][7] = zz_2_left_on_vx;
             let zz_1_left_on_vy = g1_vy_left * rate_dot_1_left;
@@ -1511,8 +1475,8 @@ impl FiveBar {
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             output[0][16] = g1_vx_right * rate_1_right; // fv_1_right
             output[1][16] = g1_vy_right * rate_1_right; // fv_1_right
-            output[0][17] = ::overact::math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
-            output[1][17] = ::overact::math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
+            output[0][17] = math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
+            output[1][17] = math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
             let k2_right = L_1_PER_L_2 * k1_right;
             let minus_g2_vx_right = c1_right * k2_right;
             let minus_g2_vy_right = s1_right * k2_right;
@@ -1555,22 +1519,16 @@ impl FiveBar {
                 + minus_g2_vy_right * a2_x_right; // my_2_right
             let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = ::overact::math::wide::signed(
-                minus_gq2_vx_right,
-                minus_qd_2_right,
-            ); // fs_2_right
+            output[0][23] = math::wide::signed(minus_gq2_vx_right, minus_qd_2_right); // fs_2_right
             let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-            output[1][23] = ::overact::math::wide::signed(
-                minus_gq2_vy_right,
-                minus_qd_2_right,
-            ); // fs_2_right
+            output[1][23] = math::wide::signed(minus_gq2_vy_right, minus_qd_2_right); // fs_2_right
             let zz_1_right_on_vx = g1_vx_right * rate_dot_1_right;
             output[0][12] = zz_1_right_on_vx;
             output[0][15] = zz_1_right_on_vx; // ia_1_right
             let zz_1_right_on_vy = g1_vy_right * rate_dot_1_right;
             output[1][12] = zz_1_right_on_vy;
             output[1][15] = zz_1_right_on_vy; // ia_1_right
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -1587,14 +1545,14 @@ impl FiveBar {
     /// 224 operations (66 additions, 148 multiplications, 10 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 24 negations, 185 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 25]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -1607,59 +1565,59 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_platform_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_from_actuators_into(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 25]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+        output: &mut [[f64; 25]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / l_1²
-            const INV_L_1_SQUARED: ::core::primitive::f64 = 25.0;
+            const INV_L_1_SQUARED: f64 = 25.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             // --- left
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -1681,27 +1639,21 @@ impl FiveBar {
             let g1_vx_right = l2_x_right * k_right;
             output[0][18] = g1_vx_right; // off_1_right
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+            guard::platform(t1, 22.62, ActuatorGroup::All)?;
             output[0][4] = -(minus_g1_vx_left * actuator_velocities[0]); // fv_1_left
             output[1][4] = -(minus_g1_vy_left * actuator_velocities[0]); // fv_1_left
-            output[0][5] = -::overact::math::wide::signed(
+            output[0][5] = -math::wide::signed(
                 minus_g1_vx_left,
                 actuator_velocities[0],
             ); // fs_1_left
-            output[1][5] = -::overact::math::wide::signed(
+            output[1][5] = -math::wide::signed(
                 minus_g1_vy_left,
                 actuator_velocities[0],
             ); // fs_1_left
             output[0][16] = g1_vx_right * actuator_velocities[1]; // fv_1_right
             output[1][16] = g1_vy_right * actuator_velocities[1]; // fv_1_right
-            output[0][17] = ::overact::math::wide::signed(
-                g1_vx_right,
-                actuator_velocities[1],
-            ); // fs_1_right
-            output[1][17] = ::overact::math::wide::signed(
-                g1_vy_right,
-                actuator_velocities[1],
-            ); // fs_1_right
+            output[0][17] = math::wide::signed(g1_vx_right, actuator_velocities[1]); // fs_1_right
+            output[1][17] = math::wide::signed(g1_vy_right, actuator_velocities[1]); // fs_1_right
             // --- left
             let minus_zz_1_left_on_vx = minus_g1_vx_left * actuator_accelerations[0];
             output[0][0] = -minus_zz_1_left_on_vx; // zz_1_left
@@ -1756,7 +1708,7 @@ impl FiveBar {
             // --- left
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            let t3_left = ::overact::math::wide::sign(qd_2_left) / det_left;
+            let t3_left = math::wide::sign(qd_2_left) / det_left;
             output[0][11] = d_x_left * t3_left; // fs_2_left
             output[1][11] = pose[1] * t3_left; // fs_2_left
             let rate_2_squared_left = rate_2_left * rate_2_left;
@@ -1824,7 +1776,7 @@ impl FiveBar {
             output[1][21] = minus_g2_vy_right * a2_x_right
                 - g1_vy_right * inv_l_2_a_on_f2_right; // my_2_right
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            let t4_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            let t4_right = math::wide::sign(qd_2_right) / det_right;
             output[0][23] = -(d_x_right * t4_right); // fs_2_right
             let minus_zz_2_left_on_vy = g2_vy_left * minus_rate_dot_2_left;
             output[1][7] = -minus_zz_2_left_on_vy; // zz_2_left
@@ -1850,7 +1802,7 @@ impl FiveBar {
                     * (INV_L_1_SQUARED * m_2_right_on_vy
                         - 1.5625 * minus_zz_2_right_on_vy); // mx_2_right
             output[1][23] = -(pose[1] * t4_right); // fs_2_right
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -1866,13 +1818,13 @@ impl FiveBar {
     /// 182 operations (58 additions, 119 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 12 negations, 156 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 25]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_into(
             pose,
             twist,
             acceleration,
@@ -1884,34 +1836,34 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 25]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 25]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 5.0;
+            const INV_L_1: f64 = 5.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2
-            const L_2: ::core::primitive::f64 = 0.25;
+            const L_2: f64 = 0.25;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             output[0][6] = 1.0; // off_1_left
             output[0][12..19].fill(0.0);
             output[0][22] = 0.0; // m_2_right
@@ -1922,27 +1874,27 @@ impl FiveBar {
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let inv_rho_squared_left = 1.0 / rho_squared_left;
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let inv_rho_squared_right = 1.0 / rho_squared_right;
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             // --- left
             let k_left = 1.0 / det_left;
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -1961,11 +1913,7 @@ impl FiveBar {
             let g1_vy_right = l2_y_right * k_right;
             let det_ja = minus_g1_vx_left * g1_vy_right
                 - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                det_ja,
-                22.62,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 22.62, ActuatorGroup::Kept)?;
             let a1_y_left = 49.05 * l1_x_left;
             output[0][1] = a1_y_left; // mx_1_left
             let a1_x_left = 49.05 * l1_y_left;
@@ -1973,7 +1921,7 @@ impl FiveBar {
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
             output[0][4] = -minus_rate_1_left; // fv_1_left
-            output[0][5] = -::overact::math::wide::sign(minus_rate_1_left); // fs_1_left
+            output[0][5] = -math::wide::sign(minus_rate_1_left); // fs_1_left
             let a1_y_right = 49.05 * l1_x_right;
             output[1][13] = a1_y_right; // mx_1_right
             let a1_x_right = 49.05 * l1_y_right;
@@ -2012,13 +1960,10 @@ impl FiveBar {
             let zz_2_left_on_q1_left = g2_a1_left * rate_dot_2_left;
             output[0][7] = zz_2_left_on_q1_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            output[0][11] = ::overact::math::wide::signed(
-                g2_a1_left - 1.0,
-                qd_2_left,
-            ); // fs_2_left
+            output[0][11] = math::wide::signed(g2_a1_left - 1.0, qd_2_left); // fs_2_left
             let g2_a2_left = k_left * inv_det_ja;
             output[1][9] = -(g2_a2_left * a2_x_left); // my_2_left
-            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
+            output[1][11] = math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let zz_2_left_on_q1_right = g2_a2_left * rate_dot_2_left;
             output[1][7] = zz_2_left_on_q1_right;
             let t1_platform = acceleration[1] + 9.81;
@@ -2080,16 +2025,10 @@ impl FiveBar {
             output[0][21] = -(g2_a1_right * a2_x_right); // my_2_right
             output[1][22] = L_1 * a1_y_plus_l_1_rate_dot_1_right; // m_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = -::overact::math::wide::signed(
-                g2_a1_right,
-                minus_qd_2_right,
-            ); // fs_2_right
-            output[1][23] = -::overact::math::wide::signed(
-                g2_a2_right - 1.0,
-                minus_qd_2_right,
-            ); // fs_2_right
-            output[1][17] = ::overact::math::wide::sign(rate_1_right); // fs_1_right
-            ::core::result::Result::Ok(())
+            output[0][23] = -math::wide::signed(g2_a1_right, minus_qd_2_right); // fs_2_right
+            output[1][23] = -math::wide::signed(g2_a2_right - 1.0, minus_qd_2_right); // fs_2_right
+            output[1][17] = math::wide::sign(rate_1_right); // fs_1_right
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -2106,14 +2045,14 @@ impl FiveBar {
     /// 153 operations (48 additions, 102 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 133 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 25]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
             pose,
             joints,
             twist,
@@ -2126,30 +2065,30 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 25]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 25]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 5.0;
+            const INV_L_1: f64 = 5.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1 / l_2
-            const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+            const L_1_PER_L_2: f64 = 0.8;
             /// l_2
-            const L_2: ::core::primitive::f64 = 0.25;
+            const L_2: f64 = 0.25;
             output[0][6] = 1.0; // off_1_left
             output[0][12..19].fill(0.0);
             output[0][22] = 0.0; // m_2_right
@@ -2158,11 +2097,11 @@ impl FiveBar {
             output[1][18] = 1.0; // off_1_right
             // --- sines and cosines
             let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
-            (s1_right, c1_right)] = ::overact::math::wide::sin_cos_all([
+            (s1_right, c1_right)] = math::wide::sin_cos_all([
                 joints[1], joints[3], joints[0], joints[2],
             ]);
-            ::overact::guard::leg(s2_left, 0.9997, "left")?;
-            ::overact::guard::leg(s2_right, 0.9997, "right")?;
+            guard::leg(s2_left, 0.9997, "left")?;
+            guard::leg(s2_right, 0.9997, "right")?;
             let inv_s2_left = 1.0 / s2_left;
             let fk1_x_left = c2_left * inv_s2_left;
             let inv_s2_right = 1.0 / s2_right;
@@ -2173,11 +2112,7 @@ impl FiveBar {
             let c1_fk1_x_minus_s1_left = c1_left * fk1_x_left - s1_left;
             let det_ja = s1_fk1_x_plus_c1_left * c1_fk1_x_minus_s1_right
                 - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
-            ::overact::guard::platform(
-                det_ja,
-                0.9046,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 0.9046, ActuatorGroup::Kept)?;
             let a1_y_left = 9.81 * c1_left;
             output[0][1] = a1_y_left; // mx_1_left
             let a1_x_left = 9.81 * s1_left;
@@ -2213,7 +2148,7 @@ impl FiveBar {
             let t5_left = a1_y_left + t4_left;
             let a2_x_left = c2_left * (a1_x_left - t3_left) + s2_left * t5_left;
             output[0][9] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left; // my_2_left
-            output[0][5] = ::overact::math::wide::sign(t2_left); // fs_1_left
+            output[0][5] = math::wide::sign(t2_left); // fs_1_left
             let rate_dot_1_left = INV_L_1 * t4_left;
             output[0][0] = rate_dot_1_left; // zz_1_left
             output[0][3] = rate_dot_1_left; // ia_1_left
@@ -2222,16 +2157,10 @@ impl FiveBar {
             let minus_zz_2_left_on_q1_left = g2_a1_left * minus_rate_dot_2_left;
             output[0][7] = -minus_zz_2_left_on_q1_left; // zz_2_left
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-            output[0][11] = -::overact::math::wide::signed(
-                g2_a1_left - 1.0,
-                minus_qd_2_left,
-            ); // fs_2_left
+            output[0][11] = -math::wide::signed(g2_a1_left - 1.0, minus_qd_2_left); // fs_2_left
             let minus_g2_a2_left = k2_left * l_1_per_det_ja;
             output[1][9] = minus_g2_a2_left * a2_x_left; // my_2_left
-            output[1][11] = ::overact::math::wide::signed(
-                minus_g2_a2_left,
-                minus_qd_2_left,
-            ); // fs_2_left
+            output[1][11] = math::wide::signed(minus_g2_a2_left, minus_qd_2_left); // fs_2_left
             let zz_2_left_on_q1_right = minus_g2_a2_left * minus_rate_dot_2_left;
             output[1][7] = zz_2_left_on_q1_right;
             let t1_platform = acceleration[1] + 9.81;
@@ -2282,7 +2211,7 @@ impl FiveBar {
             output[0][19] = -minus_zz_2_right_on_q1_left; // zz_2_right
             output[0][20] = inv_l_2_m_platform_on_q1_left
                 + L_2 * minus_zz_2_right_on_q1_left; // mx_2_right
-            output[1][17] = ::overact::math::wide::sign(t2_right); // fs_1_right
+            output[1][17] = math::wide::sign(t2_right); // fs_1_right
             let minus_zz_2_right_on_q1_right = g2_a2_right * minus_rate_dot_2_right;
             output[1][19] = -minus_zz_2_right_on_q1_right; // zz_2_right
             output[1][20] = inv_l_2_m_platform_on_q1_right
@@ -2291,18 +2220,12 @@ impl FiveBar {
             output[0][21] = -(g2_a1_right * a2_x_right); // my_2_right
             output[1][22] = L_1 * t5_right; // m_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][23] = -::overact::math::wide::signed(
-                g2_a1_right,
-                minus_qd_2_right,
-            ); // fs_2_right
-            output[1][23] = -::overact::math::wide::signed(
-                g2_a2_right - 1.0,
-                minus_qd_2_right,
-            ); // fs_2_right
+            output[0][23] = -math::wide::signed(g2_a1_right, minus_qd_2_right); // fs_2_right
+            output[1][23] = -math::wide::signed(g2_a2_right - 1.0, minus_qd_2_right); // fs_2_right
             let rate_dot_1_right = INV_L_1 * t4_right;
             output[1][12] = rate_dot_1_right; // zz_1_right
             output[1][15] = rate_dot_1_right; // ia_1_right
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -2319,14 +2242,14 @@ impl FiveBar {
     /// 208 operations (68 additions, 134 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 189 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 25]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2339,41 +2262,41 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_actuators_into(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 25]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+        output: &mut [[f64; 25]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 5.0;
+            const INV_L_1: f64 = 5.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2
-            const L_2: ::core::primitive::f64 = 0.25;
+            const L_2: f64 = 0.25;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             output[0][0] = actuator_accelerations[0]; // zz_1_left
             output[0][3] = actuator_accelerations[0]; // ia_1_left
             output[0][4] = actuator_velocities[0]; // fv_1_left
@@ -2390,27 +2313,27 @@ impl FiveBar {
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let inv_rho_squared_left = 1.0 / rho_squared_left;
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let inv_rho_squared_right = 1.0 / rho_squared_right;
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let k_left = 1.0 / det_left;
@@ -2427,18 +2350,10 @@ impl FiveBar {
             let minus_g1_vy_left = l2_y_left * k_left;
             let det_ja = minus_g1_vx_left * g1_vy_right
                 - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                det_ja,
-                22.62,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            ::overact::guard::platform(
-                det_ja,
-                22.62,
-                ::overact::ActuatorGroup::All,
-            )?;
-            output[0][5] = ::overact::math::wide::sign(actuator_velocities[0]); // fs_1_left
-            output[1][17] = ::overact::math::wide::sign(actuator_velocities[1]); // fs_1_right
+            guard::platform(det_ja, 22.62, ActuatorGroup::Kept)?;
+            guard::platform(det_ja, 22.62, ActuatorGroup::All)?;
+            output[0][5] = math::wide::sign(actuator_velocities[0]); // fs_1_left
+            output[1][17] = math::wide::sign(actuator_velocities[1]); // fs_1_right
             let bias_a1_y_left = 49.05 * l1_x_left;
             output[0][1] = bias_a1_y_left; // mx_1_left
             let bias_a1_y_plus_l_1_qdd1_left = bias_a1_y_left
@@ -2553,22 +2468,16 @@ impl FiveBar {
             output[1][8] = inv_l_2_m_platform_on_q1_right
                 + L_2 * minus_zz_2_left_on_q1_right; // mx_2_left
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            output[0][11] = ::overact::math::wide::signed(
-                g2_a1_left - 1.0,
-                qd_2_left,
-            ); // fs_2_left
-            output[1][11] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
+            output[0][11] = math::wide::signed(g2_a1_left - 1.0, qd_2_left); // fs_2_left
+            output[1][11] = math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let zz_2_right_on_q1_left = g2_a1_right * rate_dot_2_right;
             output[0][19] = zz_2_right_on_q1_left;
             output[0][20] = inv_l_2_m_platform_on_q1_left
                 - L_2 * zz_2_right_on_q1_left; // mx_2_right
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            output[0][23] = ::overact::math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
-            output[1][23] = ::overact::math::wide::signed(
-                g2_a2_right - 1.0,
-                qd_2_right,
-            ); // fs_2_right
-            ::core::result::Result::Ok(())
+            output[0][23] = math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
+            output[1][23] = math::wide::signed(g2_a2_right - 1.0, qd_2_right); // fs_2_right
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -2584,13 +2493,13 @@ impl FiveBar {
     /// 166 operations (47 additions, 113 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 8 negations, 131 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 19]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             pose,
             twist,
             acceleration,
@@ -2602,53 +2511,53 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 19]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 19]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             output[0][0] = acceleration[0]; // m_platformR
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             output[1][0] = acceleration[1] + 9.81; // m_platformR
             // --- left
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
@@ -2670,14 +2579,8 @@ impl FiveBar {
                 + minus_g1_vy_left * twist[1];
             output[0][7] = minus_g1_vx_left * minus_rate_1_left; // fv_1_left
             output[1][7] = minus_g1_vy_left * minus_rate_1_left; // fv_1_left
-            output[0][9] = ::overact::math::wide::signed(
-                minus_g1_vx_left,
-                minus_rate_1_left,
-            ); // fs_1_left
-            output[1][9] = ::overact::math::wide::signed(
-                minus_g1_vy_left,
-                minus_rate_1_left,
-            ); // fs_1_left
+            output[0][9] = math::wide::signed(minus_g1_vx_left, minus_rate_1_left); // fs_1_left
+            output[1][9] = math::wide::signed(minus_g1_vy_left, minus_rate_1_left); // fs_1_left
             let g2_vx_left = l1_x_left * k_left;
             let g2_vy_left = l1_y_left * k_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
@@ -2702,7 +2605,7 @@ impl FiveBar {
                 * (minus_a_on_f2_left + rate_2_squared_left * t3_left);
             output[0][13] = g2_vx_left * rate_dot_2_left; // zz_2_leftR
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let t4_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            let t4_left = math::wide::signed(k_left, qd_2_left);
             output[0][17] = d_x_left * t4_left; // fs_2_left
             output[1][15] = -(minus_g1_vy_left * minus_inv_l_2_a_on_f2_left
                 + g2_vy_left * a2_x_left); // my_2_left
@@ -2729,8 +2632,8 @@ impl FiveBar {
             let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
             output[0][8] = g1_vx_right * rate_1_right; // fv_1_right
             output[1][8] = g1_vy_right * rate_1_right; // fv_1_right
-            output[0][10] = ::overact::math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
-            output[1][10] = ::overact::math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
+            output[0][10] = math::wide::signed(g1_vx_right, rate_1_right); // fs_1_right
+            output[1][10] = math::wide::signed(g1_vy_right, rate_1_right); // fs_1_right
             let minus_g2_vx_right = l1_x_right * k_right;
             let minus_g2_vy_right = l1_y_right * k_right;
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
@@ -2756,7 +2659,7 @@ impl FiveBar {
                 * (minus_a_on_f2_right + rate_2_squared_right * t3_right);
             output[0][14] = minus_g2_vx_right * minus_rate_dot_2_right; // zz_2_rightR
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let t4_right = ::overact::math::wide::signed(k_right, minus_qd_2_right);
+            let t4_right = math::wide::signed(k_right, minus_qd_2_right);
             output[0][18] = d_x_right * t4_right; // fs_2_right
             output[1][16] = g1_vy_right * minus_inv_l_2_a_on_f2_right
                 + minus_g2_vy_right * a2_x_right; // my_2_right
@@ -2764,7 +2667,7 @@ impl FiveBar {
             output[0][2] = g1_vx_right * rate_dot_1_right; // zz_1_rightR
             output[1][2] = g1_vy_right * rate_dot_1_right; // zz_1_rightR
             output[1][18] = pose[1] * t4_right; // fs_2_right
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -2781,14 +2684,14 @@ impl FiveBar {
     /// 129 operations (33 additions, 94 multiplications, 2 divisions), 4 trigonometric pairs, 4 signs, 2 guards, 4 negations, 100 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 19]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -2801,34 +2704,34 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 19]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 19]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
+        const INV_L_1: f64 = 5.0;
         /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
+        const L_1: f64 = 0.2;
         /// l_1 / l_2
-        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+        const L_1_PER_L_2: f64 = 0.8;
         /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
+        const L_2: f64 = 0.25;
         output[0][0] = acceleration[0]; // m_platformR
         // --- sines and cosines
         let [(s2_left, c2_left), (s2_right, c2_right), (s1_left, c1_left),
-        (s1_right, c1_right)] = ::overact::math::sin_cos_all([
+        (s1_right, c1_right)] = math::sin_cos_all([
             joints[1], joints[3], joints[0], joints[2],
         ]);
-        ::overact::guard::leg(s2_left, 0.9997, "left")?;
-        ::overact::guard::leg(s2_right, 0.9997, "right")?;
+        guard::leg(s2_left, 0.9997, "left")?;
+        guard::leg(s2_right, 0.9997, "right")?;
         output[1][0] = acceleration[1] + 9.81; // m_platformR
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
@@ -2847,8 +2750,8 @@ impl FiveBar {
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
         output[0][7] = g1_vx_left * rate_1_left; // fv_1_left
         output[1][7] = g1_vy_left * rate_1_left; // fv_1_left
-        output[0][9] = ::overact::math::signed(g1_vx_left, rate_1_left); // fs_1_left
-        output[1][9] = ::overact::math::signed(g1_vy_left, rate_1_left); // fs_1_left
+        output[0][9] = math::signed(g1_vx_left, rate_1_left); // fs_1_left
+        output[1][9] = math::signed(g1_vy_left, rate_1_left); // fs_1_left
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let k1_right = INV_L_1 / s2_right;
@@ -2866,8 +2769,8 @@ impl FiveBar {
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         output[0][8] = g1_vx_right * rate_1_right; // fv_1_right
         output[1][8] = g1_vy_right * rate_1_right; // fv_1_right
-        output[0][10] = ::overact::math::signed(g1_vx_right, rate_1_right); // fs_1_right
-        output[1][10] = ::overact::math::signed(g1_vy_right, rate_1_right); // fs_1_right
+        output[0][10] = math::signed(g1_vx_right, rate_1_right); // fs_1_right
+        output[1][10] = math::signed(g1_vy_right, rate_1_right); // fs_1_right
         // --- left
         let k2_left = k1_left * L_1_PER_L_2;
         let minus_g2_vx_left = c1_left * k2_left;
@@ -2896,11 +2799,11 @@ impl FiveBar {
             + minus_g2_vx_left * a2_x_left; // my_2_left
         let minus_gq2_vx_left = g1_vx_left + minus_g2_vx_left;
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        output[0][17] = ::overact::math::signed(minus_gq2_vx_left, minus_qd_2_left); // fs_2_left
+        output[0][17] = math::signed(minus_gq2_vx_left, minus_qd_2_left); // fs_2_left
         output[1][15] = g1_vy_left * minus_l_1_per_l_2_a_on_f2_left
             + minus_g2_vy_left * a2_x_left; // my_2_left
         let minus_gq2_vy_left = g1_vy_left + minus_g2_vy_left;
-        output[1][17] = ::overact::math::signed(minus_gq2_vy_left, minus_qd_2_left); // fs_2_left
+        output[1][17] = math::signed(minus_gq2_vy_left, minus_qd_2_left); // fs_2_left
         // --- right
         let k2_right = k1_right * L_1_PER_L_2;
         let minus_g2_vx_right = c1_right * k2_right;
@@ -2929,12 +2832,12 @@ impl FiveBar {
             + minus_g2_vx_right * a2_x_right; // my_2_right
         let minus_gq2_vx_right = g1_vx_right + minus_g2_vx_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        output[0][18] = ::overact::math::signed(minus_gq2_vx_right, minus_qd_2_right); // fs_2_right
+        output[0][18] = math::signed(minus_gq2_vx_right, minus_qd_2_right); // fs_2_right
         output[1][16] = g1_vy_right * minus_l_1_per_l_2_a_on_f2_right
             + minus_g2_vy_right * a2_x_right; // my_2_right
         let minus_gq2_vy_right = g1_vy_right + minus_g2_vy_right;
-        output[1][18] = ::overact::math::signed(minus_gq2_vy_right, minus_qd_2_right); // fs_2_right
-        ::core::result::Result::Ok(())
+        output[1][18] = math::signed(minus_gq2_vy_right, minus_qd_2_right); // fs_2_right
+        Ok(())
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
     ///
@@ -2950,14 +2853,14 @@ impl FiveBar {
     /// 195 operations (58 additions, 125 multiplications, 12 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 19 negations, 163 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 19]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2970,57 +2873,57 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_actuators_into(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 19]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+        output: &mut [[f64; 19]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- left
             let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
@@ -3041,7 +2944,7 @@ impl FiveBar {
             let minus_g1_vy_left = l2_y_left * k_left;
             output[1][11] = -minus_g1_vy_left; // off_1_left
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+            guard::platform(t1, 22.62, ActuatorGroup::All)?;
             output[0][1] = -(minus_g1_vx_left * actuator_accelerations[0]); // zz_1_leftR
             output[1][1] = -(minus_g1_vy_left * actuator_accelerations[0]); // zz_1_leftR
             output[0][2] = g1_vx_right * actuator_accelerations[1]; // zz_1_rightR
@@ -3050,22 +2953,16 @@ impl FiveBar {
             output[1][7] = -(minus_g1_vy_left * actuator_velocities[0]); // fv_1_left
             output[0][8] = g1_vx_right * actuator_velocities[1]; // fv_1_right
             output[1][8] = g1_vy_right * actuator_velocities[1]; // fv_1_right
-            output[0][9] = -::overact::math::wide::signed(
+            output[0][9] = -math::wide::signed(
                 minus_g1_vx_left,
                 actuator_velocities[0],
             ); // fs_1_left
-            output[1][9] = -::overact::math::wide::signed(
+            output[1][9] = -math::wide::signed(
                 minus_g1_vy_left,
                 actuator_velocities[0],
             ); // fs_1_left
-            output[0][10] = ::overact::math::wide::signed(
-                g1_vx_right,
-                actuator_velocities[1],
-            ); // fs_1_right
-            output[1][10] = ::overact::math::wide::signed(
-                g1_vy_right,
-                actuator_velocities[1],
-            ); // fs_1_right
+            output[0][10] = math::wide::signed(g1_vx_right, actuator_velocities[1]); // fs_1_right
+            output[1][10] = math::wide::signed(g1_vy_right, actuator_velocities[1]); // fs_1_right
             let bias_a1_y_left = 49.05 * l1_x_left;
             output[0][3] = -(minus_g1_vx_left * bias_a1_y_left); // mx_1_leftR
             output[1][3] = -(minus_g1_vy_left * bias_a1_y_left); // mx_1_leftR
@@ -3086,7 +2983,7 @@ impl FiveBar {
                 + minus_g1_vy_left * actuator_velocities[1]) / t1;
             let rate_2_left = g2_vy_left * vy - g2_vx_left * minus_vx;
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            let t2_left = ::overact::math::wide::signed(k_left, qd_2_left);
+            let t2_left = math::wide::signed(k_left, qd_2_left);
             output[0][17] = d_x_left * t2_left; // fs_2_left
             output[1][17] = pose[1] * t2_left; // fs_2_left
             let rate_2_squared_left = rate_2_left * rate_2_left;
@@ -3152,11 +3049,11 @@ impl FiveBar {
             output[1][13] = -(g2_vy_left * minus_rate_dot_2_left); // zz_2_leftR
             output[1][14] = -(minus_g2_vy_right * rate_dot_2_right); // zz_2_rightR
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            let t3_right = ::overact::math::wide::sign(qd_2_right) / det_right;
+            let t3_right = math::wide::sign(qd_2_right) / det_right;
             output[0][18] = -(d_x_right * t3_right); // fs_2_right
             output[1][0] = dvy + 9.81; // m_platformR
             output[1][18] = -(pose[1] * t3_right); // fs_2_right
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -3172,13 +3069,13 @@ impl FiveBar {
     /// 164 operations (52 additions, 107 multiplications, 5 divisions), 2 square roots, 4 signs, 7 guards, 11 negations, 144 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 19]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
             pose,
             twist,
             acceleration,
@@ -3190,30 +3087,30 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 19]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 19]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             output[0][2] = 0.0; // zz_1_rightR
             output[0][4] = 0.0; // mx_1_rightR
             output[0][6] = 0.0; // my_1_right
@@ -3232,27 +3129,27 @@ impl FiveBar {
             let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let inv_rho_squared_left = 1.0 / rho_squared_left;
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let inv_rho_squared_right = 1.0 / rho_squared_right;
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let k_right = 1.0 / det_right;
@@ -3270,11 +3167,7 @@ impl FiveBar {
             let minus_g1_vy_left = l2_y_left * k_left;
             let det_ja = minus_g1_vx_left * g1_vy_right
                 - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                det_ja,
-                22.62,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 22.62, ActuatorGroup::Kept)?;
             let a1_y_left = 49.05 * l1_x_left;
             output[0][3] = a1_y_left; // mx_1_leftR
             let a1_y_right = 49.05 * l1_x_right;
@@ -3286,7 +3179,7 @@ impl FiveBar {
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
             output[0][7] = -minus_rate_1_left; // fv_1_left
-            output[0][9] = -::overact::math::wide::sign(minus_rate_1_left); // fs_1_left
+            output[0][9] = -math::wide::sign(minus_rate_1_left); // fs_1_left
             let inv_det_ja = 1.0 / det_ja;
             let vy_by_a2 = minus_g1_vx_left * inv_det_ja;
             let minus_vx_by_a2 = minus_g1_vy_left * inv_det_ja;
@@ -3351,25 +3244,16 @@ impl FiveBar {
             output[1][13] = g2_a2_left * rate_dot_2_left; // zz_2_leftR
             output[0][13] = g2_a1_left * rate_dot_2_left; // zz_2_leftR
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            output[0][17] = ::overact::math::wide::signed(
-                g2_a1_left - 1.0,
-                qd_2_left,
-            ); // fs_2_left
+            output[0][17] = math::wide::signed(g2_a1_left - 1.0, qd_2_left); // fs_2_left
             output[1][14] = -(g2_a2_right * minus_rate_dot_2_right); // zz_2_rightR
             output[1][15] = -(g2_a2_left * a2_x_left); // my_2_left
-            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
+            output[1][17] = math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             output[0][16] = -(g2_a1_right * a2_x_right); // my_2_right
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            output[0][18] = -::overact::math::wide::signed(
-                g2_a1_right,
-                minus_qd_2_right,
-            ); // fs_2_right
-            output[1][18] = -::overact::math::wide::signed(
-                g2_a2_right - 1.0,
-                minus_qd_2_right,
-            ); // fs_2_right
-            output[1][10] = ::overact::math::wide::sign(rate_1_right); // fs_1_right
-            ::core::result::Result::Ok(())
+            output[0][18] = -math::wide::signed(g2_a1_right, minus_qd_2_right); // fs_2_right
+            output[1][18] = -math::wide::signed(g2_a2_right - 1.0, minus_qd_2_right); // fs_2_right
+            output[1][10] = math::wide::sign(rate_1_right); // fs_1_right
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -3386,14 +3270,14 @@ impl FiveBar {
     /// 135 operations (42 additions, 90 multiplications, 3 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 9 negations, 121 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 19]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -3406,28 +3290,28 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 19]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 19]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
         /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
+        const INV_L_1: f64 = 5.0;
         /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
+        const INV_L_2: f64 = 4.0;
         /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
+        const L_1: f64 = 0.2;
         /// l_1 / l_2
-        const L_1_PER_L_2: ::core::primitive::f64 = 0.8;
+        const L_1_PER_L_2: f64 = 0.8;
         /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
+        const L_2: f64 = 0.25;
         output[0][2] = 0.0; // zz_1_rightR
         output[0][4] = 0.0; // mx_1_rightR
         output[0][6] = 0.0; // my_1_right
@@ -3444,11 +3328,11 @@ impl FiveBar {
         output[1][12] = 1.0; // off_1_right
         // --- sines and cosines
         let [(s2_left, c2_left), (s2_right, c2_right), (s1_right, c1_right),
-        (s1_left, c1_left)] = ::overact::math::sin_cos_all([
+        (s1_left, c1_left)] = math::sin_cos_all([
             joints[1], joints[3], joints[2], joints[0],
         ]);
-        ::overact::guard::leg(s2_left, 0.9997, "left")?;
-        ::overact::guard::leg(s2_right, 0.9997, "right")?;
+        guard::leg(s2_left, 0.9997, "left")?;
+        guard::leg(s2_right, 0.9997, "right")?;
         let inv_s2_right = 1.0 / s2_right;
         let fk1_x_right = c2_right * inv_s2_right;
         let c1_fk1_x_minus_s1_right = c1_right * fk1_x_right - s1_right;
@@ -3460,7 +3344,7 @@ impl FiveBar {
         let s1_fk1_x_plus_c1_right = s1_right * fk1_x_right + c1_right;
         let det_ja = s1_fk1_x_plus_c1_left * c1_fk1_x_minus_s1_right
             - c1_fk1_x_minus_s1_left * s1_fk1_x_plus_c1_right;
-        ::overact::guard::platform(det_ja, 0.9046, ::overact::ActuatorGroup::Kept)?;
+        guard::platform(det_ja, 0.9046, ActuatorGroup::Kept)?;
         let l_1_per_det_ja = L_1 / det_ja;
         let vy_by_a1 = c1_fk1_x_minus_s1_right * l_1_per_det_ja;
         let t1_platform = acceleration[1] + 9.81;
@@ -3499,7 +3383,7 @@ impl FiveBar {
         output[0][15] = L_1_PER_L_2 * a_on_f2_left - g2_a1_left * a2_x_left; // my_2_left
         let rate_dot_1_left = INV_L_1 * t4_left;
         output[0][1] = rate_dot_1_left; // zz_1_leftR
-        output[0][9] = ::overact::math::sign(t2_left); // fs_1_left
+        output[0][9] = math::sign(t2_left); // fs_1_left
         let minus_rate_dot_2_left = k2_left
             * (a_on_f2_left + t1_left * minus_rate_2_left);
         output[0][13] = -(g2_a1_left * minus_rate_dot_2_left); // zz_2_leftR
@@ -3507,8 +3391,8 @@ impl FiveBar {
         output[1][13] = minus_g2_a2_left * minus_rate_dot_2_left; // zz_2_leftR
         output[1][15] = minus_g2_a2_left * a2_x_left; // my_2_left
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        output[0][17] = -::overact::math::signed(g2_a1_left - 1.0, minus_qd_2_left); // fs_2_left
-        output[1][17] = ::overact::math::signed(minus_g2_a2_left, minus_qd_2_left); // fs_2_left
+        output[0][17] = -math::signed(g2_a1_left - 1.0, minus_qd_2_left); // fs_2_left
+        output[1][17] = math::signed(minus_g2_a2_left, minus_qd_2_left); // fs_2_left
         // --- right
         let a1_x_right = 9.81 * s1_right;
         output[1][6] = -a1_x_right; // my_1_right
@@ -3541,13 +3425,13 @@ impl FiveBar {
         output[0][14] = -(g2_a1_right * minus_rate_dot_2_right); // zz_2_rightR
         let rate_dot_1_right = INV_L_1 * t4_right;
         output[1][2] = rate_dot_1_right; // zz_1_rightR
-        output[1][10] = ::overact::math::sign(t2_right); // fs_1_right
+        output[1][10] = math::sign(t2_right); // fs_1_right
         output[1][14] = -(g2_a2_right * minus_rate_dot_2_right); // zz_2_rightR
         output[0][16] = -(g2_a1_right * a2_x_right); // my_2_right
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        output[0][18] = -::overact::math::signed(g2_a1_right, minus_qd_2_right); // fs_2_right
-        output[1][18] = -::overact::math::signed(g2_a2_right - 1.0, minus_qd_2_right); // fs_2_right
-        ::core::result::Result::Ok(())
+        output[0][18] = -math::signed(g2_a1_right, minus_qd_2_right); // fs_2_right
+        output[1][18] = -math::signed(g2_a2_right - 1.0, minus_qd_2_right); // fs_2_right
+        Ok(())
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
     ///
@@ -3563,14 +3447,14 @@ impl FiveBar {
     /// 190 operations (62 additions, 122 multiplications, 6 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 10 guards, 8 negations, 177 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 19]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -3583,37 +3467,37 @@ impl FiveBar {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_actuators_into(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 19]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        start: &[f64; 2],
+        output: &mut [[f64; 19]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             output[0][1] = actuator_accelerations[0]; // zz_1_leftR
             output[0][2] = 0.0; // zz_1_rightR
             output[0][4] = 0.0; // mx_1_rightR
@@ -3636,27 +3520,27 @@ impl FiveBar {
             let y_squared = pose[1] * pose[1];
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let inv_rho_squared_left = 1.0 / rho_squared_left;
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let inv_rho_squared_right = 1.0 / rho_squared_right;
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let k_right = 1.0 / det_right;
@@ -3674,18 +3558,10 @@ impl FiveBar {
             let g1_vx_right = l2_x_right * k_right;
             let det_ja = minus_g1_vx_left * g1_vy_right
                 - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(
-                det_ja,
-                22.62,
-                ::overact::ActuatorGroup::Kept,
-            )?;
-            ::overact::guard::platform(
-                det_ja,
-                22.62,
-                ::overact::ActuatorGroup::All,
-            )?;
-            output[0][9] = ::overact::math::wide::sign(actuator_velocities[0]); // fs_1_left
-            output[1][10] = ::overact::math::wide::sign(actuator_velocities[1]); // fs_1_right
+            guard::platform(det_ja, 22.62, ActuatorGroup::Kept)?;
+            guard::platform(det_ja, 22.62, ActuatorGroup::All)?;
+            output[0][9] = math::wide::sign(actuator_velocities[0]); // fs_1_left
+            output[1][10] = math::wide::sign(actuator_velocities[1]); // fs_1_right
             let bias_a1_y_left = 49.05 * l1_x_left;
             output[0][3] = bias_a1_y_left; // mx_1_leftR
             let bias_a1_y_right = 49.05 * l1_x_right;
@@ -3774,18 +3650,12 @@ impl FiveBar {
             output[1][13] = -(g2_a2_left * minus_rate_dot_2_left); // zz_2_leftR
             output[0][14] = g2_a1_right * rate_dot_2_right; // zz_2_rightR
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            output[0][17] = ::overact::math::wide::signed(
-                g2_a1_left - 1.0,
-                qd_2_left,
-            ); // fs_2_left
-            output[1][17] = ::overact::math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
+            output[0][17] = math::wide::signed(g2_a1_left - 1.0, qd_2_left); // fs_2_left
+            output[1][17] = math::wide::signed(g2_a2_left, qd_2_left); // fs_2_left
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            output[0][18] = ::overact::math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
-            output[1][18] = ::overact::math::wide::signed(
-                g2_a2_right - 1.0,
-                qd_2_right,
-            ); // fs_2_right
-            ::core::result::Result::Ok(())
+            output[0][18] = math::wide::signed(g2_a1_right, qd_2_right); // fs_2_right
+            output[1][18] = math::wide::signed(g2_a2_right - 1.0, qd_2_right); // fs_2_right
+            Ok(())
         })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -3799,16 +3669,16 @@ impl FiveBar {
     /// 49 operations (18 additions, 27 multiplications, 4 divisions), 2 square roots, 6 guards, 49 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_platform(
-        pose: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        pose: &[f64; 2],
+        torques: &[f64; 2],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- right
         let d_x_right = pose[0] - HALF;
         let y_squared = pose[1] * pose[1];
@@ -3816,7 +3686,7 @@ impl FiveBar {
         let inv_rho_squared_right = 1.0 / rho_squared_right;
         let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
         let h_squared_right = L_1_SQUARED * inv_rho_squared_right - t1_right * t1_right;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        let h_right = math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
@@ -3825,19 +3695,19 @@ impl FiveBar {
         // --- left
         let d_x_left = pose[0] + HALF;
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let l2_x_left = d_x_left - l1_x_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let k_left = 1.0 / det_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -3846,7 +3716,7 @@ impl FiveBar {
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
-        ::core::result::Result::Ok([
+        Ok([
             g1_vx_right * torques[1] - minus_g1_vx_left * torques[0],
             g1_vy_right * torques[1] - minus_g1_vy_left * torques[0],
         ])
@@ -3862,13 +3732,13 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn project_actuators(
-        pose: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
-        ::core::result::Result::Ok([torques[0], torques[1]])
+        pose: &[f64; 2],
+        torques: &[f64; 2],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        Ok([torques[0], torques[1]])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
@@ -3883,41 +3753,41 @@ impl FiveBar {
     /// 203 operations (82 additions, 113 multiplications, 8 divisions), 2 square roots, 4 signs, 7 guards, 203 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 25],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        parameters: &[f64; 25],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -3937,54 +3807,60 @@ impl FiveBar {
             let t2_left = 0.5 * (rho_squared_left - 0.1025);
             let minus_rate_dot_1_left = k_left
                 * (a_on_f1_left + rate_1_squared_left * t2_left);
-            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
-                - inv_l_2_mx_2_left;
+            let mx_2_left = parameters[8];
+            let inv_l_2_mx_2_left = INV_L_2 * mx_2_left;
+            let m_2_left = parameters[10];
+            let m_2_minus_inv_l_2_mx_2_left = m_2_left - inv_l_2_mx_2_left;
+            let zz_1_left = parameters[0];
+            let ia_1_left = parameters[3];
+            let fs_1_left = parameters[5];
+            let fv_1_left = parameters[4];
             let a1_y_left = 49.05 * l1_x_left;
+            let mx_1_left = parameters[1];
             let a1_x_left = 49.05 * l1_y_left;
+            let my_1_left = parameters[2];
             let minus_a_on_f2_left = l1_x_left * acceleration[0]
                 + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
-            let t3_left = parameters[6]
-                + a1_y_left
-                    * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-                - parameters[2] * a1_x_left
-                + INV_L_2 * (parameters[9] * minus_a_on_f2_left)
-                - parameters[4] * minus_rate_1_left;
+            let my_2_left = parameters[9];
+            let off_1_left = parameters[6];
+            let t3_left = off_1_left
+                + a1_y_left * (mx_1_left + L_1 * m_2_minus_inv_l_2_mx_2_left)
+                - my_1_left * a1_x_left + INV_L_2 * (my_2_left * minus_a_on_f2_left)
+                - fv_1_left * minus_rate_1_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let tau_2_left = ::overact::math::wide::signed(
-                parameters[11],
-                qd_2_left,
-            );
+            let fs_2_left = parameters[11];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
             let force_on_u1_left = t3_left
-                - ::overact::math::wide::signed(parameters[5], minus_rate_1_left)
+                - math::wide::signed(fs_1_left, minus_rate_1_left)
                 - minus_rate_dot_1_left
-                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                        + parameters[3]) - tau_2_left;
+                    * (zz_1_left + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_left
+                        + ia_1_left) - tau_2_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
             // --- left
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+            let zz_2_left = parameters[7];
             let c2_left = t2_left * 20.0;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
             let moment2_z_left = rate_dot_2_left
-                * (parameters[7] - inv_l_2_mx_2_left * L_2_SQUARED)
-                - parameters[9] * a2_x_left;
+                * (zz_2_left - inv_l_2_mx_2_left * L_2_SQUARED)
+                - my_2_left * a2_x_left;
             let force_on_u2_left = moment2_z_left + tau_2_left;
             // --- right
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -4002,7 +3878,9 @@ impl FiveBar {
             let t2_right = 0.5 * (rho_squared_right - 0.1025);
             let minus_rate_dot_2_right = k_right
                 * (minus_a_on_f2_right + rate_2_squared_right * t2_right);
-            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
+            let mx_2_right = parameters[20];
+            let inv_l_2_mx_2_right = INV_L_2 * mx_2_right;
+            let zz_2_right = parameters[19];
             let c2_right = 20.0 * t2_right;
             let a1_x_right = 49.05 * l1_y_right;
             let s2_right = 20.0 * det_right;
@@ -4013,20 +3891,19 @@ impl FiveBar {
                 * (a_on_f1_right + rate_1_squared_right * t2_right);
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
+            let my_2_right = parameters[21];
             let minus_moment2_z_right = minus_rate_dot_2_right
-                * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
-                + parameters[21] * a2_x_right;
+                * (zz_2_right - L_2_SQUARED * inv_l_2_mx_2_right)
+                + my_2_right * a2_x_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let minus_tau_2_right = ::overact::math::wide::signed(
-                parameters[23],
-                minus_qd_2_right,
-            );
+            let fs_2_right = parameters[23];
+            let minus_tau_2_right = math::wide::signed(fs_2_right, minus_qd_2_right);
             let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-            let t1_platform = parameters[24] + inv_l_2_mx_2_left
-                + inv_l_2_mx_2_right;
+            let m_platform = parameters[24];
+            let t1_platform = m_platform + inv_l_2_mx_2_left + inv_l_2_mx_2_right;
             let force_y_platform = (acceleration[1] + 9.81) * t1_platform;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+            guard::platform(t1, 22.62, ActuatorGroup::All)?;
             let t2 = (g2_vy_left * force_on_u2_left
                 + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform)
                 / t1;
@@ -4034,21 +3911,25 @@ impl FiveBar {
             let t3 = (g2_vx_left * force_on_u2_left
                 + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform)
                 / t1;
-            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
-                - inv_l_2_mx_2_right;
-            let t3_right = parameters[16] * rate_1_right
-                + a1_y_right
-                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-                - parameters[14] * a1_x_right
-                + INV_L_2 * (minus_a_on_f2_right * parameters[21]);
-            let force_on_u1_right = minus_tau_2_right + parameters[18]
-                + ::overact::math::wide::signed(parameters[17], rate_1_right)
-                + t3_right
+            let fs_1_right = parameters[17];
+            let fv_1_right = parameters[16];
+            let m_2_right = parameters[22];
+            let m_2_minus_inv_l_2_mx_2_right = m_2_right - inv_l_2_mx_2_right;
+            let mx_1_right = parameters[13];
+            let my_1_right = parameters[14];
+            let t3_right = fv_1_right * rate_1_right
+                + a1_y_right * (mx_1_right + L_1 * m_2_minus_inv_l_2_mx_2_right)
+                - my_1_right * a1_x_right
+                + INV_L_2 * (minus_a_on_f2_right * my_2_right);
+            let off_1_right = parameters[18];
+            let zz_1_right = parameters[12];
+            let ia_1_right = parameters[15];
+            let force_on_u1_right = minus_tau_2_right + off_1_right
+                + math::wide::signed(fs_1_right, rate_1_right) + t3_right
                 + rate_dot_1_right
-                    * (parameters[12]
-                        + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                        + parameters[15]);
-            ::core::result::Result::Ok([
+                    * (zz_1_right + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_right
+                        + ia_1_right);
+            Ok([
                 force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
                 force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
             ])
@@ -4068,38 +3949,38 @@ impl FiveBar {
     /// 186 operations (72 additions, 108 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 192 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 25],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        parameters: &[f64; 25],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 5.0;
+            const INV_L_1: f64 = 5.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2
-            const L_2: ::core::primitive::f64 = 0.25;
+            const L_2: f64 = 0.25;
             // --- sines and cosines
             let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
-            (s2_right, c2_right)] = ::overact::math::wide::sin_cos_all([
+            (s2_right, c2_right)] = math::wide::sin_cos_all([
                 joints[0], joints[1], joints[2], joints[3],
             ]);
-            ::overact::guard::leg(s2_left, 0.9997, "left")?;
-            ::overact::guard::leg(s2_right, 0.9997, "right")?;
+            guard::leg(s2_left, 0.9997, "left")?;
+            guard::leg(s2_right, 0.9997, "right")?;
             // --- left
             let c12_left = c1_left * c2_left - s1_left * s2_left;
             let s12_left = s1_left * c2_left + c1_left * s2_left;
@@ -4113,10 +3994,8 @@ impl FiveBar {
             let minus_rate_2_left = minus_g2_vx_left * twist[0]
                 + minus_g2_vy_left * twist[1];
             let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-            let minus_tau_2_left = ::overact::math::wide::signed(
-                parameters[11],
-                minus_qd_2_left,
-            );
+            let fs_2_left = parameters[11];
+            let minus_tau_2_left = math::wide::signed(fs_2_left, minus_qd_2_left);
             let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
             let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
             let a_on_f1_left = c12_left * acceleration[0]
@@ -4125,36 +4004,48 @@ impl FiveBar {
             let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
             let rate_dot_1_left = k1_left
                 * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+            let m_2_left = parameters[10];
+            let zz_1_left = parameters[0];
+            let ia_1_left = parameters[3];
+            let fs_1_left = parameters[5];
             let a1_y_left = 9.81 * c1_left;
+            let mx_1_left = parameters[1];
             let a1_x_left = 9.81 * s1_left;
+            let my_1_left = parameters[2];
             let minus_a_on_f2_left = c1_left * acceleration[0]
                 + s1_left * acceleration[1] + l_1_rate_1_squared_left;
             let minus_rate_dot_2_left = k2_left
                 * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
-            let force2_x_left = parameters[9] * minus_rate_dot_2_left
-                - parameters[8] * rate_2_squared_left;
-            let minus_force2_y_left = parameters[8] * minus_rate_dot_2_left
-                + parameters[9] * rate_2_squared_left;
-            let t1_left = a1_y_left * (parameters[1] + L_1 * parameters[10])
-                - parameters[2] * a1_x_left
+            let my_2_left = parameters[9];
+            let mx_2_left = parameters[8];
+            let force2_x_left = my_2_left * minus_rate_dot_2_left
+                - mx_2_left * rate_2_squared_left;
+            let minus_force2_y_left = mx_2_left * minus_rate_dot_2_left
+                + my_2_left * rate_2_squared_left;
+            let t1_left = a1_y_left * (mx_1_left + L_1 * m_2_left)
+                - my_1_left * a1_x_left
                 + L_1 * (s2_left * force2_x_left - c2_left * minus_force2_y_left);
+            let fv_1_left = parameters[4];
+            let off_1_left = parameters[6];
             let t2_left = rate_dot_1_left
-                * (parameters[0] + L_1_SQUARED * parameters[10] + parameters[3])
-                + ::overact::math::wide::signed(parameters[5], rate_1_left) + t1_left
-                + parameters[4] * rate_1_left + parameters[6];
+                * (zz_1_left + L_1_SQUARED * m_2_left + ia_1_left)
+                + math::wide::signed(fs_1_left, rate_1_left) + t1_left
+                + fv_1_left * rate_1_left + off_1_left;
             let force_on_u1_left = minus_tau_2_left + t2_left;
             // --- right
             let c12_right = c1_right * c2_right - s1_right * s2_right;
             let s12_right = s1_right * c2_right + c1_right * s2_right;
             let k1_right = INV_L_1 / s2_right;
             let g1_vx_right = c12_right * k1_right;
-            let force_y_platform = parameters[24] * (acceleration[1] + 9.81);
+            let m_platform = parameters[24];
+            let force_y_platform = m_platform * (acceleration[1] + 9.81);
             // --- left
             let a2_y_left = c2_left * (a1_y_left + L_1 * rate_dot_1_left)
                 - s2_left * (a1_x_left - l_1_rate_1_squared_left);
             let a2_x_left = a_on_f1_left + s12_left * 9.81;
-            let moment2_z_left = parameters[8] * a2_y_left
-                - parameters[9] * a2_x_left - parameters[7] * minus_rate_dot_2_left;
+            let zz_2_left = parameters[7];
+            let moment2_z_left = mx_2_left * a2_y_left - my_2_left * a2_x_left
+                - zz_2_left * minus_rate_dot_2_left;
             let force_on_u2_left = moment2_z_left - minus_tau_2_left;
             // --- right
             let k2_right = INV_L_2 / s2_right;
@@ -4176,44 +4067,51 @@ impl FiveBar {
             let a1_x_right = 9.81 * s1_right;
             let a2_y_right = c2_right * (a1_y_right + L_1 * rate_dot_1_right)
                 - s2_right * (a1_x_right - l_1_rate_1_squared_right);
+            let mx_2_right = parameters[20];
             let a2_x_right = a_on_f1_right + 9.81 * s12_right;
+            let my_2_right = parameters[21];
             let minus_a_on_f2_right = c1_right * acceleration[0]
                 + s1_right * acceleration[1] + l_1_rate_1_squared_right;
             let minus_rate_dot_2_right = k2_right
                 * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
-            let moment2_z_right = parameters[20] * a2_y_right
-                - parameters[21] * a2_x_right
-                - parameters[19] * minus_rate_dot_2_right;
+            let zz_2_right = parameters[19];
+            let moment2_z_right = mx_2_right * a2_y_right - my_2_right * a2_x_right
+                - zz_2_right * minus_rate_dot_2_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let minus_tau_2_right = ::overact::math::wide::signed(
-                parameters[23],
-                minus_qd_2_right,
-            );
+            let fs_2_right = parameters[23];
+            let minus_tau_2_right = math::wide::signed(fs_2_right, minus_qd_2_right);
             let force_on_u2_right = moment2_z_right - minus_tau_2_right;
             let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+            guard::platform(t1, 22.62, ActuatorGroup::All)?;
             let t2 = (force_y_platform
                 - (minus_g2_vy_left * force_on_u2_left
                     + minus_g2_vy_right * force_on_u2_right)) / t1;
-            let force_x_platform = acceleration[0] * parameters[24];
+            let force_x_platform = acceleration[0] * m_platform;
             let t3 = (force_x_platform
                 - (minus_g2_vx_left * force_on_u2_left
                     + minus_g2_vx_right * force_on_u2_right)) / t1;
-            let force2_x_right = parameters[21] * minus_rate_dot_2_right
-                - parameters[20] * rate_2_squared_right;
-            let minus_force2_y_right = parameters[20] * minus_rate_dot_2_right
-                + parameters[21] * rate_2_squared_right;
-            let t1_right = a1_y_right * (parameters[13] + L_1 * parameters[22])
-                - parameters[14] * a1_x_right
+            let m_2_right = parameters[22];
+            let mx_1_right = parameters[13];
+            let my_1_right = parameters[14];
+            let force2_x_right = my_2_right * minus_rate_dot_2_right
+                - mx_2_right * rate_2_squared_right;
+            let minus_force2_y_right = mx_2_right * minus_rate_dot_2_right
+                + my_2_right * rate_2_squared_right;
+            let t1_right = a1_y_right * (mx_1_right + L_1 * m_2_right)
+                - my_1_right * a1_x_right
                 + L_1
                     * (s2_right * force2_x_right - c2_right * minus_force2_y_right);
-            let t2_right = parameters[18] + t1_right + parameters[16] * rate_1_right
-                + ::overact::math::wide::signed(parameters[17], rate_1_right)
+            let fv_1_right = parameters[16];
+            let fs_1_right = parameters[17];
+            let off_1_right = parameters[18];
+            let zz_1_right = parameters[12];
+            let ia_1_right = parameters[15];
+            let t2_right = off_1_right + t1_right + fv_1_right * rate_1_right
+                + math::wide::signed(fs_1_right, rate_1_right)
                 + rate_dot_1_right
-                    * (parameters[12] + L_1_SQUARED * parameters[22]
-                        + parameters[15]);
+                    * (zz_1_right + L_1_SQUARED * m_2_right + ia_1_right);
             let force_on_u1_right = minus_tau_2_right + t2_right;
-            ::core::result::Result::Ok([
+            Ok([
                 force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
                 force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
             ])
@@ -4233,15 +4131,15 @@ impl FiveBar {
     /// 230 operations (92 additions, 130 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 233 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 25],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        parameters: &[f64; 25],
+        start: &[f64; 2],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
@@ -4249,53 +4147,57 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2
-            const L_2: ::core::primitive::f64 = 0.25;
+            const L_2: f64 = 0.25;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- left
+            let fs_1_left = parameters[5];
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
-            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
-                - inv_l_2_mx_2_left;
+            let mx_2_left = parameters[8];
+            let inv_l_2_mx_2_left = INV_L_2 * mx_2_left;
+            let m_2_left = parameters[10];
+            let m_2_minus_inv_l_2_mx_2_left = m_2_left - inv_l_2_mx_2_left;
+            let mx_1_left = parameters[1];
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let bias_a1_x_left = 49.05 * l1_y_left;
+            let my_1_left = parameters[2];
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
             let l2_y_left = pose[1] - l1_y_left;
@@ -4304,7 +4206,7 @@ impl FiveBar {
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+            guard::platform(t1, 22.62, ActuatorGroup::All)?;
             let t2 = 1.0 / t1;
             let g2_vy_left = l1_y_left * k_left;
             let vy = t2
@@ -4348,32 +4250,32 @@ impl FiveBar {
             let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
             let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
                 - minus_bias_a_on_f2_left;
+            let my_2_left = parameters[9];
+            let fv_1_left = parameters[4];
             let t3_left = bias_a1_y_left
-                * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-                - bias_a1_x_left * parameters[2]
-                - INV_L_2 * (parameters[9] * a_on_f2_left)
-                + actuator_velocities[0] * parameters[4];
+                * (mx_1_left + L_1 * m_2_minus_inv_l_2_mx_2_left)
+                - bias_a1_x_left * my_1_left - INV_L_2 * (my_2_left * a_on_f2_left)
+                + actuator_velocities[0] * fv_1_left;
+            let off_1_left = parameters[6];
+            let zz_1_left = parameters[0];
+            let ia_1_left = parameters[3];
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            let tau_2_left = ::overact::math::wide::signed(
-                parameters[11],
-                qd_2_left,
-            );
-            let force_on_u1_left = parameters[6]
-                + ::overact::math::wide::signed(
-                    parameters[5],
-                    actuator_velocities[0],
-                ) + t3_left
+            let fs_2_left = parameters[11];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
+            let force_on_u1_left = off_1_left
+                + math::wide::signed(fs_1_left, actuator_velocities[0]) + t3_left
                 + actuator_accelerations[0]
-                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                        + parameters[3]) - tau_2_left;
+                    * (zz_1_left + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_left
+                        + ia_1_left) - tau_2_left;
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t2_left);
+            let zz_2_left = parameters[7];
             let c2_left = 20.0 * t2_left;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
             let minus_moment2_z_left = minus_rate_dot_2_left
-                * (parameters[7] - L_2 * parameters[8]) + parameters[9] * a2_x_left;
+                * (zz_2_left - L_2 * mx_2_left) + my_2_left * a2_x_left;
             let force_on_u2_left = tau_2_left - minus_moment2_z_left;
             // --- right
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
@@ -4381,6 +4283,8 @@ impl FiveBar {
                 - minus_bias_a_on_f2_right;
             let rate_dot_2_right = k_right
                 * (a_on_f2_right - rate_2_squared_right * t2_right);
+            let mx_2_right = parameters[20];
+            let zz_2_right = parameters[19];
             let c2_right = 20.0 * t2_right;
             let bias_a1_x_right = 49.05 * l1_y_right;
             let s2_right = 20.0 * det_right;
@@ -4388,18 +4292,16 @@ impl FiveBar {
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-            let moment2_z_right = rate_dot_2_right
-                * (parameters[19] - L_2 * parameters[20])
-                - parameters[21] * a2_x_right;
+            let my_2_right = parameters[21];
+            let moment2_z_right = rate_dot_2_right * (zz_2_right - L_2 * mx_2_right)
+                - my_2_right * a2_x_right;
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            let tau_2_right = ::overact::math::wide::signed(
-                parameters[23],
-                qd_2_right,
-            );
+            let fs_2_right = parameters[23];
+            let tau_2_right = math::wide::signed(fs_2_right, qd_2_right);
             let force_on_u2_right = moment2_z_right + tau_2_right;
-            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
-            let t1_platform = parameters[24] + inv_l_2_mx_2_left
-                + inv_l_2_mx_2_right;
+            let inv_l_2_mx_2_right = INV_L_2 * mx_2_right;
+            let m_platform = parameters[24];
+            let t1_platform = m_platform + inv_l_2_mx_2_left + inv_l_2_mx_2_right;
             let force_y_platform = (dvy + 9.81) * t1_platform;
             let t3 = t2
                 * (g2_vy_left * force_on_u2_left
@@ -4409,21 +4311,25 @@ impl FiveBar {
                 * (g2_vx_left * force_on_u2_left
                     - minus_g2_vx_right * force_on_u2_right
                     - minus_force_x_platform);
-            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
-                - inv_l_2_mx_2_right;
-            let t3_right = actuator_velocities[1] * parameters[16]
-                + bias_a1_y_right
-                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-                - bias_a1_x_right * parameters[14]
-                - INV_L_2 * (a_on_f2_right * parameters[21]);
+            let m_2_right = parameters[22];
+            let m_2_minus_inv_l_2_mx_2_right = m_2_right - inv_l_2_mx_2_right;
+            let zz_1_right = parameters[12];
+            let ia_1_right = parameters[15];
+            let fs_1_right = parameters[17];
+            let fv_1_right = parameters[16];
+            let mx_1_right = parameters[13];
+            let my_1_right = parameters[14];
+            let t3_right = actuator_velocities[1] * fv_1_right
+                + bias_a1_y_right * (mx_1_right + L_1 * m_2_minus_inv_l_2_mx_2_right)
+                - bias_a1_x_right * my_1_right
+                - INV_L_2 * (a_on_f2_right * my_2_right);
+            let off_1_right = parameters[18];
             let force_on_u1_right = actuator_accelerations[1]
-                * (parameters[12] + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                    + parameters[15])
-                + ::overact::math::wide::signed(
-                    parameters[17],
-                    actuator_velocities[1],
-                ) + t3_right + parameters[18] - tau_2_right;
-            ::core::result::Result::Ok([
+                * (zz_1_right + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_right
+                    + ia_1_right)
+                + math::wide::signed(fs_1_right, actuator_velocities[1]) + t3_right
+                + off_1_right - tau_2_right;
+            Ok([
                 force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
                 force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
             ])
@@ -4442,43 +4348,44 @@ impl FiveBar {
     /// 182 operations (70 additions, 99 multiplications, 13 divisions), 2 square roots, 4 signs, 7 guards, 182 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 19],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        base_parameters: &[f64; 19],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let a1_y_left = 49.05 * l1_x_left;
+            let mx_1_leftR = base_parameters[3];
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let l2_x_left = d_x_left - l1_x_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
@@ -4497,50 +4404,49 @@ impl FiveBar {
             let t2_left = 0.5 * (rho_squared_left - 0.1025);
             let minus_rate_dot_1_left = k_left
                 * (a_on_f1_left + rate_1_squared_left * t2_left);
+            let zz_1_leftR = base_parameters[1];
             let a1_x_left = 49.05 * l1_y_left;
-            let moment1_z_left = base_parameters[3] * a1_y_left
-                - base_parameters[1] * minus_rate_dot_1_left
-                - base_parameters[5] * a1_x_left;
-            let tau_1_left = base_parameters[11]
-                - (base_parameters[7] * minus_rate_1_left
-                    + ::overact::math::wide::signed(
-                        base_parameters[9],
-                        minus_rate_1_left,
-                    ));
+            let my_1_left = base_parameters[5];
+            let moment1_z_left = mx_1_leftR * a1_y_left
+                - zz_1_leftR * minus_rate_dot_1_left - my_1_left * a1_x_left;
+            let fv_1_left = base_parameters[7];
+            let fs_1_left = base_parameters[9];
+            let off_1_left = base_parameters[11];
+            let tau_1_left = off_1_left
+                - (fv_1_left * minus_rate_1_left
+                    + math::wide::signed(fs_1_left, minus_rate_1_left));
             let minus_a_on_f2_left = l1_x_left * acceleration[0]
                 + l1_y_left * acceleration[1] + L_1_SQUARED * rate_1_squared_left;
+            let my_2_left = base_parameters[15];
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let tau_2_left = ::overact::math::wide::signed(
-                base_parameters[17],
-                qd_2_left,
-            );
+            let fs_2_left = base_parameters[17];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
             let force_on_u1_left = moment1_z_left + tau_1_left
-                + minus_a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
+                + minus_a_on_f2_left * (INV_L_2 * my_2_left) - tau_2_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let g1_vx_right = l2_x_right / det_right;
-            // --- left
             let rate_dot_2_left = k_left
                 * (minus_a_on_f2_left + rate_2_squared_left * t2_left);
+            let zz_2_leftR = base_parameters[13];
             let c2_left = t2_left * 20.0;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (a1_y_left - L_1 * minus_rate_dot_1_left);
-            let moment2_z_left = base_parameters[13] * rate_dot_2_left
-                - base_parameters[15] * a2_x_left;
+            let moment2_z_left = zz_2_leftR * rate_dot_2_left
+                - my_2_left * a2_x_left;
             let force_on_u2_left = moment2_z_left + tau_2_left;
-            // --- right
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let minus_g2_vy_right = l1_y_right / det_right;
             let l2_y_right = pose[1] - l1_y_right;
@@ -4556,6 +4462,7 @@ impl FiveBar {
             let t2_right = 0.5 * (rho_squared_right - 0.1025);
             let minus_rate_dot_2_right = (minus_a_on_f2_right
                 + rate_2_squared_right * t2_right) / det_right;
+            let zz_2_rightR = base_parameters[14];
             let c2_right = 20.0 * t2_right;
             let a1_x_right = 49.05 * l1_y_right;
             let s2_right = 20.0 * det_right;
@@ -4566,33 +4473,37 @@ impl FiveBar {
                 / det_right;
             let a2_x_right = c2_right * (a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (a1_y_right + L_1 * rate_dot_1_right);
-            let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
-                + base_parameters[16] * a2_x_right;
+            let my_2_right = base_parameters[16];
+            let minus_moment2_z_right = zz_2_rightR * minus_rate_dot_2_right
+                + my_2_right * a2_x_right;
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let minus_tau_2_right = ::overact::math::wide::signed(
-                base_parameters[18],
-                minus_qd_2_right,
-            );
+            let fs_2_right = base_parameters[18];
+            let minus_tau_2_right = math::wide::signed(fs_2_right, minus_qd_2_right);
             let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-            let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
+            let m_platformR = base_parameters[0];
+            let force_y_platform = m_platformR * (acceleration[1] + 9.81);
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+            guard::platform(t1, 22.62, ActuatorGroup::All)?;
             let t2 = (g2_vy_left * force_on_u2_left
                 + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform)
                 / t1;
-            let force_x_platform = acceleration[0] * base_parameters[0];
+            let force_x_platform = acceleration[0] * m_platformR;
             let t3 = (g2_vx_left * force_on_u2_left
                 + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform)
                 / t1;
-            let moment1_z_right = base_parameters[2] * rate_dot_1_right
-                + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right;
-            let tau_1_right = base_parameters[8] * rate_1_right
-                + ::overact::math::wide::signed(base_parameters[10], rate_1_right)
-                + base_parameters[12];
+            let zz_1_rightR = base_parameters[2];
+            let mx_1_rightR = base_parameters[4];
+            let my_1_right = base_parameters[6];
+            let moment1_z_right = zz_1_rightR * rate_dot_1_right
+                + mx_1_rightR * a1_y_right - my_1_right * a1_x_right;
+            let fv_1_right = base_parameters[8];
+            let fs_1_right = base_parameters[10];
+            let off_1_right = base_parameters[12];
+            let tau_1_right = fv_1_right * rate_1_right
+                + math::wide::signed(fs_1_right, rate_1_right) + off_1_right;
             let force_on_u1_right = moment1_z_right + tau_1_right
-                + minus_a_on_f2_right * (INV_L_2 * base_parameters[16])
-                + minus_tau_2_right;
-            ::core::result::Result::Ok([
+                + minus_a_on_f2_right * (INV_L_2 * my_2_right) + minus_tau_2_right;
+            Ok([
                 force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
                 force_on_u1_right + minus_g1_vx_left * t2 - minus_g1_vy_left * t3,
             ])
@@ -4612,35 +4523,35 @@ impl FiveBar {
     /// 146 operations (52 additions, 88 multiplications, 6 divisions), 4 trigonometric pairs, 4 signs, 3 guards, 152 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 4],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 19],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 4],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        base_parameters: &[f64; 19],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
         /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 5.0;
+        const INV_L_1: f64 = 5.0;
         /// 1 / l_2
-        const INV_L_2: ::core::primitive::f64 = 4.0;
+        const INV_L_2: f64 = 4.0;
         /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
+        const L_1: f64 = 0.2;
         /// l_2
-        const L_2: ::core::primitive::f64 = 0.25;
+        const L_2: f64 = 0.25;
         // --- sines and cosines
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
-        (s2_right, c2_right)] = ::overact::math::sin_cos_all([
+        (s2_right, c2_right)] = math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
         ]);
-        ::overact::guard::leg(s2_left, 0.9997, "left")?;
-        ::overact::guard::leg(s2_right, 0.9997, "right")?;
+        guard::leg(s2_left, 0.9997, "left")?;
+        guard::leg(s2_right, 0.9997, "right")?;
         // --- left
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
@@ -4654,10 +4565,8 @@ impl FiveBar {
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
         let minus_qd_2_left = rate_1_left + minus_rate_2_left;
-        let minus_tau_2_left = ::overact::math::signed(
-            base_parameters[17],
-            minus_qd_2_left,
-        );
+        let fs_2_left = base_parameters[17];
+        let minus_tau_2_left = math::signed(fs_2_left, minus_qd_2_left);
         let rate_2_squared_left = minus_rate_2_left * minus_rate_2_left;
         let l_2_rate_2_squared_left = L_2 * rate_2_squared_left;
         let a_on_f1_left = c12_left * acceleration[0] + s12_left * acceleration[1]
@@ -4666,16 +4575,22 @@ impl FiveBar {
         let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
         let rate_dot_1_left = k1_left
             * (a_on_f1_left + c2_left * l_1_rate_1_squared_left);
+        let zz_1_leftR = base_parameters[1];
         let a1_y_left = 9.81 * c1_left;
+        let mx_1_leftR = base_parameters[3];
         let a1_x_left = 9.81 * s1_left;
+        let my_1_left = base_parameters[5];
         let minus_a_on_f2_left = c1_left * acceleration[0] + s1_left * acceleration[1]
             + l_1_rate_1_squared_left;
-        let tau_1_left = base_parameters[7] * rate_1_left
-            + ::overact::math::signed(base_parameters[9], rate_1_left)
-            + base_parameters[11];
-        let t1_left = base_parameters[1] * rate_dot_1_left
-            + base_parameters[3] * a1_y_left - base_parameters[5] * a1_x_left
-            + L_1 * (minus_a_on_f2_left * (INV_L_2 * base_parameters[15])) + tau_1_left;
+        let my_2_left = base_parameters[15];
+        let fv_1_left = base_parameters[7];
+        let fs_1_left = base_parameters[9];
+        let off_1_left = base_parameters[11];
+        let tau_1_left = fv_1_left * rate_1_left + math::signed(fs_1_left, rate_1_left)
+            + off_1_left;
+        let t1_left = zz_1_leftR * rate_dot_1_left + mx_1_leftR * a1_y_left
+            - my_1_left * a1_x_left + L_1 * (minus_a_on_f2_left * (INV_L_2 * my_2_left))
+            + tau_1_left;
         let force_on_u1_left = minus_tau_2_left + t1_left;
         // --- right
         let c12_right = c1_right * c2_right - s1_right * s2_right;
@@ -4685,9 +4600,10 @@ impl FiveBar {
         // --- left
         let minus_rate_dot_2_left = k2_left
             * (minus_a_on_f2_left + l_2_rate_2_squared_left * c2_left);
+        let zz_2_leftR = base_parameters[13];
         let a2_x_left = a_on_f1_left + s12_left * 9.81;
-        let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
-            + base_parameters[15] * a2_x_left;
+        let minus_moment2_z_left = zz_2_leftR * minus_rate_dot_2_left
+            + my_2_left * a2_x_left;
         let minus_force_on_u2_left = minus_moment2_z_left + minus_tau_2_left;
         // --- right
         let k2_right = INV_L_2 / s2_right;
@@ -4705,38 +4621,43 @@ impl FiveBar {
         let l_2_rate_2_squared_right = L_2 * rate_2_squared_right;
         let minus_rate_dot_2_right = k2_right
             * (minus_a_on_f2_right + c2_right * l_2_rate_2_squared_right);
+        let zz_2_rightR = base_parameters[14];
         let a_on_f1_right = c12_right * acceleration[0] + s12_right * acceleration[1]
             + l_2_rate_2_squared_right;
         let a2_x_right = a_on_f1_right + 9.81 * s12_right;
-        let minus_moment2_z_right = base_parameters[14] * minus_rate_dot_2_right
-            + base_parameters[16] * a2_x_right;
+        let my_2_right = base_parameters[16];
+        let minus_moment2_z_right = zz_2_rightR * minus_rate_dot_2_right
+            + my_2_right * a2_x_right;
         let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-        let minus_tau_2_right = ::overact::math::signed(
-            base_parameters[18],
-            minus_qd_2_right,
-        );
+        let fs_2_right = base_parameters[18];
+        let minus_tau_2_right = math::signed(fs_2_right, minus_qd_2_right);
         let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-        let force_y_platform = base_parameters[0] * (acceleration[1] + 9.81);
+        let m_platformR = base_parameters[0];
+        let force_y_platform = m_platformR * (acceleration[1] + 9.81);
         let t1 = g1_vy_left * g1_vx_right - g1_vx_left * g1_vy_right;
-        ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+        guard::platform(t1, 22.62, ActuatorGroup::All)?;
         let t2 = (minus_g2_vy_left * minus_force_on_u2_left
             + minus_g2_vy_right * minus_force_on_u2_right + force_y_platform) / t1;
-        let force_x_platform = acceleration[0] * base_parameters[0];
+        let force_x_platform = acceleration[0] * m_platformR;
         let t3 = (minus_g2_vx_left * minus_force_on_u2_left
             + minus_g2_vx_right * minus_force_on_u2_right + force_x_platform) / t1;
         let rate_dot_1_right = k1_right
             * (a_on_f1_right + l_1_rate_1_squared_right * c2_right);
+        let zz_1_rightR = base_parameters[2];
         let a1_y_right = 9.81 * c1_right;
+        let mx_1_rightR = base_parameters[4];
         let a1_x_right = 9.81 * s1_right;
-        let tau_1_right = base_parameters[8] * rate_1_right
-            + ::overact::math::signed(base_parameters[10], rate_1_right)
-            + base_parameters[12];
-        let t1_right = base_parameters[2] * rate_dot_1_right
-            + base_parameters[4] * a1_y_right - base_parameters[6] * a1_x_right
-            + L_1 * (minus_a_on_f2_right * (INV_L_2 * base_parameters[16]))
-            + tau_1_right;
+        let my_1_right = base_parameters[6];
+        let fv_1_right = base_parameters[8];
+        let fs_1_right = base_parameters[10];
+        let off_1_right = base_parameters[12];
+        let tau_1_right = fv_1_right * rate_1_right
+            + math::signed(fs_1_right, rate_1_right) + off_1_right;
+        let t1_right = zz_1_rightR * rate_dot_1_right + mx_1_rightR * a1_y_right
+            - my_1_right * a1_x_right
+            + L_1 * (minus_a_on_f2_right * (INV_L_2 * my_2_right)) + tau_1_right;
         let force_on_u1_right = minus_tau_2_right + t1_right;
-        ::core::result::Result::Ok([
+        Ok([
             force_on_u1_left + g1_vx_right * t2 - g1_vy_right * t3,
             force_on_u1_right + g1_vy_left * t3 - g1_vx_left * t2,
         ])
@@ -4755,15 +4676,15 @@ impl FiveBar {
     /// 210 operations (80 additions, 122 multiplications, 8 divisions), 3 square roots, 2 trigonometric pairs, 4 signs, 9 guards, 213 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_actuators(
-        actuators: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 19],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 2],
+        actuator_velocities: &[f64; 2],
+        actuator_accelerations: &[f64; 2],
+        base_parameters: &[f64; 19],
+        start: &[f64; 2],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
@@ -4771,58 +4692,60 @@ impl FiveBar {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
+            let zz_1_leftR = base_parameters[1];
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let bias_a1_y_left = 49.05 * l1_x_left;
+            let mx_1_leftR = base_parameters[3];
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let bias_a1_x_left = 49.05 * l1_y_left;
-            let moment1_z_left = actuator_accelerations[0] * base_parameters[1]
-                + bias_a1_y_left * base_parameters[3]
-                - bias_a1_x_left * base_parameters[5];
-            let tau_1_left = actuator_velocities[0] * base_parameters[7]
-                + ::overact::math::wide::signed(
-                    base_parameters[9],
-                    actuator_velocities[0],
-                ) + base_parameters[11];
+            let my_1_left = base_parameters[5];
+            let moment1_z_left = actuator_accelerations[0] * zz_1_leftR
+                + bias_a1_y_left * mx_1_leftR - bias_a1_x_left * my_1_left;
+            let fv_1_left = base_parameters[7];
+            let fs_1_left = base_parameters[9];
+            let off_1_left = base_parameters[11];
+            let tau_1_left = actuator_velocities[0] * fv_1_left
+                + math::wide::signed(fs_1_left, actuator_velocities[0]) + off_1_left;
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let minus_g1_vx_left = l2_x_left * k_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
             let l2_y_right = pose[1] - l1_y_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vy_right = l2_y_right * k_right;
             let l2_y_left = pose[1] - l1_y_left;
@@ -4831,7 +4754,7 @@ impl FiveBar {
             let l2_x_right = d_x_right - l1_x_right;
             let g1_vx_right = l2_x_right * k_right;
             let t1 = minus_g1_vx_left * g1_vy_right - minus_g1_vy_left * g1_vx_right;
-            ::overact::guard::platform(t1, 22.62, ::overact::ActuatorGroup::All)?;
+            guard::platform(t1, 22.62, ActuatorGroup::All)?;
             let t2 = 1.0 / t1;
             let g2_vy_left = l1_y_left * k_left;
             let vy = t2
@@ -4876,29 +4799,28 @@ impl FiveBar {
             let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
             let a_on_f2_left = l1_x_left * minus_dvx - l1_y_left * dvy
                 - minus_bias_a_on_f2_left;
+            let my_2_left = base_parameters[15];
             let qd_2_left = rate_2_left - actuator_velocities[0];
-            let tau_2_left = ::overact::math::wide::signed(
-                base_parameters[17],
-                qd_2_left,
-            );
+            let fs_2_left = base_parameters[17];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
             let force_on_u1_left = moment1_z_left + tau_1_left
-                - a_on_f2_left * (INV_L_2 * base_parameters[15]) - tau_2_left;
-            // --- left
+                - a_on_f2_left * (INV_L_2 * my_2_left) - tau_2_left;
             let minus_rate_dot_2_left = k_left
                 * (a_on_f2_left - rate_2_squared_left * t3_left);
+            let zz_2_leftR = base_parameters[13];
             let c2_left = INV_HALF * t2_left;
             let minus_s2_left = 20.0 * det_left;
             let a2_x_left = c2_left * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left * (bias_a1_y_left + L_1 * actuator_accelerations[0]);
-            let minus_moment2_z_left = base_parameters[13] * minus_rate_dot_2_left
-                + base_parameters[15] * a2_x_left;
+            let minus_moment2_z_left = zz_2_leftR * minus_rate_dot_2_left
+                + my_2_left * a2_x_left;
             let force_on_u2_left = tau_2_left - minus_moment2_z_left;
-            // --- right
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let a_on_f2_right = l1_x_right * minus_dvx - l1_y_right * dvy
                 - minus_bias_a_on_f2_right;
             let rate_dot_2_right = k_right
                 * (a_on_f2_right - rate_2_squared_right * t3_right);
+            let zz_2_rightR = base_parameters[14];
             let c2_right = INV_HALF * t2_right;
             let bias_a1_x_right = 49.05 * l1_y_right;
             let s2_right = 20.0 * det_right;
@@ -4906,34 +4828,37 @@ impl FiveBar {
             let a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * actuator_accelerations[1]);
-            let moment2_z_right = base_parameters[14] * rate_dot_2_right
-                - base_parameters[16] * a2_x_right;
+            let my_2_right = base_parameters[16];
+            let moment2_z_right = zz_2_rightR * rate_dot_2_right
+                - my_2_right * a2_x_right;
             let qd_2_right = rate_2_right - actuator_velocities[1];
-            let tau_2_right = ::overact::math::wide::signed(
-                base_parameters[18],
-                qd_2_right,
-            );
+            let fs_2_right = base_parameters[18];
+            let tau_2_right = math::wide::signed(fs_2_right, qd_2_right);
             let force_on_u2_right = moment2_z_right + tau_2_right;
-            let force_y_platform = base_parameters[0] * (dvy + 9.81);
+            let m_platformR = base_parameters[0];
+            let force_y_platform = m_platformR * (dvy + 9.81);
             let t3 = t2
                 * (g2_vy_left * force_on_u2_left
                     - minus_g2_vy_right * force_on_u2_right + force_y_platform);
-            let minus_force_x_platform = minus_dvx * base_parameters[0];
+            let minus_force_x_platform = minus_dvx * m_platformR;
             let t4 = t2
                 * (g2_vx_left * force_on_u2_left
                     - minus_g2_vx_right * force_on_u2_right
                     - minus_force_x_platform);
-            let moment1_z_right = actuator_accelerations[1] * base_parameters[2]
-                + bias_a1_y_right * base_parameters[4]
-                - bias_a1_x_right * base_parameters[6];
-            let tau_1_right = actuator_velocities[1] * base_parameters[8]
-                + ::overact::math::wide::signed(
-                    base_parameters[10],
-                    actuator_velocities[1],
-                ) + base_parameters[12];
+            let zz_1_rightR = base_parameters[2];
+            let mx_1_rightR = base_parameters[4];
+            let my_1_right = base_parameters[6];
+            let moment1_z_right = actuator_accelerations[1] * zz_1_rightR
+                + bias_a1_y_right * mx_1_rightR - bias_a1_x_right * my_1_right;
+            let fv_1_right = base_parameters[8];
+            let fs_1_right = base_parameters[10];
+            let off_1_right = base_parameters[12];
+            let tau_1_right = actuator_velocities[1] * fv_1_right
+                + math::wide::signed(fs_1_right, actuator_velocities[1])
+                + off_1_right;
             let force_on_u1_right = moment1_z_right + tau_1_right
-                - a_on_f2_right * (INV_L_2 * base_parameters[16]) - tau_2_right;
-            ::core::result::Result::Ok([
+                - a_on_f2_right * (INV_L_2 * my_2_right) - tau_2_right;
+            Ok([
                 force_on_u1_left + g1_vx_right * t3 - g1_vy_right * t4,
                 force_on_u1_right + minus_g1_vx_left * t3 - minus_g1_vy_left * t4,
             ])
@@ -4950,78 +4875,87 @@ impl FiveBar {
     /// 111 operations (43 additions, 57 multiplications, 11 divisions), 2 square roots, 6 guards, 110 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix(
-        pose: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 25],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(
-            &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
-        )?;
+        pose: &[f64; 2],
+        parameters: &[f64; 25],
+    ) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("parameters", parameters, 1e12)])?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// 1 / half
-        const INV_HALF: ::core::primitive::f64 = 10.0;
+        const INV_HALF: f64 = 10.0;
         /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
+        const L_1: f64 = 0.2;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let g2_vx_left = l1_x_left / det_left;
+        let zz_2_left = parameters[7];
         let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left / det_left;
         let c2_left = INV_HALF * (rho_squared_left - 0.1025);
+        let mx_2_left = parameters[8];
         let minus_s2_left = 20.0 * det_left;
-        let force1_y_by_2_left = c2_left * parameters[8] + minus_s2_left * parameters[9];
+        let my_2_left = parameters[9];
+        let force1_y_by_2_left = c2_left * mx_2_left + minus_s2_left * my_2_left;
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
-        let masses_left_1_1 = parameters[0] + L_1_SQUARED * parameters[10]
-            + parameters[3];
+        let m_2_left = parameters[10];
+        let zz_1_left = parameters[0];
+        let ia_1_left = parameters[3];
+        let masses_left_1_1 = zz_1_left + L_1_SQUARED * m_2_left + ia_1_left;
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let g1_vx_right = l2_x_right / det_right;
-        let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
-            + parameters[15];
+        let m_2_right = parameters[22];
+        let zz_1_right = parameters[12];
+        let ia_1_right = parameters[15];
+        let masses_right_1_1 = zz_1_right + L_1_SQUARED * m_2_right + ia_1_right;
         let minus_g2_vx_right = l1_x_right / det_right;
         let c2_right = INV_HALF * (rho_squared_right - 0.1025);
+        let mx_2_right = parameters[20];
         let s2_right = 20.0 * det_right;
-        let force1_y_by_2_right = c2_right * parameters[20] - s2_right * parameters[21];
+        let my_2_right = parameters[21];
+        let force1_y_by_2_right = c2_right * mx_2_right - s2_right * my_2_right;
         let masses_right_1_2 = L_1 * force1_y_by_2_right;
+        let zz_2_right = parameters[19];
         let t2_right = g2_vx_left
-            * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
+            * (g2_vx_left * zz_2_left - minus_g1_vx_left * masses_left_1_2)
             - minus_g1_vx_left
                 * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * masses_left_1_1)
             + g1_vx_right
                 * (g1_vx_right * masses_right_1_1 - minus_g2_vx_right * masses_right_1_2)
             - minus_g2_vx_right
-                * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * parameters[19]);
+                * (g1_vx_right * masses_right_1_2 - minus_g2_vx_right * zz_2_right);
+        let m_platform = parameters[24];
         // --- left
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let g2_vy_left = l1_y_left / det_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left / det_left;
-        let t2_left = g2_vy_left * parameters[7] - minus_g1_vy_left * masses_left_1_2;
+        let t2_left = g2_vy_left * zz_2_left - minus_g1_vy_left * masses_left_1_2;
         let t3_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * masses_left_1_1;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -5030,17 +4964,15 @@ impl FiveBar {
         let minus_g2_vy_right = l1_y_right / det_right;
         let t3_right = g1_vy_right * masses_right_1_1
             - minus_g2_vy_right * masses_right_1_2;
-        let t4_right = g1_vy_right * masses_right_1_2
-            - minus_g2_vy_right * parameters[19];
+        let t4_right = g1_vy_right * masses_right_1_2 - minus_g2_vy_right * zz_2_right;
         let t5_right = g2_vx_left * t2_left - minus_g1_vx_left * t3_left
             + g1_vx_right * t3_right - minus_g2_vx_right * t4_right;
-        ::core::result::Result::Ok([
-            [t2_right + parameters[24], t5_right],
+        Ok([
+            [t2_right + m_platform, t5_right],
             [
                 t5_right,
                 g2_vy_left * t2_left - minus_g1_vy_left * t3_left
-                    + g1_vy_right * t3_right - minus_g2_vy_right * t4_right
-                    + parameters[24],
+                    + g1_vy_right * t3_right - minus_g2_vy_right * t4_right + m_platform,
             ],
         ])
     }
@@ -5055,94 +4987,98 @@ impl FiveBar {
     /// 98 operations (35 additions, 55 multiplications, 8 divisions), 2 square roots, 6 guards, 97 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix_base(
-        pose: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 19],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        base_parameters: &[f64; 19],
+    ) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(
             &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
         /// half
-        const HALF: ::core::primitive::f64 = 0.1;
+        const HALF: f64 = 0.1;
         /// l_1
-        const L_1: ::core::primitive::f64 = 0.2;
+        const L_1: f64 = 0.2;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+        const L_1_SQUARED: f64 = 0.04;
         // --- left
         let d_x_left = pose[0] + HALF;
         let y_squared = pose[1] * pose[1];
         let rho_squared_left = d_x_left * d_x_left + y_squared;
-        ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+        guard::leg(rho_squared_left, 0.1, "left")?;
         let inv_rho_squared_left = 1.0 / rho_squared_left;
         let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
         let h_squared_left = L_1_SQUARED * inv_rho_squared_left - t1_left * t1_left;
-        ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-        let h_left = ::overact::math::sqrt(h_squared_left);
+        guard::reach(h_squared_left, 0.2498, "left")?;
+        let h_left = math::sqrt(h_squared_left);
         let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
         let det_left = rho_squared_left * h_left;
-        ::overact::guard::leg(det_left, 0.04998, "left")?;
+        guard::leg(det_left, 0.04998, "left")?;
         let k_left = 1.0 / det_left;
         let g2_vx_left = l1_x_left * k_left;
+        let zz_2_leftR = base_parameters[13];
         let l2_x_left = d_x_left - l1_x_left;
         let minus_g1_vx_left = l2_x_left * k_left;
         let minus_s2_left = 20.0 * det_left;
-        let force1_y_by_2_left = minus_s2_left * base_parameters[15];
+        let my_2_left = base_parameters[15];
+        let force1_y_by_2_left = minus_s2_left * my_2_left;
         let masses_left_1_2 = L_1 * force1_y_by_2_left;
+        let zz_1_leftR = base_parameters[1];
         // --- right
         let d_x_right = pose[0] - HALF;
         let rho_squared_right = d_x_right * d_x_right + y_squared;
-        ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+        guard::leg(rho_squared_right, 0.1, "right")?;
         let t1_right = 0.5 - 0.01125 / rho_squared_right;
         let h_squared_right = L_1_SQUARED / rho_squared_right - t1_right * t1_right;
-        ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-        let h_right = ::overact::math::sqrt(h_squared_right);
+        guard::reach(h_squared_right, 0.2498, "right")?;
+        let h_right = math::sqrt(h_squared_right);
         let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
         let l2_x_right = d_x_right - l1_x_right;
         let det_right = rho_squared_right * h_right;
-        ::overact::guard::leg(det_right, 0.04998, "right")?;
+        guard::leg(det_right, 0.04998, "right")?;
         let g1_vx_right = l2_x_right / det_right;
+        let zz_1_rightR = base_parameters[2];
         let minus_g2_vx_right = l1_x_right / det_right;
         let s2_right = 20.0 * det_right;
-        let minus_force1_y_by_2_right = s2_right * base_parameters[16];
+        let my_2_right = base_parameters[16];
+        let minus_force1_y_by_2_right = s2_right * my_2_right;
         let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
+        let zz_2_rightR = base_parameters[14];
         let t2_right = g2_vx_left
-            * (g2_vx_left * base_parameters[13] - minus_g1_vx_left * masses_left_1_2)
+            * (g2_vx_left * zz_2_leftR - minus_g1_vx_left * masses_left_1_2)
             - minus_g1_vx_left
-                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * base_parameters[1])
+                * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * zz_1_leftR)
             + g1_vx_right
-                * (g1_vx_right * base_parameters[2]
+                * (g1_vx_right * zz_1_rightR
                     + minus_g2_vx_right * minus_masses_right_1_2)
             + minus_g2_vx_right
                 * (g1_vx_right * minus_masses_right_1_2
-                    + minus_g2_vx_right * base_parameters[14]);
+                    + minus_g2_vx_right * zz_2_rightR);
+        let m_platformR = base_parameters[0];
         // --- left
         let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
         let l2_y_left = pose[1] - l1_y_left;
         let minus_g1_vy_left = l2_y_left * k_left;
         let g2_vy_left = l1_y_left * k_left;
-        let t2_left = g2_vy_left * base_parameters[13]
-            - masses_left_1_2 * minus_g1_vy_left;
-        let t3_left = g2_vy_left * masses_left_1_2
-            - minus_g1_vy_left * base_parameters[1];
+        let t2_left = g2_vy_left * zz_2_leftR - masses_left_1_2 * minus_g1_vy_left;
+        let t3_left = g2_vy_left * masses_left_1_2 - minus_g1_vy_left * zz_1_leftR;
         // --- right
         let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
         let l2_y_right = pose[1] - l1_y_right;
         let g1_vy_right = l2_y_right / det_right;
         let minus_g2_vy_right = l1_y_right / det_right;
-        let t3_right = g1_vy_right * base_parameters[2]
+        let t3_right = g1_vy_right * zz_1_rightR
             + minus_g2_vy_right * minus_masses_right_1_2;
         let t4_right = minus_masses_right_1_2 * g1_vy_right
-            + minus_g2_vy_right * base_parameters[14];
+            + minus_g2_vy_right * zz_2_rightR;
         let t5_right = g2_vx_left * t2_left - minus_g1_vx_left * t3_left
             + g1_vx_right * t3_right + minus_g2_vx_right * t4_right;
-        ::core::result::Result::Ok([
-            [t2_right + base_parameters[0], t5_right],
+        Ok([
+            [t2_right + m_platformR, t5_right],
             [
                 t5_right,
                 g2_vy_left * t2_left - minus_g1_vy_left * t3_left
-                    + g1_vy_right * t3_right + minus_g2_vy_right * t4_right
-                    + base_parameters[0],
+                    + g1_vy_right * t3_right + minus_g2_vy_right * t4_right + m_platformR,
             ],
         ])
     }
@@ -5158,40 +5094,40 @@ impl FiveBar {
     /// 179 operations (71 additions, 102 multiplications, 6 divisions), 2 square roots, 4 signs, 6 guards, 179 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 25],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        parameters: &[f64; 25],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let g2_vx_left = l1_x_left * k_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -5209,7 +5145,9 @@ impl FiveBar {
             let t2_left = 0.5 * (rho_squared_left - 0.1025);
             let bias_rate_dot_2_left = k_left
                 * (minus_bias_a_on_f2_left + rate_2_squared_left * t2_left);
-            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
+            let mx_2_left = parameters[8];
+            let inv_l_2_mx_2_left = INV_L_2 * mx_2_left;
+            let zz_2_left = parameters[7];
             let c2_left = t2_left * 20.0;
             let bias_a1_x_left = 49.05 * l1_y_left;
             let minus_s2_left = 20.0 * det_left;
@@ -5221,41 +5159,46 @@ impl FiveBar {
                 * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left
                     * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
+            let my_2_left = parameters[9];
             let moment2_z_left = bias_rate_dot_2_left
-                * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
-                - parameters[9] * bias_a2_x_left;
+                * (zz_2_left - L_2_SQUARED * inv_l_2_mx_2_left)
+                - my_2_left * bias_a2_x_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let tau_2_left = ::overact::math::wide::signed(
-                parameters[11],
-                qd_2_left,
-            );
+            let fs_2_left = parameters[11];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
             let force_on_u2_left = moment2_z_left + tau_2_left;
-            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
-                - inv_l_2_mx_2_left;
-            let t3_left = parameters[6]
-                + bias_a1_y_left
-                    * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-                - parameters[2] * bias_a1_x_left
-                + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
-                - parameters[4] * minus_rate_1_left;
+            let fs_1_left = parameters[5];
+            let fv_1_left = parameters[4];
+            let m_2_left = parameters[10];
+            let m_2_minus_inv_l_2_mx_2_left = m_2_left - inv_l_2_mx_2_left;
+            let mx_1_left = parameters[1];
+            let my_1_left = parameters[2];
+            let off_1_left = parameters[6];
+            let t3_left = off_1_left
+                + bias_a1_y_left * (mx_1_left + L_1 * m_2_minus_inv_l_2_mx_2_left)
+                - my_1_left * bias_a1_x_left
+                + INV_L_2 * (minus_bias_a_on_f2_left * my_2_left)
+                - fv_1_left * minus_rate_1_left;
+            let zz_1_left = parameters[0];
+            let ia_1_left = parameters[3];
             let force_on_u1_left = t3_left
-                - ::overact::math::wide::signed(parameters[5], minus_rate_1_left)
+                - math::wide::signed(fs_1_left, minus_rate_1_left)
                 - minus_bias_rate_dot_1_left
-                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                        + parameters[3]) - tau_2_left;
+                    * (zz_1_left + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_left
+                        + ia_1_left) - tau_2_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -5267,48 +5210,54 @@ impl FiveBar {
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
                 + minus_g2_vy_right * twist[1];
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let minus_tau_2_right = ::overact::math::wide::signed(
-                parameters[23],
-                minus_qd_2_right,
-            );
+            let fs_2_right = parameters[23];
+            let minus_tau_2_right = math::wide::signed(fs_2_right, minus_qd_2_right);
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let t2_right = 0.5 * (rho_squared_right - 0.1025);
             let bias_rate_dot_1_right = k_right
                 * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
-            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
-                - inv_l_2_mx_2_right;
+            let mx_2_right = parameters[20];
+            let inv_l_2_mx_2_right = INV_L_2 * mx_2_right;
+            let m_2_right = parameters[22];
+            let m_2_minus_inv_l_2_mx_2_right = m_2_right - inv_l_2_mx_2_right;
+            let zz_1_right = parameters[12];
+            let ia_1_right = parameters[15];
+            let fs_1_right = parameters[17];
+            let fv_1_right = parameters[16];
             let bias_a1_y_right = 49.05 * l1_x_right;
+            let mx_1_right = parameters[13];
             let bias_a1_x_right = 49.05 * l1_y_right;
+            let my_1_right = parameters[14];
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-            let t3_right = parameters[16] * rate_1_right
-                + bias_a1_y_right
-                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-                - parameters[14] * bias_a1_x_right
-                + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
+            let my_2_right = parameters[21];
+            let t3_right = fv_1_right * rate_1_right
+                + bias_a1_y_right * (mx_1_right + L_1 * m_2_minus_inv_l_2_mx_2_right)
+                - my_1_right * bias_a1_x_right
+                + minus_bias_a_on_f2_right * (INV_L_2 * my_2_right);
+            let off_1_right = parameters[18];
             let force_on_u1_right = minus_tau_2_right
                 + bias_rate_dot_1_right
-                    * (parameters[12]
-                        + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                        + parameters[15]) + parameters[18]
-                + ::overact::math::wide::signed(parameters[17], rate_1_right)
-                + t3_right;
+                    * (zz_1_right + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_right
+                        + ia_1_right) + off_1_right
+                + math::wide::signed(fs_1_right, rate_1_right) + t3_right;
             let minus_bias_rate_dot_2_right = k_right
                 * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+            let zz_2_right = parameters[19];
             let c2_right = 20.0 * t2_right;
             let s2_right = 20.0 * det_right;
             let bias_a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
             let minus_moment2_z_right = minus_bias_rate_dot_2_right
-                * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
-                + parameters[21] * bias_a2_x_right;
+                * (zz_2_right - L_2_SQUARED * inv_l_2_mx_2_right)
+                + my_2_right * bias_a2_x_right;
             let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
+            let m_platform = parameters[24];
             let force_y_platform = 9.81
-                * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
-            ::core::result::Result::Ok([
+                * (m_platform + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
+            Ok([
                 g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
                     + g1_vx_right * force_on_u1_right
                     + minus_g2_vx_right * minus_force_on_u2_right,
@@ -5330,43 +5279,43 @@ impl FiveBar {
     /// 160 operations (61 additions, 94 multiplications, 5 divisions), 2 square roots, 4 signs, 6 guards, 160 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 19],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        base_parameters: &[f64; 19],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / half
-            const INV_HALF: ::core::primitive::f64 = 10.0;
+            const INV_HALF: f64 = 10.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- left
             let d_x_left = pose[0] + HALF;
             let y_squared = pose[1] * pose[1];
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let inv_rho_squared_left = 1.0 / rho_squared_left;
             let t1_left = 0.5 - 0.01125 * inv_rho_squared_left;
             let h_squared_left = L_1_SQUARED * inv_rho_squared_left
                 - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(det_left, 0.04998, "left")?;
             let k_left = 1.0 / det_left;
             let g2_vx_left = l1_x_left * k_left;
             let l2_x_left = d_x_left - l1_x_left;
@@ -5385,6 +5334,7 @@ impl FiveBar {
             let t3_left = 0.5 * t2_left;
             let bias_rate_dot_2_left = k_left
                 * (minus_bias_a_on_f2_left + rate_2_squared_left * t3_left);
+            let zz_2_leftR = base_parameters[13];
             let c2_left = INV_HALF * t2_left;
             let bias_a1_x_left = 49.05 * l1_y_left;
             let l_1_rate_1_squared_left = L_1 * rate_1_squared_left;
@@ -5396,39 +5346,40 @@ impl FiveBar {
             let bias_a2_x_left = c2_left * (bias_a1_x_left - l_1_rate_1_squared_left)
                 - minus_s2_left
                     * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-            let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
-                - base_parameters[15] * bias_a2_x_left;
+            let my_2_left = base_parameters[15];
+            let moment2_z_left = zz_2_leftR * bias_rate_dot_2_left
+                - my_2_left * bias_a2_x_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let tau_2_left = ::overact::math::wide::signed(
-                base_parameters[17],
-                qd_2_left,
-            );
+            let fs_2_left = base_parameters[17];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
             let force_on_u2_left = moment2_z_left + tau_2_left;
-            let tau_1_left = base_parameters[11]
-                - (base_parameters[7] * minus_rate_1_left
-                    + ::overact::math::wide::signed(
-                        base_parameters[9],
-                        minus_rate_1_left,
-                    ));
-            let force_on_u1_left = base_parameters[3] * bias_a1_y_left
-                - base_parameters[5] * bias_a1_x_left
-                - base_parameters[1] * minus_bias_rate_dot_1_left
-                - base_parameters[15]
-                    * (minus_bias_a_on_f2_left - l_1_rate_1_squared_left)
+            let mx_1_leftR = base_parameters[3];
+            let my_1_left = base_parameters[5];
+            let zz_1_leftR = base_parameters[1];
+            let fv_1_left = base_parameters[7];
+            let fs_1_left = base_parameters[9];
+            let off_1_left = base_parameters[11];
+            let tau_1_left = off_1_left
+                - (fv_1_left * minus_rate_1_left
+                    + math::wide::signed(fs_1_left, minus_rate_1_left));
+            let force_on_u1_left = mx_1_leftR * bias_a1_y_left
+                - my_1_left * bias_a1_x_left
+                - zz_1_leftR * minus_bias_rate_dot_1_left
+                - my_2_left * (minus_bias_a_on_f2_left - l_1_rate_1_squared_left)
                 + tau_1_left - tau_2_left;
             // --- right
             let d_x_right = pose[0] - HALF;
             let rho_squared_right = d_x_right * d_x_right + y_squared;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let k_right = 1.0 / det_right;
             let g1_vx_right = l2_x_right * k_right;
             let l1_y_right = pose[1] * t1_right - d_x_right * h_right;
@@ -5440,10 +5391,8 @@ impl FiveBar {
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
                 + minus_g2_vy_right * twist[1];
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let minus_tau_2_right = ::overact::math::wide::signed(
-                base_parameters[18],
-                minus_qd_2_right,
-            );
+            let fs_2_right = base_parameters[18];
+            let minus_tau_2_right = math::wide::signed(fs_2_right, minus_qd_2_right);
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = rate_1_right * rate_1_right;
@@ -5451,33 +5400,38 @@ impl FiveBar {
             let t3_right = 0.5 * t2_right;
             let bias_rate_dot_1_right = k_right
                 * (bias_a_on_f1_right + rate_1_squared_right * t3_right);
+            let zz_1_rightR = base_parameters[2];
             let bias_a1_y_right = 49.05 * l1_x_right;
+            let mx_1_rightR = base_parameters[4];
             let bias_a1_x_right = 49.05 * l1_y_right;
+            let my_1_right = base_parameters[6];
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
             let l_1_rate_1_squared_right = L_1 * rate_1_squared_right;
-            let tau_1_right = base_parameters[8] * rate_1_right
-                + ::overact::math::wide::signed(base_parameters[10], rate_1_right)
-                + base_parameters[12];
+            let my_2_right = base_parameters[16];
+            let fv_1_right = base_parameters[8];
+            let fs_1_right = base_parameters[10];
+            let off_1_right = base_parameters[12];
+            let tau_1_right = fv_1_right * rate_1_right
+                + math::wide::signed(fs_1_right, rate_1_right) + off_1_right;
             let force_on_u1_right = minus_tau_2_right
-                + base_parameters[2] * bias_rate_dot_1_right
-                + base_parameters[4] * bias_a1_y_right
-                - base_parameters[6] * bias_a1_x_right
-                - base_parameters[16]
-                    * (minus_bias_a_on_f2_right - l_1_rate_1_squared_right)
+                + zz_1_rightR * bias_rate_dot_1_right + mx_1_rightR * bias_a1_y_right
+                - my_1_right * bias_a1_x_right
+                - my_2_right * (minus_bias_a_on_f2_right - l_1_rate_1_squared_right)
                 + tau_1_right;
             let minus_bias_rate_dot_2_right = k_right
                 * (minus_bias_a_on_f2_right + rate_2_squared_right * t3_right);
+            let zz_2_rightR = base_parameters[14];
             let c2_right = INV_HALF * t2_right;
             let s2_right = 20.0 * det_right;
             let bias_a2_x_right = c2_right
                 * (bias_a1_x_right - l_1_rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
-            let minus_moment2_z_right = base_parameters[14]
-                * minus_bias_rate_dot_2_right
-                + base_parameters[16] * bias_a2_x_right;
+            let minus_moment2_z_right = zz_2_rightR * minus_bias_rate_dot_2_right
+                + my_2_right * bias_a2_x_right;
             let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
-            let force_y_platform = 9.81 * base_parameters[0];
-            ::core::result::Result::Ok([
+            let m_platformR = base_parameters[0];
+            let force_y_platform = 9.81 * m_platformR;
+            Ok([
                 g2_vx_left * force_on_u2_left - minus_g1_vx_left * force_on_u1_left
                     + g1_vx_right * force_on_u1_right
                     + minus_g2_vx_right * minus_force_on_u2_right,
@@ -5500,30 +5454,30 @@ impl FiveBar {
     /// 251 operations (101 additions, 137 multiplications, 13 divisions), 2 square roots, 4 signs, 11 guards, 251 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 25],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        torques: &[f64; 2],
+        parameters: &[f64; 25],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// 1 / l_2
-            const INV_L_2: ::core::primitive::f64 = 4.0;
+            const INV_L_2: f64 = 4.0;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- right
             let d_x_right = pose[0] - HALF;
             let y_squared = pose[1] * pose[1];
@@ -5532,7 +5486,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 * inv_rho_squared_right;
             let h_squared_right = L_1_SQUARED * inv_rho_squared_right
                 - t1_right * t1_right;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
@@ -5547,69 +5501,79 @@ impl FiveBar {
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
                 + minus_g2_vy_right * twist[1];
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let minus_tau_2_right = ::overact::math::wide::signed(
-                parameters[23],
-                minus_qd_2_right,
-            );
+            let fs_2_right = parameters[23];
+            let minus_tau_2_right = math::wide::signed(fs_2_right, minus_qd_2_right);
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let t2_right = 0.5 * (rho_squared_right - 0.1025);
             let bias_rate_dot_1_right = k_right
                 * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
-            let inv_l_2_mx_2_right = INV_L_2 * parameters[20];
-            let m_2_right_minus_inv_l_2_mx_2_right = parameters[22]
-                - inv_l_2_mx_2_right;
+            let mx_2_right = parameters[20];
+            let inv_l_2_mx_2_right = INV_L_2 * mx_2_right;
+            let m_2_right = parameters[22];
+            let m_2_minus_inv_l_2_mx_2_right = m_2_right - inv_l_2_mx_2_right;
+            let zz_1_right = parameters[12];
+            let ia_1_right = parameters[15];
+            let fs_1_right = parameters[17];
+            let fv_1_right = parameters[16];
             let bias_a1_y_right = 49.05 * l1_x_right;
+            let mx_1_right = parameters[13];
             let bias_a1_x_right = 49.05 * l1_y_right;
+            let my_1_right = parameters[14];
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-            let t3_right = parameters[16] * rate_1_right
-                + bias_a1_y_right
-                    * (parameters[13] + L_1 * m_2_right_minus_inv_l_2_mx_2_right)
-                - parameters[14] * bias_a1_x_right
-                + minus_bias_a_on_f2_right * (INV_L_2 * parameters[21]);
+            let my_2_right = parameters[21];
+            let t3_right = fv_1_right * rate_1_right
+                + bias_a1_y_right * (mx_1_right + L_1 * m_2_minus_inv_l_2_mx_2_right)
+                - my_1_right * bias_a1_x_right
+                + minus_bias_a_on_f2_right * (INV_L_2 * my_2_right);
+            let off_1_right = parameters[18];
             let force_on_u1_right = minus_tau_2_right
                 + bias_rate_dot_1_right
-                    * (parameters[12]
-                        + L_1_SQUARED * m_2_right_minus_inv_l_2_mx_2_right
-                        + parameters[15]) + parameters[18]
-                + ::overact::math::wide::signed(parameters[17], rate_1_right)
-                + t3_right;
+                    * (zz_1_right + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_right
+                        + ia_1_right) + off_1_right
+                + math::wide::signed(fs_1_right, rate_1_right) + t3_right;
             let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
             // --- left
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let l2_x_left = d_x_left - l1_x_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let minus_g1_vx_left = l2_x_left / det_left;
             let l1_y_left = pose[1] * t1_left + d_x_left * h_left;
             let l2_y_left = pose[1] - l1_y_left;
             let minus_g1_vy_left = l2_y_left / det_left;
             let minus_rate_1_left = minus_g1_vx_left * twist[0]
                 + minus_g1_vy_left * twist[1];
+            let fs_1_left = parameters[5];
+            let fv_1_left = parameters[4];
             let bias_a1_y_left = 49.05 * l1_x_left;
-            let inv_l_2_mx_2_left = INV_L_2 * parameters[8];
-            let m_2_left_minus_inv_l_2_mx_2_left = parameters[10]
-                - inv_l_2_mx_2_left;
+            let mx_2_left = parameters[8];
+            let inv_l_2_mx_2_left = INV_L_2 * mx_2_left;
+            let m_2_left = parameters[10];
+            let m_2_minus_inv_l_2_mx_2_left = m_2_left - inv_l_2_mx_2_left;
+            let mx_1_left = parameters[1];
             let bias_a1_x_left = 49.05 * l1_y_left;
+            let my_1_left = parameters[2];
             let rate_1_squared_left = minus_rate_1_left * minus_rate_1_left;
             let minus_bias_a_on_f2_left = L_1_SQUARED * rate_1_squared_left;
-            let t2_left = parameters[6]
-                + bias_a1_y_left
-                    * (parameters[1] + L_1 * m_2_left_minus_inv_l_2_mx_2_left)
-                - parameters[2] * bias_a1_x_left
-                + INV_L_2 * (minus_bias_a_on_f2_left * parameters[9])
-                - parameters[4] * minus_rate_1_left;
+            let my_2_left = parameters[9];
+            let off_1_left = parameters[6];
+            let t2_left = off_1_left
+                + bias_a1_y_left * (mx_1_left + L_1 * m_2_minus_inv_l_2_mx_2_left)
+                - my_1_left * bias_a1_x_left
+                + INV_L_2 * (minus_bias_a_on_f2_left * my_2_left)
+                - fv_1_left * minus_rate_1_left;
             let g2_vx_left = l1_x_left / det_left;
             let g2_vy_left = l1_y_left / det_left;
             let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
@@ -5618,19 +5582,20 @@ impl FiveBar {
             let t3_left = 0.5 * (rho_squared_left - 0.1025);
             let minus_bias_rate_dot_1_left = (bias_a_on_f1_left
                 + rate_1_squared_left * t3_left) / det_left;
+            let zz_1_left = parameters[0];
+            let ia_1_left = parameters[3];
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let tau_2_left = ::overact::math::wide::signed(
-                parameters[11],
-                qd_2_left,
-            );
+            let fs_2_left = parameters[11];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
             let force_on_u1_left = t2_left
-                - ::overact::math::wide::signed(parameters[5], minus_rate_1_left)
+                - math::wide::signed(fs_1_left, minus_rate_1_left)
                 - minus_bias_rate_dot_1_left
-                    * (parameters[0] + L_1_SQUARED * m_2_left_minus_inv_l_2_mx_2_left
-                        + parameters[3]) - tau_2_left;
+                    * (zz_1_left + L_1_SQUARED * m_2_minus_inv_l_2_mx_2_left
+                        + ia_1_left) - tau_2_left;
             let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
             let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
                 + rate_2_squared_left * t3_left) / det_left;
+            let zz_2_left = parameters[7];
             let c2_left = t3_left * 20.0;
             let minus_s2_left = 20.0 * det_left;
             let bias_a2_x_left = c2_left
@@ -5638,37 +5603,34 @@ impl FiveBar {
                 - minus_s2_left
                     * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
             let moment2_z_left = bias_rate_dot_2_left
-                * (parameters[7] - L_2_SQUARED * inv_l_2_mx_2_left)
-                - parameters[9] * bias_a2_x_left;
+                * (zz_2_left - L_2_SQUARED * inv_l_2_mx_2_left)
+                - my_2_left * bias_a2_x_left;
             let force_on_u2_left = moment2_z_left + tau_2_left;
             // --- right
             let minus_bias_rate_dot_2_right = k_right
                 * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+            let zz_2_right = parameters[19];
             let c2_right = 20.0 * t2_right;
             let s2_right = 20.0 * det_right;
             let bias_a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
             let minus_moment2_z_right = minus_bias_rate_dot_2_right
-                * (parameters[19] - L_2_SQUARED * inv_l_2_mx_2_right)
-                + parameters[21] * bias_a2_x_right;
+                * (zz_2_right - L_2_SQUARED * inv_l_2_mx_2_right)
+                + my_2_right * bias_a2_x_right;
             let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
             let t1 = g1_vx_right * tau1_minus_force_on_u1_right
                 + minus_g1_vx_left * force_on_u1_minus_tau1_left
                 - (g2_vx_left * force_on_u2_left
                     + minus_g2_vx_right * minus_force_on_u2_right);
-            let force1_y_by_2_left = c2_left * parameters[8]
-                + minus_s2_left * parameters[9];
+            let force1_y_by_2_left = c2_left * mx_2_left + minus_s2_left * my_2_left;
             let masses_left_1_2 = L_1 * force1_y_by_2_left;
-            let masses_left_1_1 = parameters[0] + L_1_SQUARED * parameters[10]
-                + parameters[3];
-            let masses_right_1_1 = parameters[12] + L_1_SQUARED * parameters[22]
-                + parameters[15];
-            let force1_y_by_2_right = c2_right * parameters[20]
-                - s2_right * parameters[21];
+            let masses_left_1_1 = zz_1_left + L_1_SQUARED * m_2_left + ia_1_left;
+            let masses_right_1_1 = zz_1_right + L_1_SQUARED * m_2_right + ia_1_right;
+            let force1_y_by_2_right = c2_right * mx_2_right - s2_right * my_2_right;
             let masses_right_1_2 = L_1 * force1_y_by_2_right;
             let t4_right = g2_vx_left
-                * (g2_vx_left * parameters[7] - minus_g1_vx_left * masses_left_1_2)
+                * (g2_vx_left * zz_2_left - minus_g1_vx_left * masses_left_1_2)
                 - minus_g1_vx_left
                     * (g2_vx_left * masses_left_1_2
                         - minus_g1_vx_left * masses_left_1_1)
@@ -5677,37 +5639,37 @@ impl FiveBar {
                         - minus_g2_vx_right * masses_right_1_2)
                 - minus_g2_vx_right
                     * (g1_vx_right * masses_right_1_2
-                        - minus_g2_vx_right * parameters[19]);
-            let mass_1_1 = t4_right + parameters[24];
-            ::overact::guard::mass(mass_1_1)?;
-            let t4_left = g2_vy_left * parameters[7]
+                        - minus_g2_vx_right * zz_2_right);
+            let m_platform = parameters[24];
+            let mass_1_1 = t4_right + m_platform;
+            guard::mass(mass_1_1)?;
+            let t4_left = g2_vy_left * zz_2_left
                 - minus_g1_vy_left * masses_left_1_2;
             let t5_left = g2_vy_left * masses_left_1_2
                 - minus_g1_vy_left * masses_left_1_1;
             let t5_right = g1_vy_right * masses_right_1_1
                 - minus_g2_vy_right * masses_right_1_2;
             let t6_right = g1_vy_right * masses_right_1_2
-                - minus_g2_vy_right * parameters[19];
+                - minus_g2_vy_right * zz_2_right;
             let mass_1_2 = g2_vx_left * t4_left - minus_g1_vx_left * t5_left
                 + g1_vx_right * t5_right - minus_g2_vx_right * t6_right;
             let l_2_1 = mass_1_2 / mass_1_1;
             let force_y_platform = 9.81
-                * (parameters[24] + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
+                * (m_platform + inv_l_2_mx_2_left + inv_l_2_mx_2_right);
             let t2 = minus_g1_vy_left * force_on_u1_minus_tau1_left
                 - (force_y_platform + g2_vy_left * force_on_u2_left
                     + minus_g2_vy_right * minus_force_on_u2_right)
                 + g1_vy_right * tau1_minus_force_on_u1_right - t1 * l_2_1;
             let mass_2_2 = g2_vy_left * t4_left - minus_g1_vy_left * t5_left
-                + g1_vy_right * t5_right - minus_g2_vy_right * t6_right
-                + parameters[24];
+                + g1_vy_right * t5_right - minus_g2_vy_right * t6_right + m_platform;
             let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-            ::overact::guard::mass(pivot_2)?;
-            ::overact::guard::size(l_2_1, 1e100)?;
+            guard::mass(pivot_2)?;
+            guard::size(l_2_1, 1e100)?;
             let t3 = t2 / pivot_2;
             let t4 = t1 / mass_1_1 - l_2_1 * t3;
-            ::overact::guard::size(t4, 1e100)?;
-            ::overact::guard::size(t3, 1e100)?;
-            ::core::result::Result::Ok([t4, t3])
+            guard::size(t4, 1e100)?;
+            guard::size(t3, 1e100)?;
+            Ok([t4, t3])
         })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -5723,28 +5685,28 @@ impl FiveBar {
     /// 220 operations (83 additions, 121 multiplications, 16 divisions), 2 square roots, 4 signs, 11 guards, 220 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 19],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        torques: &[f64; 2],
+        base_parameters: &[f64; 19],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// half
-            const HALF: ::core::primitive::f64 = 0.1;
+            const HALF: f64 = 0.1;
             /// l_1
-            const L_1: ::core::primitive::f64 = 0.2;
+            const L_1: f64 = 0.2;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.04;
+            const L_1_SQUARED: f64 = 0.04;
             /// l_2²
-            const L_2_SQUARED: ::core::primitive::f64 = 0.0625;
+            const L_2_SQUARED: f64 = 0.0625;
             // --- right
             let d_x_right = pose[0] - HALF;
             let y_squared = pose[1] * pose[1];
@@ -5752,7 +5714,7 @@ impl FiveBar {
             let t1_right = 0.5 - 0.01125 / rho_squared_right;
             let h_squared_right = L_1_SQUARED / rho_squared_right
                 - t1_right * t1_right;
-            let h_right = ::overact::math::wide::sqrt(h_squared_right);
+            let h_right = math::wide::sqrt(h_squared_right);
             let l1_x_right = d_x_right * t1_right + pose[1] * h_right;
             let l2_x_right = d_x_right - l1_x_right;
             let det_right = rho_squared_right * h_right;
@@ -5767,46 +5729,49 @@ impl FiveBar {
             let minus_rate_2_right = minus_g2_vx_right * twist[0]
                 + minus_g2_vy_right * twist[1];
             let minus_qd_2_right = rate_1_right + minus_rate_2_right;
-            let minus_tau_2_right = ::overact::math::wide::signed(
-                base_parameters[18],
-                minus_qd_2_right,
-            );
+            let fs_2_right = base_parameters[18];
+            let minus_tau_2_right = math::wide::signed(fs_2_right, minus_qd_2_right);
             let rate_2_squared_right = minus_rate_2_right * minus_rate_2_right;
             let bias_a_on_f1_right = L_2_SQUARED * rate_2_squared_right;
             let rate_1_squared_right = rate_1_right * rate_1_right;
             let t2_right = 0.5 * (rho_squared_right - 0.1025);
             let bias_rate_dot_1_right = k_right
                 * (bias_a_on_f1_right + rate_1_squared_right * t2_right);
+            let zz_1_rightR = base_parameters[2];
             let bias_a1_y_right = 49.05 * l1_x_right;
+            let mx_1_rightR = base_parameters[4];
             let bias_a1_x_right = 49.05 * l1_y_right;
+            let my_1_right = base_parameters[6];
             let s2_right = 20.0 * det_right;
-            let minus_force1_y_by_2_right = s2_right * base_parameters[16];
+            let my_2_right = base_parameters[16];
+            let minus_force1_y_by_2_right = s2_right * my_2_right;
             let minus_masses_right_1_2 = L_1 * minus_force1_y_by_2_right;
             let minus_bias_a_on_f2_right = L_1_SQUARED * rate_1_squared_right;
-            let tau_1_right = base_parameters[8] * rate_1_right
-                + ::overact::math::wide::signed(base_parameters[10], rate_1_right)
-                + base_parameters[12];
+            let fv_1_right = base_parameters[8];
+            let fs_1_right = base_parameters[10];
+            let off_1_right = base_parameters[12];
+            let tau_1_right = fv_1_right * rate_1_right
+                + math::wide::signed(fs_1_right, rate_1_right) + off_1_right;
             let force_on_u1_right = minus_tau_2_right
-                + base_parameters[2] * bias_rate_dot_1_right
-                + base_parameters[4] * bias_a1_y_right
-                - base_parameters[6] * bias_a1_x_right
+                + zz_1_rightR * bias_rate_dot_1_right + mx_1_rightR * bias_a1_y_right
+                - my_1_right * bias_a1_x_right
                 + minus_masses_right_1_2 * (minus_bias_a_on_f2_right / det_right)
                 + tau_1_right;
             let tau1_minus_force_on_u1_right = torques[1] - force_on_u1_right;
             // --- left
             let d_x_left = pose[0] + HALF;
             let rho_squared_left = d_x_left * d_x_left + y_squared;
-            ::overact::guard::leg(rho_squared_left, 0.1, "left")?;
+            guard::leg(rho_squared_left, 0.1, "left")?;
             let t1_left = 0.5 - 0.01125 / rho_squared_left;
             let h_squared_left = L_1_SQUARED / rho_squared_left - t1_left * t1_left;
-            ::overact::guard::reach(h_squared_left, 0.2498, "left")?;
-            let h_left = ::overact::math::wide::sqrt(h_squared_left);
+            guard::reach(h_squared_left, 0.2498, "left")?;
+            let h_left = math::wide::sqrt(h_squared_left);
             let l1_x_left = d_x_left * t1_left - pose[1] * h_left;
             let det_left = rho_squared_left * h_left;
-            ::overact::guard::leg(det_left, 0.04998, "left")?;
-            ::overact::guard::leg(rho_squared_right, 0.1, "right")?;
-            ::overact::guard::reach(h_squared_right, 0.2498, "right")?;
-            ::overact::guard::leg(det_right, 0.04998, "right")?;
+            guard::leg(det_left, 0.04998, "left")?;
+            guard::leg(rho_squared_right, 0.1, "right")?;
+            guard::reach(h_squared_right, 0.2498, "right")?;
+            guard::leg(det_right, 0.04998, "right")?;
             let g2_vx_left = l1_x_left / det_left;
             let l2_x_left = d_x_left - l1_x_left;
             let minus_g1_vx_left = l2_x_left / det_left;
@@ -5823,6 +5788,7 @@ impl FiveBar {
             let t2_left = 0.5 * (rho_squared_left - 0.1025);
             let bias_rate_dot_2_left = (minus_bias_a_on_f2_left
                 + rate_2_squared_left * t2_left) / det_left;
+            let zz_2_leftR = base_parameters[13];
             let c2_left = t2_left * 20.0;
             let bias_a1_x_left = 49.05 * l1_y_left;
             let minus_s2_left = 20.0 * det_left;
@@ -5834,37 +5800,39 @@ impl FiveBar {
                 * (bias_a1_x_left - L_1 * rate_1_squared_left)
                 - minus_s2_left
                     * (bias_a1_y_left - L_1 * minus_bias_rate_dot_1_left);
-            let moment2_z_left = base_parameters[13] * bias_rate_dot_2_left
-                - base_parameters[15] * bias_a2_x_left;
+            let my_2_left = base_parameters[15];
+            let moment2_z_left = zz_2_leftR * bias_rate_dot_2_left
+                - my_2_left * bias_a2_x_left;
             let qd_2_left = minus_rate_1_left + rate_2_left;
-            let tau_2_left = ::overact::math::wide::signed(
-                base_parameters[17],
-                qd_2_left,
-            );
+            let fs_2_left = base_parameters[17];
+            let tau_2_left = math::wide::signed(fs_2_left, qd_2_left);
             let force_on_u2_left = moment2_z_left + tau_2_left;
             // --- right
             let minus_bias_rate_dot_2_right = k_right
                 * (minus_bias_a_on_f2_right + rate_2_squared_right * t2_right);
+            let zz_2_rightR = base_parameters[14];
             let c2_right = 20.0 * t2_right;
             let bias_a2_x_right = c2_right
                 * (bias_a1_x_right - L_1 * rate_1_squared_right)
                 + s2_right * (bias_a1_y_right + L_1 * bias_rate_dot_1_right);
-            let minus_moment2_z_right = base_parameters[14]
-                * minus_bias_rate_dot_2_right
-                + base_parameters[16] * bias_a2_x_right;
+            let minus_moment2_z_right = zz_2_rightR * minus_bias_rate_dot_2_right
+                + my_2_right * bias_a2_x_right;
             let minus_force_on_u2_right = minus_moment2_z_right + minus_tau_2_right;
             // --- left
-            let force1_y_by_2_left = minus_s2_left * base_parameters[15];
+            let mx_1_leftR = base_parameters[3];
+            let my_1_left = base_parameters[5];
+            let zz_1_leftR = base_parameters[1];
+            let force1_y_by_2_left = minus_s2_left * my_2_left;
             let masses_left_1_2 = L_1 * force1_y_by_2_left;
-            let tau_1_left = base_parameters[11]
-                - (base_parameters[7] * minus_rate_1_left
-                    + ::overact::math::wide::signed(
-                        base_parameters[9],
-                        minus_rate_1_left,
-                    ));
-            let force_on_u1_left = base_parameters[3] * bias_a1_y_left
-                - base_parameters[5] * bias_a1_x_left
-                - base_parameters[1] * minus_bias_rate_dot_1_left
+            let fv_1_left = base_parameters[7];
+            let fs_1_left = base_parameters[9];
+            let off_1_left = base_parameters[11];
+            let tau_1_left = off_1_left
+                - (fv_1_left * minus_rate_1_left
+                    + math::wide::signed(fs_1_left, minus_rate_1_left));
+            let force_on_u1_left = mx_1_leftR * bias_a1_y_left
+                - my_1_left * bias_a1_x_left
+                - zz_1_leftR * minus_bias_rate_dot_1_left
                 + masses_left_1_2 * (minus_bias_a_on_f2_left / det_left) + tau_1_left
                 - tau_2_left;
             let force_on_u1_minus_tau1_left = force_on_u1_left - torques[0];
@@ -5873,46 +5841,45 @@ impl FiveBar {
                 - (g2_vx_left * force_on_u2_left
                     + minus_g2_vx_right * minus_force_on_u2_right);
             let t3_right = g2_vx_left
-                * (g2_vx_left * base_parameters[13]
-                    - minus_g1_vx_left * masses_left_1_2)
+                * (g2_vx_left * zz_2_leftR - minus_g1_vx_left * masses_left_1_2)
                 - minus_g1_vx_left
-                    * (g2_vx_left * masses_left_1_2
-                        - minus_g1_vx_left * base_parameters[1])
+                    * (g2_vx_left * masses_left_1_2 - minus_g1_vx_left * zz_1_leftR)
                 + g1_vx_right
-                    * (g1_vx_right * base_parameters[2]
+                    * (g1_vx_right * zz_1_rightR
                         + minus_g2_vx_right * minus_masses_right_1_2)
                 + minus_g2_vx_right
                     * (g1_vx_right * minus_masses_right_1_2
-                        + minus_g2_vx_right * base_parameters[14]);
-            let mass_1_1 = t3_right + base_parameters[0];
-            ::overact::guard::mass(mass_1_1)?;
-            let t3_left = g2_vy_left * base_parameters[13]
+                        + minus_g2_vx_right * zz_2_rightR);
+            let m_platformR = base_parameters[0];
+            let mass_1_1 = t3_right + m_platformR;
+            guard::mass(mass_1_1)?;
+            let t3_left = g2_vy_left * zz_2_leftR
                 - minus_g1_vy_left * masses_left_1_2;
             let t4_left = g2_vy_left * masses_left_1_2
-                - minus_g1_vy_left * base_parameters[1];
-            let t4_right = g1_vy_right * base_parameters[2]
+                - minus_g1_vy_left * zz_1_leftR;
+            let t4_right = g1_vy_right * zz_1_rightR
                 + minus_g2_vy_right * minus_masses_right_1_2;
             let t5_right = g1_vy_right * minus_masses_right_1_2
-                + minus_g2_vy_right * base_parameters[14];
+                + minus_g2_vy_right * zz_2_rightR;
             let mass_1_2 = g2_vx_left * t3_left - minus_g1_vx_left * t4_left
                 + g1_vx_right * t4_right + minus_g2_vx_right * t5_right;
             let l_2_1 = mass_1_2 / mass_1_1;
-            let force_y_platform = 9.81 * base_parameters[0];
+            let force_y_platform = 9.81 * m_platformR;
             let t2 = g1_vy_right * tau1_minus_force_on_u1_right
                 + minus_g1_vy_left * force_on_u1_minus_tau1_left
                 - (force_y_platform + g2_vy_left * force_on_u2_left
                     + minus_g2_vy_right * minus_force_on_u2_right) - t1 * l_2_1;
             let mass_2_2 = g2_vy_left * t3_left - minus_g1_vy_left * t4_left
                 + g1_vy_right * t4_right + minus_g2_vy_right * t5_right
-                + base_parameters[0];
+                + m_platformR;
             let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-            ::overact::guard::mass(pivot_2)?;
-            ::overact::guard::size(l_2_1, 1e100)?;
+            guard::mass(pivot_2)?;
+            guard::size(l_2_1, 1e100)?;
             let t3 = t2 / pivot_2;
             let t4 = t1 / mass_1_1 - l_2_1 * t3;
-            ::overact::guard::size(t4, 1e100)?;
-            ::overact::guard::size(t3, 1e100)?;
-            ::core::result::Result::Ok([t4, t3])
+            guard::size(t4, 1e100)?;
+            guard::size(t3, 1e100)?;
+            Ok([t4, t3])
         })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
@@ -5926,39 +5893,34 @@ impl FiveBar {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn project_torques(
-        pose: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
-        ::core::result::Result::Ok([torques[0], torques[1]])
+        pose: &[f64; 2],
+        torques: &[f64; 2],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        Ok([torques[0], torques[1]])
     }
     /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`. It equals `pose_in_closed_form` if that succeeds.
     ///
     /// # Errors
-    /// An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
+    /// An input is infinite, NaN or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
     pub fn pose_from_actuators(
-        actuators: &[::core::primitive::f64; Self::ACTUATORS],
-        start: &[::core::primitive::f64; Self::POSE],
-    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::within(
-            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
-        )?;
-        if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
-            return ::core::result::Result::Ok(pose);
+        actuators: &[f64; Self::ACTUATORS],
+        start: &[f64; Self::POSE],
+    ) -> Result<[f64; Self::POSE], Error> {
+        guard::within(&[("actuators", actuators, 1e12), ("start", start, 1e6)])?;
+        if let Ok(pose) = Self::pose_in_closed_form(actuators) {
+            return Ok(pose);
         }
         let mut pose = *start;
         let mut stepped = pose;
-        let find = |
-            pose: &[::core::primitive::f64],
-            step: &mut [::core::primitive::f64]|
-        {
+        let find = |pose: &[f64], step: &mut [f64]| {
             ::overact::block::write(
                 &Self::pose_step(::overact::block::array(pose)?, actuators)?,
                 step,
             );
-            ::core::result::Result::Ok(())
+            Ok(())
         };
         if ::overact::forward::steps(
             &mut stepped,
@@ -5966,7 +5928,7 @@ impl FiveBar {
             find,
             ::overact::forward::displace,
         ) {
-            return ::core::result::Result::Ok(stepped);
+            return Ok(stepped);
         }
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -5984,7 +5946,7 @@ impl FiveBar {
                     let pose = ::overact::block::array(pose)?;
                     ::overact::block::write(&Self::actuator_positions(pose)?, positions);
                     ::overact::block::write(&Self::inverse_jacobian(pose)?, jacobian);
-                    ::core::result::Result::Ok(())
+                    Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -6022,9 +5984,9 @@ impl ::overact::Model for FiveBar {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[::core::primitive::f64]],
-        output: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::SampleError> {
+        inputs: &[&[f64]],
+        output: &mut [f64],
+    ) -> Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::PoseInClosedForm => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
@@ -6203,9 +6165,9 @@ impl ::overact::Model for FiveBar {
                     .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             other => {
-                ::core::result::Result::Err(::overact::SampleError {
+                Err(::overact::SampleError {
                     sample: 0,
-                    error: ::overact::Error::NotOffered {
+                    error: Error::NotOffered {
                         function: other.name(),
                     },
                 })
@@ -6214,14 +6176,15 @@ impl ::overact::Model for FiveBar {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[::core::primitive::f64],
-        pose: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::Error> {
+        actuators: &[f64],
+        pose: &mut [f64],
+    ) -> Result<(), Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        ::core::result::Result::Ok(())
+        Ok(())
     }
 }
+};

@@ -61,6 +61,7 @@
 /// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
 /// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
 /// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
+/// Parameters have the names in `PARAMETERS` and `BASE_PARAMETERS`; those of any leg end in `_leg`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -73,56 +74,54 @@ pub struct Rx90;
 #[allow(
     clippy::all,
     clippy::pedantic,
+    non_local_definitions,
     nonstandard_style,
     unused,
     unused_qualifications,
     reason = "straight-line code with the names of the derivation, in any scope"
 )]
+const _: () = {
+use ::core::primitive::{bool, f64, str, usize};
+use ::core::result::Result::{Err, Ok};
+use ::core::result::Result;
+use ::overact::{Error, guard, math, with_avx2, with_avx512, zeroed_then_fill};
 impl Rx90 {
     /// The robot's name.
-    pub const NAME: &'static ::core::primitive::str = "Rx90";
+    pub const NAME: &'static str = "Rx90";
     /// Numbers in a pose.
-    pub const POSE: ::core::primitive::usize = 6;
+    pub const POSE: usize = 6;
     /// r, independent platform coordinates.
-    pub const DOF: ::core::primitive::usize = 6;
+    pub const DOF: usize = 6;
     /// n, actuated joints.
-    pub const ACTUATORS: ::core::primitive::usize = 6;
+    pub const ACTUATORS: usize = 6;
     /// n_t, joints of all legs.
-    pub const JOINTS: ::core::primitive::usize = 6;
+    pub const JOINTS: usize = 6;
     /// Names of the legs.
-    pub const LEGS: [&'static ::core::primitive::str; 1] = ["arm"];
+    pub const LEGS: [&'static str; 1] = ["arm"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 6] = [
-        "1", "2", "3", "4", "5", "6",
-    ];
+    pub const ACTUATOR_NAMES: [&'static str; 6] = ["1", "2", "3", "4", "5", "6"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static ::core::primitive::str; 6] = [
-        "1", "2", "3", "4", "5", "6",
-    ];
+    pub const JOINT_NAMES: [&'static str; 6] = ["1", "2", "3", "4", "5", "6"];
     /// Names of the independent coordinates, in the order of the twist.
-    pub const COORDINATES: [&'static ::core::primitive::str; 6] = [
-        "1", "2", "3", "4", "5", "6",
-    ];
+    pub const COORDINATES: [&'static str; 6] = ["1", "2", "3", "4", "5", "6"];
     /// Names of the pose coordinates.
-    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 6] = [
+    pub const POSE_COORDINATES: [&'static str; 6] = [
         "q_1", "q_2", "q_3", "q_4", "q_5", "q_6",
     ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
-        0, 1, 2, 3, 4, 5,
-    ];
+    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 1, 2, 3, 4, 5];
     /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [
         true, true, true, true, true, true,
     ];
     /// Kept actuators of the actuator projection (case 2).
-    pub const KEPT_ACTUATORS: [::core::primitive::usize; 6] = [0, 1, 2, 3, 4, 5];
+    pub const KEPT_ACTUATORS: [usize; 6] = [0, 1, 2, 3, 4, 5];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [
+    pub const HOME_POSE: [f64; Self::POSE] = [
         0.0, 1.0471975511965976, 1.0471975511965976, 0.0, 0.7853981633974483, 0.0,
     ];
     /// Joint positions of the home configuration, which defines the working mode (m, rad).
-    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
         0.0, 1.0471975511965976, 1.0471975511965976, 0.0, 0.7853981633974483, 0.0,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -314,14 +313,10 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
-    pub fn joints(
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(&[("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([
-            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
-        ])
+    /// An input is infinite, NaN or too large.
+    pub fn joints(joints: &[f64; 6]) -> Result<[f64; 6], Error> {
+        guard::within(&[("joints", joints, 1e12)])?;
+        Ok([joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
     ///
@@ -333,14 +328,10 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
-    pub fn actuator_positions(
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(&[("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([
-            joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
-        ])
+    /// An input is infinite, NaN or too large.
+    pub fn actuator_positions(joints: &[f64; 6]) -> Result<[f64; 6], Error> {
+        guard::within(&[("joints", joints, 1e12)])?;
+        Ok([joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -352,12 +343,10 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
-    pub fn inverse_jacobian(
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::within(&[("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([
+    /// An input is infinite, NaN or too large.
+    pub fn inverse_jacobian(joints: &[f64; 6]) -> Result<[[f64; 6]; 6], Error> {
+        guard::within(&[("joints", joints, 1e12)])?;
+        Ok([
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
             [0.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
@@ -374,15 +363,15 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn joint_velocities(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9)],
         )?;
-        ::core::result::Result::Ok([
+        Ok([
             joint_velocities[0], joint_velocities[1], joint_velocities[2], joint_velocities[3],
             joint_velocities[4], joint_velocities[5],
         ])
@@ -399,19 +388,19 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn joint_accelerations(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        joint_accelerations: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        joint_accelerations: &[f64; 6],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
-        ::core::result::Result::Ok([
+        Ok([
             joint_accelerations[0], joint_accelerations[1], joint_accelerations[2],
             joint_accelerations[3], joint_accelerations[4], joint_accelerations[5],
         ])
@@ -427,17 +416,17 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn twist_from_actuators(
-        joints: &[::core::primitive::f64; 6],
-        actuator_velocities: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        actuator_velocities: &[f64; 6],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
             ],
         )?;
-        ::core::result::Result::Ok([
+        Ok([
             actuator_velocities[0], actuator_velocities[1], actuator_velocities[2],
             actuator_velocities[3], actuator_velocities[4], actuator_velocities[5],
         ])
@@ -454,19 +443,19 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn acceleration_from_actuators(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        actuator_accelerations: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        actuator_accelerations: &[f64; 6],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
-        ::core::result::Result::Ok([
+        Ok([
             actuator_accelerations[0], actuator_accelerations[1], actuator_accelerations[2],
             actuator_accelerations[3], actuator_accelerations[4], actuator_accelerations[5],
         ])
@@ -484,13 +473,13 @@ impl Rx90 {
     /// 623 operations (271 additions, 352 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 51 negations, 497 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn idm_red_platform(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        joint_accelerations: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 6], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        joint_accelerations: &[f64; 6],
+    ) -> Result<[[f64; 73]; 6], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_into(
             joints,
             joint_velocities,
             joint_accelerations,
@@ -502,25 +491,25 @@ impl Rx90 {
     /// # Errors
     /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        joint_accelerations: &[::core::primitive::f64; 6],
-        output: &mut [[::core::primitive::f64; 73]; 6],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        joint_accelerations: &[f64; 6],
+        output: &mut [[f64; 73]; 6],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, joint_velocities, joint_accelerations) = (
                 *joints,
                 *joint_velocities,
                 *joint_accelerations,
             );
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             output[0][0..2].fill(joint_accelerations[0]);
             output[0][2] = joint_velocities[0]; // fv_1
             output[0][4] = 1.0; // off_1
@@ -567,15 +556,15 @@ impl Rx90 {
             output[5][72] = 1.0; // off_6
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            output[0][3] = ::overact::math::wide::sign(joint_velocities[0]); // fs_1
-            output[1][15] = ::overact::math::wide::sign(joint_velocities[1]); // fs_2
-            output[2][29] = ::overact::math::wide::sign(joint_velocities[2]); // fs_3
-            output[3][43] = ::overact::math::wide::sign(joint_velocities[3]); // fs_4
-            output[4][57] = ::overact::math::wide::sign(joint_velocities[4]); // fs_5
-            output[5][71] = ::overact::math::wide::sign(joint_velocities[5]); // fs_6
+            output[0][3] = math::wide::sign(joint_velocities[0]); // fs_1
+            output[1][15] = math::wide::sign(joint_velocities[1]); // fs_2
+            output[2][29] = math::wide::sign(joint_velocities[2]); // fs_3
+            output[3][43] = math::wide::sign(joint_velocities[3]); // fs_4
+            output[4][57] = math::wide::sign(joint_velocities[4]); // fs_5
+            output[5][71] = math::wide::sign(joint_velocities[5]); // fs_6
             // --- arm
             let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
             output[1][22] = wd3_z_arm; // zz_3
@@ -1061,7 +1050,7 @@ impl Rx90 {
             output[2][66] = v5_by_3_y_arm * u6_zy_arm
                 - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
                 - t12_arm; // my_6
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -1077,13 +1066,13 @@ impl Rx90 {
     /// 601 operations (253 additions, 348 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 27 negations, 496 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn idm_red_platform_base(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        joint_accelerations: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 58]; 6], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        joint_accelerations: &[f64; 6],
+    ) -> Result<[[f64; 58]; 6], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             joints,
             joint_velocities,
             joint_accelerations,
@@ -1095,25 +1084,25 @@ impl Rx90 {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        joint_accelerations: &[::core::primitive::f64; 6],
-        output: &mut [[::core::primitive::f64; 58]; 6],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        joint_accelerations: &[f64; 6],
+        output: &mut [[f64; 58]; 6],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, joint_velocities, joint_accelerations) = (
                 *joints,
                 *joint_velocities,
                 *joint_accelerations,
             );
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             output[0][0] = joint_accelerations[0]; // zz_1R
             output[0][1] = joint_velocities[0]; // fv_1
             output[0][3] = 1.0; // off_1
@@ -1152,15 +1141,15 @@ impl Rx90 {
             output[5][55] = 0.0; // mx_5
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            output[0][2] = ::overact::math::wide::sign(joint_velocities[0]); // fs_1
-            output[1][6] = ::overact::math::wide::sign(joint_velocities[1]); // fs_2
-            output[2][10] = ::overact::math::wide::sign(joint_velocities[2]); // fs_3
-            output[3][14] = ::overact::math::wide::sign(joint_velocities[3]); // fs_4
-            output[4][18] = ::overact::math::wide::sign(joint_velocities[4]); // fs_5
-            output[5][22] = ::overact::math::wide::sign(joint_velocities[5]); // fs_6
+            output[0][2] = math::wide::sign(joint_velocities[0]); // fs_1
+            output[1][6] = math::wide::sign(joint_velocities[1]); // fs_2
+            output[2][10] = math::wide::sign(joint_velocities[2]); // fs_3
+            output[3][14] = math::wide::sign(joint_velocities[3]); // fs_4
+            output[4][18] = math::wide::sign(joint_velocities[4]); // fs_5
+            output[5][22] = math::wide::sign(joint_velocities[5]); // fs_6
             // --- arm
             let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
             output[1][24] = wd3_z_arm; // zz_3R
@@ -1572,7 +1561,7 @@ impl Rx90 {
             output[2][57] = v5_by_3_y_arm * u6_zy_arm
                 - (v6_by_3_x_arm * minus_u6_xy_arm + v6_by_3_y_arm * minus_u6_yy_arm)
                 - t12_arm; // my_6
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -1586,17 +1575,13 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn project_platform(
-        joints: &[::core::primitive::f64; 6],
-        torques: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
-            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
-        )?;
-        ::core::result::Result::Ok([
-            torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
-        ])
+        joints: &[f64; 6],
+        torques: &[f64; 6],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(&[("joints", joints, 1e12), ("torques", torques, 1e12)])?;
+        Ok([torques[0], torques[1], torques[2], torques[3], torques[4], torques[5]])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
@@ -1611,99 +1596,127 @@ impl Rx90 {
     /// 548 operations (281 additions, 267 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 552 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn inverse_dynamics(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        joint_accelerations: &[::core::primitive::f64; 6],
-        parameters: &[::core::primitive::f64; 73],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        joint_accelerations: &[f64; 6],
+        parameters: &[f64; 73],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
             // --- arm
-            let t1_arm = parameters[40] + parameters[54] + parameters[68];
-            let t2_arm = D3 * (parameters[26] + t1_arm);
+            let m_5 = parameters[54];
+            let m_6 = parameters[68];
+            let m_4 = parameters[40];
+            let t1_arm = m_4 + m_5 + m_6;
+            let m_3 = parameters[26];
+            let t2_arm = D3 * (m_3 + t1_arm);
             let t3_arm = D3 * t2_arm;
-            let t4_arm = parameters[8] + t3_arm;
+            let yy_2 = parameters[8];
+            let t4_arm = yy_2 + t3_arm;
+            let yy_3 = parameters[20];
+            let zz_1 = parameters[0];
+            let ia_1 = parameters[1];
             let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
             let w2_y_arm = c2_arm * joint_velocities[0];
             let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
             let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-            let t5_arm = parameters[5] - t4_arm;
-            let t6_arm = parameters[10] + t3_arm;
+            let xx_2 = parameters[5];
+            let t5_arm = xx_2 - t4_arm;
+            let zz_2 = parameters[10];
+            let t6_arm = zz_2 + t3_arm;
             let w2_x_arm = s2_arm * joint_velocities[0];
             let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
             let u2_xz_arm = c2_arm * joint_accelerations[0];
             let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
             let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+            let xy_2 = parameters[6];
             let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
             let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
-            let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
+            let mz_3 = parameters[25];
+            let xz_2 = parameters[7];
+            let xz_2_minus_d3_mz_3 = xz_2 - D3 * mz_3;
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let yz_2 = parameters[9];
             let t7_arm = wd2_x_arm * t5_arm + qd2_w2_y_arm * t6_arm
-                - parameters[6] * u2_zx_arm + u2_yx_arm * xz_2_minus_d3_mz_3
-                + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm);
+                - xy_2 * u2_zx_arm + u2_yx_arm * xz_2_minus_d3_mz_3
+                + yz_2 * (w2_y_squared_arm - rate_2_squared_arm);
             let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
             let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
                 + joint_velocities[2] * w3_y_arm;
-            let t8_arm = parameters[39] + D3 * t1_arm;
-            let t9_arm = parameters[34] + D3 * (parameters[39] + t8_arm);
-            let t10_arm = parameters[17] + t9_arm - parameters[20];
+            let mz_4 = parameters[39];
+            let t8_arm = mz_4 + D3 * t1_arm;
+            let yy_4 = parameters[34];
+            let t9_arm = yy_4 + D3 * (mz_4 + t8_arm);
+            let xx_3 = parameters[17];
+            let t10_arm = xx_3 + t9_arm - yy_3;
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-            let t11_arm = parameters[22] + t9_arm;
+            let zz_3 = parameters[22];
+            let t11_arm = zz_3 + t9_arm;
             let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
             let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
             let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
                 - joint_velocities[2] * w3_x_arm;
             let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+            let xy_3 = parameters[18];
             let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
             let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
             let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
+            let xz_3 = parameters[19];
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let yz_3 = parameters[21];
             let t12_arm = wd3_x_arm * t10_arm + w3_y_w3_z_arm * t11_arm
-                - parameters[18] * u3_zx_arm + parameters[19] * u3_yx_arm
-                + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm);
+                - xy_3 * u3_zx_arm + xz_3 * u3_yx_arm
+                + yz_3 * (w3_y_squared_arm - w3_z_squared_arm);
             let a3_z_arm = D3 * u2_zx_arm;
-            let t13_arm = t8_arm + parameters[24];
+            let my_3 = parameters[24];
+            let t13_arm = t8_arm + my_3;
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
                 - joint_velocities[3] * minus_w4_y_arm;
-            let t14_arm = parameters[31] + parameters[48] - parameters[34];
+            let xx_4 = parameters[31];
+            let yy_5 = parameters[48];
+            let t14_arm = xx_4 + yy_5 - yy_4;
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-            let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+            let zz_4 = parameters[36];
+            let zz_4_plus_yy_5 = zz_4 + yy_5;
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
                 + joint_velocities[3] * w4_x_arm;
             let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+            let xy_4 = parameters[32];
             let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
             let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
             let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
+            let xz_4 = parameters[33];
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
             let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let w4_z_squared_arm = w4_z_arm * w4_z_arm;
             let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
+            let yz_4 = parameters[35];
             let t15_arm = wd4_x_arm * t14_arm - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
-                - parameters[32] * u4_zx_arm + parameters[33] * u4_yx_arm
-                + parameters[35] * (minus_u3_yy_arm - minus_u4_yy_arm);
+                - xy_4 * u4_zx_arm + xz_4 * u4_yx_arm
+                + yz_4 * (minus_u3_yy_arm - minus_u4_yy_arm);
             let a2_y_arm = 9.81 * c2_arm;
             let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
             let a2_x_arm = 9.81 * s2_arm;
@@ -1712,27 +1725,35 @@ impl Rx90 {
             let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
                 - s3_arm * a2_x_plus_d3_u2_xx_arm;
             let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
-            let my_4_minus_mz_5 = parameters[38] - parameters[53];
+            let my_4 = parameters[38];
+            let mz_5 = parameters[53];
+            let my_4_minus_mz_5 = my_4 - mz_5;
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
                 + joint_velocities[4] * w5_y_arm;
-            let t16_arm = parameters[45] + parameters[62] - parameters[48];
+            let xx_5 = parameters[45];
+            let yy_6 = parameters[62];
+            let t16_arm = xx_5 + yy_6 - yy_5;
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-            let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+            let zz_5 = parameters[50];
+            let zz_5_plus_yy_6 = zz_5 + yy_6;
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
                 - joint_velocities[4] * w5_x_arm;
             let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+            let xy_5 = parameters[46];
             let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
             let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
             let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
+            let xz_5 = parameters[47];
             let w5_y_squared_arm = w5_y_arm * w5_y_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let yz_5 = parameters[49];
             let t17_arm = wd5_x_arm * t16_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
-                - parameters[46] * u5_zx_arm + parameters[47] * u5_yx_arm
-                + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+                - xy_5 * u5_zx_arm + xz_5 * u5_yx_arm
+                + yz_5 * (w5_y_squared_arm - w5_z_squared_arm);
             let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
                 + s3_arm * a2_y_plus_d3_u2_yx_arm;
             let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
@@ -1740,30 +1761,37 @@ impl Rx90 {
             let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
             let t18_arm = D3 * (u2_zx_arm + u3_zy_arm);
             let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t18_arm;
-            let my_5_plus_mz_6 = parameters[52] + parameters[67];
+            let my_5 = parameters[52];
+            let mz_6 = parameters[67];
+            let my_5_plus_mz_6 = my_5 + mz_6;
             let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
             let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
-            let xx_6_minus_yy_6 = parameters[59] - parameters[62];
+            let xx_6 = parameters[59];
+            let xx_6_minus_yy_6 = xx_6 - yy_6;
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let zz_6 = parameters[64];
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
                 + joint_velocities[5] * w6_x_arm;
             let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+            let xy_6 = parameters[60];
             let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
             let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
             let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
+            let xz_6 = parameters[61];
             let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
             let t19_arm = w6_y_squared_arm - w6_z_squared_arm;
+            let yz_6 = parameters[63];
             let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t18_arm;
             let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
+            let my_6 = parameters[66];
             let moment6_x_arm = wd6_x_arm * xx_6_minus_yy_6
-                - parameters[64] * minus_w6_y_w6_z_arm - parameters[60] * u6_zx_arm
-                + parameters[61] * u6_yx_arm + parameters[63] * t19_arm
-                + parameters[66] * a5_y_arm;
+                - zz_6 * minus_w6_y_w6_z_arm - xy_6 * u6_zx_arm + xz_6 * u6_yx_arm
+                + yz_6 * t19_arm + my_6 * a5_y_arm;
             let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
             let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
             let w5_x_squared_arm = w5_x_arm * w5_x_arm;
@@ -1771,82 +1799,75 @@ impl Rx90 {
             let minus_u6_yy_arm = minus_u5_yy_arm - t19_arm;
             let u6_xx_minus_u6_yy_arm = minus_u6_yy_arm - minus_u6_xx_arm;
             let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
-            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
-                + parameters[60] * u6_zy_arm
-                - parameters[61] * (t19_arm + u6_xx_minus_u6_yy_arm)
-                + parameters[63] * minus_u6_xy_arm - parameters[65] * a5_y_arm;
+            let mx_6 = parameters[65];
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - zz_6)
+                + xy_6 * u6_zy_arm - xz_6 * (t19_arm + u6_xx_minus_u6_yy_arm)
+                + yz_6 * minus_u6_xy_arm - mx_6 * a5_y_arm;
             let moment5_x_arm = t17_arm + a5_z_arm * my_5_plus_mz_6
                 + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
             let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
             let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
+            let mx_5 = parameters[51];
             let t20_arm = w5_x_w5_z_arm * (t16_arm - zz_5_plus_yy_6)
-                + parameters[46] * u5_zy_arm
-                + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-                - parameters[49] * u5_xy_arm - parameters[51] * a5_z_arm;
+                + xy_5 * u5_zy_arm + xz_5 * (w5_z_squared_arm - w5_x_squared_arm)
+                - yz_5 * u5_xy_arm - mx_5 * a5_z_arm;
             let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
             let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
             let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
             let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
             let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-            let moment6_z_arm = parameters[64] * wd6_z_arm
+            let moment6_z_arm = zz_6 * wd6_z_arm
                 + minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-                + parameters[60] * u6_xx_minus_u6_yy_arm
-                + parameters[61] * minus_u6_yz_arm + parameters[63] * u6_xz_arm
-                - (parameters[65] * minus_a6_y_arm + parameters[66] * a6_x_arm);
+                + xy_6 * u6_xx_minus_u6_yy_arm + xz_6 * minus_u6_yz_arm
+                + yz_6 * u6_xz_arm - (mx_6 * minus_a6_y_arm + my_6 * a6_x_arm);
             let moment5_y_arm = t20_arm + moment6_z_arm;
             let moment4_x_arm = t15_arm + a4_z_arm * my_4_minus_mz_5
                 + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
             let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
             let t21_arm = w4_z_squared_arm - w4_x_squared_arm;
             let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
+            let mx_4 = parameters[37];
             let t22_arm = w4_x_w4_z_arm * (t14_arm - zz_4_plus_yy_5)
-                + parameters[32] * u4_zy_arm + parameters[33] * t21_arm
-                + parameters[35] * minus_u4_xy_arm - parameters[37] * a4_z_arm;
+                + xy_4 * u4_zy_arm + xz_4 * t21_arm + yz_4 * minus_u4_xy_arm
+                - mx_4 * a4_z_arm;
             let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
             let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
             let t23_arm = wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t16_arm
-                + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-                - parameters[47] * u5_yz_arm + parameters[49] * u5_xz_arm;
-            let moment5_z_arm = t23_arm + parameters[51] * a5_y_arm
-                - a5_x_arm * my_5_plus_mz_6
+                + xy_5 * (w5_x_squared_arm - w5_y_squared_arm) - xz_5 * u5_yz_arm
+                + yz_5 * u5_xz_arm;
+            let moment5_z_arm = t23_arm + mx_5 * a5_y_arm - a5_x_arm * my_5_plus_mz_6
                 - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
             let moment4_y_arm = t22_arm - moment5_z_arm;
             let minus_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-            let minus_force6_x_arm = parameters[65] * minus_u6_xx_arm
-                + parameters[66] * minus_u6_xy_arm;
-            let force6_y_arm = parameters[65] * u6_yx_arm
-                - parameters[66] * minus_u6_yy_arm;
-            let force5_x_arm = u5_xy_arm * my_5_plus_mz_6
-                - parameters[51] * minus_u5_xx_arm
+            let minus_force6_x_arm = mx_6 * minus_u6_xx_arm + my_6 * minus_u6_xy_arm;
+            let force6_y_arm = mx_6 * u6_yx_arm - my_6 * minus_u6_yy_arm;
+            let force5_x_arm = u5_xy_arm * my_5_plus_mz_6 - mx_5 * minus_u5_xx_arm
                 - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
-            let force6_z_arm = parameters[65] * u6_zx_arm
-                + parameters[66] * u6_zy_arm;
-            let force5_y_arm = parameters[51] * u5_yx_arm
-                - minus_u5_yy_arm * my_5_plus_mz_6 + force6_z_arm;
+            let force6_z_arm = mx_6 * u6_zx_arm + my_6 * u6_zy_arm;
+            let force5_y_arm = mx_5 * u5_yx_arm - minus_u5_yy_arm * my_5_plus_mz_6
+                + force6_z_arm;
             let minus_u4_xx_arm = minus_u3_yy_arm + t21_arm;
             let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
-                - (parameters[37] * minus_u4_xx_arm
-                    + minus_u4_xy_arm * my_4_minus_mz_5);
-            let force5_z_arm = parameters[51] * u5_zx_arm
-                + u5_zy_arm * my_5_plus_mz_6
+                - (mx_4 * minus_u4_xx_arm + minus_u4_xy_arm * my_4_minus_mz_5);
+            let force5_z_arm = mx_5 * u5_zx_arm + u5_zy_arm * my_5_plus_mz_6
                 - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
-            let force4_y_arm = parameters[37] * u4_yx_arm
-                - minus_u4_yy_arm * my_4_minus_mz_5 - force5_z_arm;
+            let force4_y_arm = mx_4 * u4_yx_arm - minus_u4_yy_arm * my_4_minus_mz_5
+                - force5_z_arm;
             let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
                 + c4_arm * force4_y_arm;
             let moment3_x_arm = t12_arm + a3_z_arm * t13_arm + c4_arm * moment4_x_arm
                 - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
-            let t24_arm = w3_x_w3_z_arm * (t10_arm - t11_arm)
-                + parameters[18] * u3_zy_arm
-                + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-                - parameters[21] * u3_xy_arm - parameters[23] * a3_z_arm;
+            let mx_3 = parameters[23];
+            let t24_arm = w3_x_w3_z_arm * (t10_arm - t11_arm) + xy_3 * u3_zy_arm
+                + xz_3 * (w3_z_squared_arm - w3_x_squared_arm) - yz_3 * u3_xy_arm
+                - mx_3 * a3_z_arm;
             let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
             let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
             let t25_arm = wd4_z_arm * zz_4_plus_yy_5 + minus_w4_x_w4_y_arm * t14_arm
-                + parameters[32] * (minus_u4_yy_arm - minus_u4_xx_arm)
-                + parameters[33] * minus_u4_yz_arm + parameters[35] * u4_xz_arm;
+                + xy_4 * (minus_u4_yy_arm - minus_u4_xx_arm) + xz_4 * minus_u4_yz_arm
+                + yz_4 * u4_xz_arm;
             let moment4_z_arm = t25_arm
-                - (parameters[37] * a5_z_arm + a4_x_arm * my_4_minus_mz_5)
+                - (mx_4 * a5_z_arm + a4_x_arm * my_4_minus_mz_5)
                 + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
             let moment3_y_arm = t24_arm + moment4_z_arm;
             let moment2_x_arm = t7_arm + c3_arm * moment3_x_arm
@@ -1854,69 +1875,85 @@ impl Rx90 {
             let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
             let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
-            let force3_z_arm = parameters[23] * u3_zx_arm + u3_zy_arm * t13_arm
+            let force3_z_arm = mx_3 * u3_zx_arm + u3_zy_arm * t13_arm
                 - s4_force4_x_plus_c4_force4_y_arm;
-            let moment2_y_arm = qd2_w2_x_arm * (t5_arm - t6_arm)
-                + parameters[6] * u2_zy_arm
+            let moment2_y_arm = qd2_w2_x_arm * (t5_arm - t6_arm) + xy_2 * u2_zy_arm
                 + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
-                - parameters[9] * u2_xy_arm + s3_arm * moment3_x_arm
-                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+                - yz_2 * u2_xy_arm + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
+                - D3 * force3_z_arm;
+            let fv_1 = parameters[2];
+            let fs_1 = parameters[3];
+            let off_1 = parameters[4];
             let force_on_u1_arm = joint_accelerations[0]
-                * (parameters[0] + parameters[20] + t4_arm + parameters[1])
-                + parameters[4] + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm
-                + joint_velocities[0] * parameters[2]
-                + ::overact::math::wide::signed(parameters[3], joint_velocities[0]);
+                * (zz_1 + yy_3 + t4_arm + ia_1) + off_1 + s2_arm * moment2_x_arm
+                + c2_arm * moment2_y_arm + joint_velocities[0] * fv_1
+                + math::wide::signed(fs_1, joint_velocities[0]);
             let t26_arm = joint_accelerations[1] * t6_arm - w2_x_w2_y_arm * t5_arm
-                + parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-                + minus_u2_yz_arm * xz_2_minus_d3_mz_3 + parameters[9] * u2_xz_arm;
+                + xy_2 * (w2_x_squared_arm - w2_y_squared_arm)
+                + minus_u2_yz_arm * xz_2_minus_d3_mz_3 + yz_2 * u2_xz_arm;
+            let mx_2 = parameters[11];
+            let my_2 = parameters[12];
             let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
             let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
                 - s4_arm * force4_y_arm;
-            let force3_x_arm = u3_xy_arm * t13_arm - parameters[23] * minus_u3_xx_arm
+            let force3_x_arm = u3_xy_arm * t13_arm - mx_3 * minus_u3_xx_arm
                 + c4_force4_x_minus_s4_force4_y_arm;
-            let force4_z_arm = parameters[37] * u4_zx_arm
-                + u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
-                + c5_arm * force5_y_arm;
-            let force3_y_arm = parameters[23] * u3_yx_arm - minus_u3_yy_arm * t13_arm
+            let force4_z_arm = mx_4 * u4_zx_arm + u4_zy_arm * my_4_minus_mz_5
+                + s5_arm * force5_x_arm + c5_arm * force5_y_arm;
+            let force3_y_arm = mx_3 * u3_yx_arm - minus_u3_yy_arm * t13_arm
                 + force4_z_arm;
-            let t27_arm = t26_arm + a2_y_arm * (parameters[11] + t2_arm)
-                - parameters[12] * a2_x_arm
+            let t27_arm = t26_arm + a2_y_arm * (mx_2 + t2_arm) - my_2 * a2_x_arm
                 + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
             let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
             let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
             let t28_arm = wd3_z_arm * t11_arm - w3_x_w3_y_arm * t10_arm
-                + parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-                - parameters[19] * u3_yz_arm + parameters[21] * u3_xz_arm;
-            let moment3_z_arm = t28_arm + parameters[23] * a3_y_arm
-                - a3_x_arm * t13_arm - D3 * c4_force4_x_minus_s4_force4_y_arm
+                + xy_3 * (w3_x_squared_arm - w3_y_squared_arm) - xz_3 * u3_yz_arm
+                + yz_3 * u3_xz_arm;
+            let moment3_z_arm = t28_arm + mx_3 * a3_y_arm - a3_x_arm * t13_arm
+                - D3 * c4_force4_x_minus_s4_force4_y_arm
                 - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
             let moment2_z_arm = t27_arm + moment3_z_arm;
-            let tau_2_arm = joint_accelerations[1] * parameters[13]
-                + joint_velocities[1] * parameters[14]
-                + ::overact::math::wide::signed(parameters[15], joint_velocities[1])
-                + parameters[16];
+            let ia_2 = parameters[13];
+            let fv_2 = parameters[14];
+            let fs_2 = parameters[15];
+            let off_2 = parameters[16];
+            let tau_2_arm = joint_accelerations[1] * ia_2
+                + joint_velocities[1] * fv_2
+                + math::wide::signed(fs_2, joint_velocities[1]) + off_2;
             let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-            let tau_3_arm = joint_accelerations[2] * parameters[27]
-                + joint_velocities[2] * parameters[28]
-                + ::overact::math::wide::signed(parameters[29], joint_velocities[2])
-                + parameters[30];
+            let ia_3 = parameters[27];
+            let fv_3 = parameters[28];
+            let fs_3 = parameters[29];
+            let off_3 = parameters[30];
+            let tau_3_arm = joint_accelerations[2] * ia_3
+                + joint_velocities[2] * fv_3
+                + math::wide::signed(fs_3, joint_velocities[2]) + off_3;
             let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-            let tau_4_arm = joint_accelerations[3] * parameters[41]
-                + joint_velocities[3] * parameters[42]
-                + ::overact::math::wide::signed(parameters[43], joint_velocities[3])
-                + parameters[44];
+            let ia_4 = parameters[41];
+            let fv_4 = parameters[42];
+            let fs_4 = parameters[43];
+            let off_4 = parameters[44];
+            let tau_4_arm = joint_accelerations[3] * ia_4
+                + joint_velocities[3] * fv_4
+                + math::wide::signed(fs_4, joint_velocities[3]) + off_4;
             let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-            let tau_5_arm = joint_accelerations[4] * parameters[55]
-                + joint_velocities[4] * parameters[56]
-                + ::overact::math::wide::signed(parameters[57], joint_velocities[4])
-                + parameters[58];
+            let ia_5 = parameters[55];
+            let fv_5 = parameters[56];
+            let fs_5 = parameters[57];
+            let off_5 = parameters[58];
+            let tau_5_arm = joint_accelerations[4] * ia_5
+                + joint_velocities[4] * fv_5
+                + math::wide::signed(fs_5, joint_velocities[4]) + off_5;
             let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-            let tau_6_arm = joint_accelerations[5] * parameters[69]
-                + joint_velocities[5] * parameters[70]
-                + ::overact::math::wide::signed(parameters[71], joint_velocities[5])
-                + parameters[72];
+            let ia_6 = parameters[69];
+            let fv_6 = parameters[70];
+            let fs_6 = parameters[71];
+            let off_6 = parameters[72];
+            let tau_6_arm = joint_accelerations[5] * ia_6
+                + joint_velocities[5] * fv_6
+                + math::wide::signed(fs_6, joint_velocities[5]) + off_6;
             let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-            ::core::result::Result::Ok([
+            Ok([
                 force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
                 force_on_u6_arm,
             ])
@@ -1935,93 +1972,107 @@ impl Rx90 {
     /// 522 operations (260 additions, 262 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 526 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn inverse_dynamics_base(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        joint_accelerations: &[::core::primitive::f64; 6],
-        base_parameters: &[::core::primitive::f64; 58],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        joint_accelerations: &[f64; 6],
+        base_parameters: &[f64; 58],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("joint_accelerations", joint_accelerations, 1e12),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
             // --- arm
-            let d3_m_4R = D3 * base_parameters[35];
+            let m_4R = base_parameters[35];
+            let d3_m_4R = D3 * m_4R;
             let d3_d3_m_4R = D3 * d3_m_4R;
-            let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
+            let yy_2R = base_parameters[27];
+            let yy_2R_plus_d3_d3_m_4R = yy_2R + d3_d3_m_4R;
+            let yy_3R = base_parameters[29];
+            let zz_1R = base_parameters[0];
             let minus_u2_yz_arm = s2_arm * joint_accelerations[0];
             let w2_y_arm = c2_arm * joint_velocities[0];
             let qd2_w2_y_arm = joint_velocities[1] * w2_y_arm;
             let wd2_x_arm = minus_u2_yz_arm + qd2_w2_y_arm;
-            let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
+            let zz_2R = base_parameters[4];
+            let zz_2R_plus_d3_d3_m_4R = zz_2R + d3_d3_m_4R;
             let w2_x_arm = s2_arm * joint_velocities[0];
             let qd2_w2_x_arm = joint_velocities[1] * w2_x_arm;
             let u2_xz_arm = c2_arm * joint_accelerations[0];
             let wd2_y_arm = u2_xz_arm - qd2_w2_x_arm;
             let u2_zx_arm = qd2_w2_x_arm - wd2_y_arm;
+            let xy_2 = base_parameters[31];
             let w2_x_w2_y_arm = w2_x_arm * w2_y_arm;
             let u2_yx_arm = w2_x_w2_y_arm + joint_accelerations[1];
+            let xz_2R = base_parameters[28];
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let yz_2 = base_parameters[30];
             let t1_arm = qd2_w2_y_arm * zz_2R_plus_d3_d3_m_4R
-                - wd2_x_arm * yy_2R_plus_d3_d3_m_4R - base_parameters[31] * u2_zx_arm
-                + base_parameters[28] * u2_yx_arm
-                + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm);
+                - wd2_x_arm * yy_2R_plus_d3_d3_m_4R - xy_2 * u2_zx_arm
+                + xz_2R * u2_yx_arm + yz_2 * (w2_y_squared_arm - rate_2_squared_arm);
             let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
             let wd3_x_arm = c3_arm * wd2_x_arm + s3_arm * wd2_y_arm
                 + joint_velocities[2] * w3_y_arm;
-            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
+            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - yy_3R;
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let w3_y_w3_z_arm = w3_y_arm * w3_z_arm;
-            let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
+            let zz_3R = base_parameters[24];
+            let zz_3R_plus_d3_d3_m_4R = zz_3R + d3_d3_m_4R;
             let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
             let w3_x_w3_z_arm = w3_x_arm * w3_z_arm;
             let wd3_y_arm = c3_arm * wd2_y_arm - s3_arm * wd2_x_arm
                 - joint_velocities[2] * w3_x_arm;
             let u3_zx_arm = w3_x_w3_z_arm - wd3_y_arm;
+            let xy_3 = base_parameters[32];
             let w3_x_w3_y_arm = w3_x_arm * w3_y_arm;
             let wd3_z_arm = joint_accelerations[1] + joint_accelerations[2];
             let u3_yx_arm = w3_x_w3_y_arm + wd3_z_arm;
+            let xz_3 = base_parameters[33];
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let yz_3 = base_parameters[34];
             let t2_arm = wd3_x_arm * d3_d3_m_4R_minus_yy_3R
-                + w3_y_w3_z_arm * zz_3R_plus_d3_d3_m_4R
-                - base_parameters[32] * u3_zx_arm + base_parameters[33] * u3_yx_arm
-                + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm);
+                + w3_y_w3_z_arm * zz_3R_plus_d3_d3_m_4R - xy_3 * u3_zx_arm
+                + xz_3 * u3_yx_arm + yz_3 * (w3_y_squared_arm - w3_z_squared_arm);
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let wd4_x_arm = c4_arm * wd3_x_arm - s4_arm * wd3_z_arm
                 - joint_velocities[3] * minus_w4_y_arm;
+            let xx_4R = base_parameters[37];
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let zz_4R = base_parameters[36];
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let minus_wd4_y_arm = s4_arm * wd3_x_arm + c4_arm * wd3_z_arm
                 + joint_velocities[3] * w4_x_arm;
             let u4_zx_arm = w4_x_w4_z_arm + minus_wd4_y_arm;
+            let xy_4 = base_parameters[40];
             let wd4_z_arm = wd3_y_arm + joint_accelerations[3];
             let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
             let u4_yx_arm = wd4_z_arm - minus_w4_x_w4_y_arm;
+            let xz_4 = base_parameters[39];
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
             let minus_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let w4_z_squared_arm = w4_z_arm * w4_z_arm;
             let minus_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-            let t3_arm = base_parameters[37] * wd4_x_arm
-                - base_parameters[36] * minus_w4_y_w4_z_arm
-                - base_parameters[40] * u4_zx_arm + base_parameters[39] * u4_yx_arm
-                + base_parameters[38] * (minus_u3_yy_arm - minus_u4_yy_arm);
+            let yz_4 = base_parameters[38];
+            let t3_arm = xx_4R * wd4_x_arm - zz_4R * minus_w4_y_w4_z_arm
+                - xy_4 * u4_zx_arm + xz_4 * u4_yx_arm
+                + yz_4 * (minus_u3_yy_arm - minus_u4_yy_arm);
             let a2_y_arm = 9.81 * c2_arm;
             let a2_y_plus_d3_u2_yx_arm = a2_y_arm + D3 * u2_yx_arm;
             let a2_x_arm = 9.81 * s2_arm;
@@ -2030,26 +2081,30 @@ impl Rx90 {
             let a3_y_arm = c3_arm * a2_y_plus_d3_u2_yx_arm
                 - s3_arm * a2_x_plus_d3_u2_xx_arm;
             let a4_z_arm = a3_y_arm - D3 * minus_u3_yy_arm;
+            let my_4R = base_parameters[44];
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let wd5_x_arm = c5_arm * wd4_x_arm + s5_arm * wd4_z_arm
                 + joint_velocities[4] * w5_y_arm;
+            let xx_5R = base_parameters[43];
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let zz_5R = base_parameters[42];
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let wd5_y_arm = c5_arm * wd4_z_arm - s5_arm * wd4_x_arm
                 - joint_velocities[4] * w5_x_arm;
             let u5_zx_arm = w5_x_w5_z_arm - wd5_y_arm;
+            let xy_5 = base_parameters[45];
             let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
             let wd5_z_arm = minus_wd4_y_arm + joint_accelerations[4];
             let u5_yx_arm = w5_x_w5_y_arm + wd5_z_arm;
+            let xz_5 = base_parameters[46];
             let w5_x_squared_arm = w5_x_arm * w5_x_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
             let minus_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-            let t4_arm = base_parameters[43] * wd5_x_arm
-                + base_parameters[42] * w5_y_w5_z_arm
-                - base_parameters[45] * u5_zx_arm + base_parameters[46] * u5_yx_arm
-                + base_parameters[47] * (minus_u4_yy_arm - minus_u5_yy_arm);
+            let yz_5 = base_parameters[47];
+            let t4_arm = xx_5R * wd5_x_arm + zz_5R * w5_y_w5_z_arm - xy_5 * u5_zx_arm
+                + xz_5 * u5_yx_arm + yz_5 * (minus_u4_yy_arm - minus_u5_yy_arm);
             let a3_x_arm = c3_arm * a2_x_plus_d3_u2_xx_arm
                 + s3_arm * a2_y_plus_d3_u2_yx_arm;
             let u3_xy_arm = w3_x_w3_y_arm - wd3_z_arm;
@@ -2057,120 +2112,108 @@ impl Rx90 {
             let u3_zy_arm = w3_y_w3_z_arm + wd3_x_arm;
             let t5_arm = D3 * (u2_zx_arm + u3_zy_arm);
             let a5_z_arm = s4_arm * a3_x_plus_d3_u3_xy_arm + c4_arm * t5_arm;
+            let my_5R = base_parameters[50];
             let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
             let wd6_x_arm = c6_arm * wd5_x_arm - s6_arm * wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
+            let xx_6R = base_parameters[49];
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let zz_6 = base_parameters[48];
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_wd6_y_arm = s6_arm * wd5_x_arm + c6_arm * wd5_z_arm
                 + joint_velocities[5] * w6_x_arm;
             let u6_zx_arm = w6_x_w6_z_arm + minus_wd6_y_arm;
+            let xy_6 = base_parameters[54];
             let wd6_z_arm = wd5_y_arm + joint_accelerations[5];
             let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
             let u6_yx_arm = wd6_z_arm - minus_w6_x_w6_y_arm;
+            let xz_6 = base_parameters[52];
             let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
             let t6_arm = w6_y_squared_arm - w6_z_squared_arm;
+            let yz_6 = base_parameters[53];
             let a4_x_arm = c4_arm * a3_x_plus_d3_u3_xy_arm - s4_arm * t5_arm;
             let a5_y_arm = c5_arm * a4_z_arm - s5_arm * a4_x_arm;
-            let moment6_x_arm = base_parameters[49] * wd6_x_arm
-                - base_parameters[48] * minus_w6_y_w6_z_arm
-                - base_parameters[54] * u6_zx_arm + base_parameters[52] * u6_yx_arm
-                + base_parameters[53] * t6_arm + base_parameters[57] * a5_y_arm;
+            let my_6 = base_parameters[57];
+            let moment6_x_arm = xx_6R * wd6_x_arm - zz_6 * minus_w6_y_w6_z_arm
+                - xy_6 * u6_zx_arm + xz_6 * u6_yx_arm + yz_6 * t6_arm
+                + my_6 * a5_y_arm;
             let u6_zy_arm = wd6_x_arm - minus_w6_y_w6_z_arm;
             let minus_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
             let minus_u6_xy_arm = minus_w6_x_w6_y_arm + wd6_z_arm;
-            let moment6_y_arm = w6_x_w6_z_arm
-                * (base_parameters[49] - base_parameters[48])
-                + base_parameters[54] * u6_zy_arm
-                + base_parameters[52] * (minus_u6_xx_arm - minus_u5_yy_arm)
-                + base_parameters[53] * minus_u6_xy_arm
-                - base_parameters[56] * a5_y_arm;
-            let moment5_x_arm = t4_arm + base_parameters[50] * a5_z_arm
-                + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
+            let mx_6 = base_parameters[56];
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6R - zz_6) + xy_6 * u6_zy_arm
+                + xz_6 * (minus_u6_xx_arm - minus_u5_yy_arm) + yz_6 * minus_u6_xy_arm
+                - mx_6 * a5_y_arm;
+            let moment5_x_arm = t4_arm + my_5R * a5_z_arm + c6_arm * moment6_x_arm
+                - s6_arm * moment6_y_arm;
             let u5_zy_arm = w5_y_w5_z_arm + wd5_x_arm;
             let t7_arm = w5_z_squared_arm - w5_x_squared_arm;
             let u5_xy_arm = w5_x_w5_y_arm - wd5_z_arm;
-            let t8_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
-                + base_parameters[45] * u5_zy_arm + base_parameters[46] * t7_arm
-                - base_parameters[47] * u5_xy_arm - base_parameters[55] * a5_z_arm;
+            let mx_5 = base_parameters[55];
+            let t8_arm = w5_x_w5_z_arm * (xx_5R - zz_5R) + xy_5 * u5_zy_arm
+                + xz_5 * t7_arm - yz_5 * u5_xy_arm - mx_5 * a5_z_arm;
             let minus_u6_yy_arm = minus_u5_yy_arm - t6_arm;
             let minus_u6_yz_arm = minus_w6_y_w6_z_arm + wd6_x_arm;
             let u6_xz_arm = w6_x_w6_z_arm - minus_wd6_y_arm;
-            let t9_arm = base_parameters[48] * wd6_z_arm
-                + base_parameters[49] * minus_w6_x_w6_y_arm
-                + base_parameters[54] * (minus_u6_yy_arm - minus_u6_xx_arm)
-                + base_parameters[52] * minus_u6_yz_arm
-                + base_parameters[53] * u6_xz_arm;
+            let t9_arm = zz_6 * wd6_z_arm + xx_6R * minus_w6_x_w6_y_arm
+                + xy_6 * (minus_u6_yy_arm - minus_u6_xx_arm) + xz_6 * minus_u6_yz_arm
+                + yz_6 * u6_xz_arm;
             let a5_x_arm = c5_arm * a4_x_arm + s5_arm * a4_z_arm;
             let minus_a6_y_arm = s6_arm * a5_x_arm + c6_arm * a5_z_arm;
             let a6_x_arm = c6_arm * a5_x_arm - s6_arm * a5_z_arm;
-            let moment6_z_arm = t9_arm
-                - (base_parameters[56] * minus_a6_y_arm
-                    + base_parameters[57] * a6_x_arm);
+            let moment6_z_arm = t9_arm - (mx_6 * minus_a6_y_arm + my_6 * a6_x_arm);
             let moment5_y_arm = t8_arm + moment6_z_arm;
-            let moment4_x_arm = t3_arm + base_parameters[44] * a4_z_arm
-                + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
+            let moment4_x_arm = t3_arm + my_4R * a4_z_arm + c5_arm * moment5_x_arm
+                - s5_arm * moment5_y_arm;
             let u4_zy_arm = wd4_x_arm - minus_w4_y_w4_z_arm;
             let t10_arm = w4_z_squared_arm - w4_x_squared_arm;
             let minus_u4_xy_arm = minus_w4_x_w4_y_arm + wd4_z_arm;
-            let t11_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
-                + base_parameters[40] * u4_zy_arm + base_parameters[39] * t10_arm
-                + base_parameters[38] * minus_u4_xy_arm
-                - base_parameters[51] * a4_z_arm;
+            let mx_4 = base_parameters[51];
+            let t11_arm = w4_x_w4_z_arm * (xx_4R - zz_4R) + xy_4 * u4_zy_arm
+                + xz_4 * t10_arm + yz_4 * minus_u4_xy_arm - mx_4 * a4_z_arm;
             let minus_u5_xx_arm = t7_arm + minus_u4_yy_arm;
             let u5_yz_arm = w5_y_w5_z_arm - wd5_x_arm;
             let u5_xz_arm = w5_x_w5_z_arm + wd5_y_arm;
-            let t12_arm = base_parameters[42] * wd5_z_arm
-                - base_parameters[43] * w5_x_w5_y_arm
-                + base_parameters[45] * (minus_u5_yy_arm - minus_u5_xx_arm)
-                - base_parameters[46] * u5_yz_arm + base_parameters[47] * u5_xz_arm;
-            let moment5_z_arm = t12_arm + base_parameters[55] * a5_y_arm
-                - base_parameters[50] * a5_x_arm
+            let t12_arm = zz_5R * wd5_z_arm - xx_5R * w5_x_w5_y_arm
+                + xy_5 * (minus_u5_yy_arm - minus_u5_xx_arm) - xz_5 * u5_yz_arm
+                + yz_5 * u5_xz_arm;
+            let moment5_z_arm = t12_arm + mx_5 * a5_y_arm - my_5R * a5_x_arm
                 - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
             let moment4_y_arm = t11_arm - moment5_z_arm;
-            let minus_force6_x_arm = base_parameters[56] * minus_u6_xx_arm
-                + base_parameters[57] * minus_u6_xy_arm;
-            let force6_y_arm = base_parameters[56] * u6_yx_arm
-                - base_parameters[57] * minus_u6_yy_arm;
-            let force5_x_arm = base_parameters[50] * u5_xy_arm
-                - base_parameters[55] * minus_u5_xx_arm
+            let minus_force6_x_arm = mx_6 * minus_u6_xx_arm + my_6 * minus_u6_xy_arm;
+            let force6_y_arm = mx_6 * u6_yx_arm - my_6 * minus_u6_yy_arm;
+            let force5_x_arm = my_5R * u5_xy_arm - mx_5 * minus_u5_xx_arm
                 - (c6_arm * minus_force6_x_arm + s6_arm * force6_y_arm);
-            let force6_z_arm = base_parameters[56] * u6_zx_arm
-                + base_parameters[57] * u6_zy_arm;
-            let force5_y_arm = base_parameters[55] * u5_yx_arm
-                - base_parameters[50] * minus_u5_yy_arm + force6_z_arm;
+            let force6_z_arm = mx_6 * u6_zx_arm + my_6 * u6_zy_arm;
+            let force5_y_arm = mx_5 * u5_yx_arm - my_5R * minus_u5_yy_arm
+                + force6_z_arm;
             let minus_u4_xx_arm = minus_u3_yy_arm + t10_arm;
             let force4_x_arm = c5_arm * force5_x_arm - s5_arm * force5_y_arm
-                - (base_parameters[51] * minus_u4_xx_arm
-                    + base_parameters[44] * minus_u4_xy_arm);
-            let force5_z_arm = base_parameters[55] * u5_zx_arm
-                + base_parameters[50] * u5_zy_arm
+                - (mx_4 * minus_u4_xx_arm + my_4R * minus_u4_xy_arm);
+            let force5_z_arm = mx_5 * u5_zx_arm + my_5R * u5_zy_arm
                 - (c6_arm * force6_y_arm - s6_arm * minus_force6_x_arm);
-            let force4_y_arm = base_parameters[51] * u4_yx_arm
-                - base_parameters[44] * minus_u4_yy_arm - force5_z_arm;
+            let force4_y_arm = mx_4 * u4_yx_arm - my_4R * minus_u4_yy_arm
+                - force5_z_arm;
             let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
                 + c4_arm * force4_y_arm;
             let moment3_x_arm = t2_arm + d3_d3_m_4R * u2_zx_arm
                 + c4_arm * moment4_x_arm - s4_arm * moment4_y_arm
                 - D3 * s4_force4_x_plus_c4_force4_y_arm;
             let a3_z_arm = D3 * u2_zx_arm;
+            let mx_3 = base_parameters[41];
             let t13_arm = w3_x_w3_z_arm
-                * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
-                + base_parameters[32] * u3_zy_arm
-                + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
-                - base_parameters[34] * u3_xy_arm - base_parameters[41] * a3_z_arm;
+                * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R) + xy_3 * u3_zy_arm
+                + xz_3 * (w3_z_squared_arm - w3_x_squared_arm) - yz_3 * u3_xy_arm
+                - mx_3 * a3_z_arm;
             let minus_u4_yz_arm = minus_w4_y_w4_z_arm + wd4_x_arm;
             let u4_xz_arm = w4_x_w4_z_arm - minus_wd4_y_arm;
-            let t14_arm = base_parameters[36] * wd4_z_arm
-                + base_parameters[37] * minus_w4_x_w4_y_arm
-                + base_parameters[40] * (minus_u4_yy_arm - minus_u4_xx_arm)
-                + base_parameters[39] * minus_u4_yz_arm
-                + base_parameters[38] * u4_xz_arm;
-            let moment4_z_arm = t14_arm
-                - (base_parameters[51] * a5_z_arm + base_parameters[44] * a4_x_arm)
+            let t14_arm = zz_4R * wd4_z_arm + xx_4R * minus_w4_x_w4_y_arm
+                + xy_4 * (minus_u4_yy_arm - minus_u4_xx_arm) + xz_4 * minus_u4_yz_arm
+                + yz_4 * u4_xz_arm;
+            let moment4_z_arm = t14_arm - (mx_4 * a5_z_arm + my_4R * a4_x_arm)
                 + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
             let moment3_y_arm = t13_arm + moment4_z_arm;
             let moment2_x_arm = t1_arm + c3_arm * moment3_x_arm
@@ -2178,86 +2221,88 @@ impl Rx90 {
             let u2_zy_arm = qd2_w2_y_arm + wd2_x_arm;
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
             let u2_xy_arm = w2_x_w2_y_arm - joint_accelerations[1];
-            let force3_z_arm = base_parameters[41] * u3_zx_arm + u3_zy_arm * d3_m_4R
+            let force3_z_arm = mx_3 * u3_zx_arm + u3_zy_arm * d3_m_4R
                 - s4_force4_x_plus_c4_force4_y_arm;
-            let moment2_y_arm = base_parameters[31] * u2_zy_arm
+            let moment2_y_arm = xy_2 * u2_zy_arm
                 - qd2_w2_x_arm * (yy_2R_plus_d3_d3_m_4R + zz_2R_plus_d3_d3_m_4R)
-                + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
-                - base_parameters[30] * u2_xy_arm + s3_arm * moment3_x_arm
-                + c3_arm * moment3_y_arm - D3 * force3_z_arm;
+                + xz_2R * (rate_2_squared_arm - w2_x_squared_arm) - yz_2 * u2_xy_arm
+                + s3_arm * moment3_x_arm + c3_arm * moment3_y_arm
+                - D3 * force3_z_arm;
             let moment1_z_arm = joint_accelerations[0]
-                * (base_parameters[0] + base_parameters[29] + yy_2R_plus_d3_d3_m_4R)
-                + s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-            let tau_1_arm = joint_velocities[0] * base_parameters[1]
-                + ::overact::math::wide::signed(
-                    base_parameters[2],
-                    joint_velocities[0],
-                ) + base_parameters[3];
+                * (zz_1R + yy_3R + yy_2R_plus_d3_d3_m_4R) + s2_arm * moment2_x_arm
+                + c2_arm * moment2_y_arm;
+            let fv_1 = base_parameters[1];
+            let fs_1 = base_parameters[2];
+            let off_1 = base_parameters[3];
+            let tau_1_arm = joint_velocities[0] * fv_1
+                + math::wide::signed(fs_1, joint_velocities[0]) + off_1;
             let force_on_u1_arm = moment1_z_arm + tau_1_arm;
             let t15_arm = joint_accelerations[1] * zz_2R_plus_d3_d3_m_4R
                 + w2_x_w2_y_arm * yy_2R_plus_d3_d3_m_4R
-                + base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
-                + base_parameters[28] * minus_u2_yz_arm
-                + base_parameters[30] * u2_xz_arm;
+                + xy_2 * (w2_x_squared_arm - w2_y_squared_arm)
+                + xz_2R * minus_u2_yz_arm + yz_2 * u2_xz_arm;
+            let mx_2R = base_parameters[25];
+            let my_2 = base_parameters[26];
             let minus_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
             let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
                 - s4_arm * force4_y_arm;
-            let force3_x_arm = u3_xy_arm * d3_m_4R
-                - base_parameters[41] * minus_u3_xx_arm
+            let force3_x_arm = u3_xy_arm * d3_m_4R - mx_3 * minus_u3_xx_arm
                 + c4_force4_x_minus_s4_force4_y_arm;
-            let force4_z_arm = base_parameters[51] * u4_zx_arm
-                + base_parameters[44] * u4_zy_arm + s5_arm * force5_x_arm
-                + c5_arm * force5_y_arm;
-            let force3_y_arm = base_parameters[41] * u3_yx_arm
-                - minus_u3_yy_arm * d3_m_4R + force4_z_arm;
-            let t16_arm = t15_arm + a2_y_arm * (base_parameters[25] + d3_m_4R)
-                - base_parameters[26] * a2_x_arm
+            let force4_z_arm = mx_4 * u4_zx_arm + my_4R * u4_zy_arm
+                + s5_arm * force5_x_arm + c5_arm * force5_y_arm;
+            let force3_y_arm = mx_3 * u3_yx_arm - minus_u3_yy_arm * d3_m_4R
+                + force4_z_arm;
+            let t16_arm = t15_arm + a2_y_arm * (mx_2R + d3_m_4R) - my_2 * a2_x_arm
                 + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
             let u3_yz_arm = w3_y_w3_z_arm - wd3_x_arm;
             let u3_xz_arm = w3_x_w3_z_arm + wd3_y_arm;
             let t17_arm = wd3_z_arm * zz_3R_plus_d3_d3_m_4R
                 - w3_x_w3_y_arm * d3_d3_m_4R_minus_yy_3R
-                + base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-                - base_parameters[33] * u3_yz_arm + base_parameters[34] * u3_xz_arm;
-            let moment3_z_arm = t17_arm + base_parameters[41] * a3_y_arm
-                - a3_x_arm * d3_m_4R - D3 * c4_force4_x_minus_s4_force4_y_arm
+                + xy_3 * (w3_x_squared_arm - w3_y_squared_arm) - xz_3 * u3_yz_arm
+                + yz_3 * u3_xz_arm;
+            let moment3_z_arm = t17_arm + mx_3 * a3_y_arm - a3_x_arm * d3_m_4R
+                - D3 * c4_force4_x_minus_s4_force4_y_arm
                 - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
             let moment2_z_arm = t16_arm + moment3_z_arm;
-            let tau_2_arm = joint_velocities[1] * base_parameters[5]
-                + ::overact::math::wide::signed(
-                    base_parameters[6],
-                    joint_velocities[1],
-                ) + base_parameters[7];
+            let fv_2 = base_parameters[5];
+            let fs_2 = base_parameters[6];
+            let off_2 = base_parameters[7];
+            let tau_2_arm = joint_velocities[1] * fv_2
+                + math::wide::signed(fs_2, joint_velocities[1]) + off_2;
             let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-            let tau_3_arm = joint_accelerations[2] * base_parameters[8]
-                + joint_velocities[2] * base_parameters[9]
-                + ::overact::math::wide::signed(
-                    base_parameters[10],
-                    joint_velocities[2],
-                ) + base_parameters[11];
+            let ia_3 = base_parameters[8];
+            let fv_3 = base_parameters[9];
+            let fs_3 = base_parameters[10];
+            let off_3 = base_parameters[11];
+            let tau_3_arm = joint_accelerations[2] * ia_3
+                + joint_velocities[2] * fv_3
+                + math::wide::signed(fs_3, joint_velocities[2]) + off_3;
             let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-            let tau_4_arm = joint_accelerations[3] * base_parameters[12]
-                + joint_velocities[3] * base_parameters[13]
-                + ::overact::math::wide::signed(
-                    base_parameters[14],
-                    joint_velocities[3],
-                ) + base_parameters[15];
+            let ia_4 = base_parameters[12];
+            let fv_4 = base_parameters[13];
+            let fs_4 = base_parameters[14];
+            let off_4 = base_parameters[15];
+            let tau_4_arm = joint_accelerations[3] * ia_4
+                + joint_velocities[3] * fv_4
+                + math::wide::signed(fs_4, joint_velocities[3]) + off_4;
             let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-            let tau_5_arm = joint_accelerations[4] * base_parameters[16]
-                + joint_velocities[4] * base_parameters[17]
-                + ::overact::math::wide::signed(
-                    base_parameters[18],
-                    joint_velocities[4],
-                ) + base_parameters[19];
+            let ia_5 = base_parameters[16];
+            let fv_5 = base_parameters[17];
+            let fs_5 = base_parameters[18];
+            let off_5 = base_parameters[19];
+            let tau_5_arm = joint_accelerations[4] * ia_5
+                + joint_velocities[4] * fv_5
+                + math::wide::signed(fs_5, joint_velocities[4]) + off_5;
             let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-            let tau_6_arm = joint_accelerations[5] * base_parameters[20]
-                + joint_velocities[5] * base_parameters[21]
-                + ::overact::math::wide::signed(
-                    base_parameters[22],
-                    joint_velocities[5],
-                ) + base_parameters[23];
+            let ia_6 = base_parameters[20];
+            let fv_6 = base_parameters[21];
+            let fs_6 = base_parameters[22];
+            let off_6 = base_parameters[23];
+            let tau_6_arm = joint_accelerations[5] * ia_6
+                + joint_velocities[5] * fv_6
+                + math::wide::signed(fs_6, joint_velocities[5]) + off_6;
             let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-            ::core::result::Result::Ok([
+            Ok([
                 force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
                 force_on_u6_arm,
             ])
@@ -2274,114 +2319,150 @@ impl Rx90 {
     /// 244 operations (126 additions, 118 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 233 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn mass_matrix(
-        joints: &[::core::primitive::f64; 6],
-        parameters: &[::core::primitive::f64; 73],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::within(
-            &[("joints", joints, 1e12), ("parameters", parameters, 1e12)],
-        )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        joints: &[f64; 6],
+        parameters: &[f64; 73],
+    ) -> Result<[[f64; 6]; 6], Error> {
+        guard::within(&[("joints", joints, 1e12), ("parameters", parameters, 1e12)])?;
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             // --- sines and cosines
             let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm),
-            (s4_arm, c4_arm), (s2_arm, c2_arm)] = ::overact::math::wide::sin_cos_all([
+            (s4_arm, c4_arm), (s2_arm, c2_arm)] = math::wide::sin_cos_all([
                 joints[4], joints[5], joints[2], joints[3], joints[1],
             ]);
             // --- arm
-            let inertia5_yy_arm = parameters[48] + parameters[64];
-            let t1_arm = s6_arm * (parameters[59] - parameters[62])
-                + c6_arm * (2.0 * parameters[60]);
+            let yy_5 = parameters[48];
+            let zz_6 = parameters[64];
+            let inertia5_yy_arm = yy_5 + zz_6;
+            let xx_6 = parameters[59];
+            let yy_6 = parameters[62];
+            let xy_6 = parameters[60];
+            let t1_arm = s6_arm * (xx_6 - yy_6) + c6_arm * (2.0 * xy_6);
             let t2_arm = s6_arm * t1_arm;
-            let inertia5_xx_arm = parameters[45] + parameters[59] - t2_arm;
-            let moment5_x_by_6_arm = c6_arm * parameters[61]
-                - s6_arm * parameters[63];
-            let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
+            let xx_5 = parameters[45];
+            let inertia5_xx_arm = xx_5 + xx_6 - t2_arm;
+            let xz_6 = parameters[61];
+            let yz_6 = parameters[63];
+            let moment5_x_by_6_arm = c6_arm * xz_6 - s6_arm * yz_6;
+            let xy_5 = parameters[46];
+            let inertia5_xy_arm = xy_5 + moment5_x_by_6_arm;
             let t3_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
                 + c5_arm * (2.0 * inertia5_xy_arm);
             let t4_arm = s5_arm * t3_arm;
-            let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t4_arm;
-            let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
-            let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t4_arm;
-            let inertia5_zz_arm = parameters[50] + parameters[62] + t2_arm;
-            let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
-            let inertia5_xz_arm = parameters[47]
-                - (c6_arm * t1_arm - parameters[60]);
-            let minus_moment5_z_by_6_arm = s6_arm * parameters[61]
-                + c6_arm * parameters[63];
-            let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
+            let zz_4 = parameters[36];
+            let inertia4_zz_arm = zz_4 + inertia5_yy_arm + t4_arm;
+            let yy_3 = parameters[20];
+            let inertia3_yy_arm = yy_3 + inertia4_zz_arm;
+            let xx_4 = parameters[31];
+            let inertia4_xx_arm = xx_4 + inertia5_xx_arm - t4_arm;
+            let zz_5 = parameters[50];
+            let inertia5_zz_arm = zz_5 + yy_6 + t2_arm;
+            let yy_4 = parameters[34];
+            let inertia4_yy_arm = yy_4 + inertia5_zz_arm;
+            let xz_5 = parameters[47];
+            let inertia5_xz_arm = xz_5 - (c6_arm * t1_arm - xy_6);
+            let minus_moment5_z_by_6_arm = s6_arm * xz_6 + c6_arm * yz_6;
+            let yz_5 = parameters[49];
+            let inertia5_yz_arm = yz_5 - minus_moment5_z_by_6_arm;
             let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
                 - s5_arm * inertia5_yz_arm;
-            let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
+            let xy_4 = parameters[32];
+            let inertia4_xy_arm = xy_4 - moment4_x_by_5_arm;
             let t5_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
                 + c4_arm * (2.0 * inertia4_xy_arm);
             let t6_arm = s4_arm * t5_arm;
-            let minus_force5_z_by_6_arm = c6_arm * parameters[65]
-                - s6_arm * parameters[66];
-            let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
-            let first5_y_arm = parameters[52] + parameters[67];
+            let xx_3 = parameters[17];
+            let mx_6 = parameters[65];
+            let my_6 = parameters[66];
+            let minus_force5_z_by_6_arm = c6_arm * mx_6 - s6_arm * my_6;
+            let mx_5 = parameters[51];
+            let first5_x_arm = mx_5 + minus_force5_z_by_6_arm;
+            let my_5 = parameters[52];
+            let mz_6 = parameters[67];
+            let first5_y_arm = my_5 + mz_6;
             let minus_force4_x_by_5_arm = s5_arm * first5_x_arm
                 + c5_arm * first5_y_arm;
-            let first4_z_arm = parameters[39] + minus_force4_x_by_5_arm;
-            let mass5_arm = parameters[54] + parameters[68];
-            let mass4_arm = parameters[40] + mass5_arm;
+            let mz_4 = parameters[39];
+            let first4_z_arm = mz_4 + minus_force4_x_by_5_arm;
+            let m_5 = parameters[54];
+            let m_6 = parameters[68];
+            let mass5_arm = m_5 + m_6;
+            let m_4 = parameters[40];
+            let mass4_arm = m_4 + mass5_arm;
             let first4_z_plus_d3_mass4_arm = first4_z_arm + D3 * mass4_arm;
             let t7_arm = D3 * (first4_z_arm + first4_z_plus_d3_mass4_arm);
-            let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t6_arm + t7_arm;
-            let inertia4_xz_arm = parameters[33] + c5_arm * t3_arm - inertia5_xy_arm;
+            let inertia3_xx_arm = xx_3 + inertia4_xx_arm - t6_arm + t7_arm;
+            let xz_4 = parameters[33];
+            let inertia4_xz_arm = xz_4 + c5_arm * t3_arm - inertia5_xy_arm;
             let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
                 + c5_arm * inertia5_yz_arm;
-            let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
+            let yz_4 = parameters[35];
+            let inertia4_yz_arm = yz_4 - moment4_z_by_5_arm;
             let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
-            let first4_x_arm = parameters[37] + force4_z_by_5_arm;
-            let minus_force5_x_by_6_arm = s6_arm * parameters[65]
-                + c6_arm * parameters[66];
-            let first5_z_arm = parameters[53] - minus_force5_x_by_6_arm;
-            let first4_y_arm = parameters[38] - first5_z_arm;
+            let mx_4 = parameters[37];
+            let first4_x_arm = mx_4 + force4_z_by_5_arm;
+            let minus_force5_x_by_6_arm = s6_arm * mx_6 + c6_arm * my_6;
+            let mz_5 = parameters[53];
+            let first5_z_arm = mz_5 - minus_force5_x_by_6_arm;
+            let my_4 = parameters[38];
+            let first4_y_arm = my_4 - first5_z_arm;
             let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
                 - s4_arm * first4_y_arm;
             let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
             let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
                 - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
-            let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
+            let xy_3 = parameters[18];
+            let inertia3_xy_arm = xy_3 + moment3_x_by_4_arm;
             let t8_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
                 + c3_arm * (2.0 * inertia3_xy_arm);
             let t9_arm = s3_arm * t8_arm;
-            let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
-            let first3_y_arm = first4_z_plus_d3_mass4_arm + parameters[24];
+            let yy_2 = parameters[8];
+            let mx_3 = parameters[23];
+            let first3_x_arm = mx_3 + minus_force3_z_by_4_arm;
+            let my_3 = parameters[24];
+            let first3_y_arm = first4_z_plus_d3_mass4_arm + my_3;
             let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
-            let mass3_arm = parameters[26] + mass4_arm;
+            let m_3 = parameters[26];
+            let mass3_arm = m_3 + mass4_arm;
             let t10_arm = D3
                 * (force2_y_by_3_arm + force2_y_by_3_arm + D3 * mass3_arm);
-            let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t9_arm + t10_arm;
-            let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t9_arm;
+            let inertia2_yy_arm = yy_2 + inertia3_yy_arm + t9_arm + t10_arm;
+            let xx_2 = parameters[5];
+            let inertia2_xx_arm = xx_2 + inertia3_xx_arm - t9_arm;
+            let xy_2 = parameters[6];
             let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
                 + c3_arm * first3_y_arm;
-            let inertia2_xy_arm = parameters[6] + c3_arm * t8_arm - inertia3_xy_arm
+            let inertia2_xy_arm = xy_2 + c3_arm * t8_arm - inertia3_xy_arm
                 - D3 * minus_force2_x_by_3_arm;
-            let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
+            let zz_1 = parameters[0];
+            let inertia1_zz_arm = zz_1 + inertia2_yy_arm
                 + s2_arm
                     * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
                         + c2_arm * (2.0 * inertia2_xy_arm));
-            let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
-            let inertia3_xz_arm = parameters[19]
-                - (c4_arm * t5_arm - inertia4_xy_arm);
+            let ia_1 = parameters[1];
+            let masses_arm_1_1 = inertia1_zz_arm + ia_1;
+            let xz_3 = parameters[19];
+            let inertia3_xz_arm = xz_3 - (c4_arm * t5_arm - inertia4_xy_arm);
             let minus_force3_x_by_4_arm = s4_arm * first4_x_arm
                 + c4_arm * first4_y_arm;
             let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
             let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
                 - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-            let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
+            let yz_3 = parameters[21];
+            let inertia3_yz_arm = yz_3 + moment3_z_by_4_arm;
             let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
                 - s3_arm * inertia3_yz_arm;
-            let first3_z_arm = parameters[25] - minus_force3_x_by_4_arm;
-            let inertia2_xz_arm = parameters[7] + moment2_x_by_3_arm
-                - D3 * first3_z_arm;
+            let xz_2 = parameters[7];
+            let mz_3 = parameters[25];
+            let first3_z_arm = mz_3 - minus_force3_x_by_4_arm;
+            let inertia2_xz_arm = xz_2 + moment2_x_by_3_arm - D3 * first3_z_arm;
             let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
                 + c3_arm * inertia3_yz_arm;
-            let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
+            let yz_2 = parameters[9];
+            let inertia2_yz_arm = yz_2 + moment2_y_by_3_arm;
             let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
                 + c2_arm * inertia2_yz_arm;
             let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
@@ -2402,25 +2483,26 @@ impl Rx90 {
                 + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
             let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
                 + c2_arm * moment2_y_by_5_arm;
-            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
-                - s5_arm * parameters[64];
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * zz_6;
             let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
             let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
                 - s4_arm * minus_force4_x_by_6_arm;
             let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
             let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
                 - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
-                + c5_arm * parameters[64];
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * zz_6;
             let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
                 - s3_arm * moment4_z_by_6_arm;
             let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
                 + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
             let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
                 + c2_arm * moment2_y_by_6_arm;
-            let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t6_arm + t7_arm;
-            let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t10_arm;
-            let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
+            let zz_3 = parameters[22];
+            let inertia3_zz_arm = zz_3 + inertia4_yy_arm + t6_arm + t7_arm;
+            let zz_2 = parameters[10];
+            let inertia2_zz_arm = zz_2 + inertia3_zz_arm + t10_arm;
+            let ia_2 = parameters[13];
+            let masses_arm_2_2 = inertia2_zz_arm + ia_2;
             let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
             let moment2_z_by_4_arm = moment3_z_by_4_arm
                 - s3_arm * minus_d3_force3_x_by_4_arm;
@@ -2439,11 +2521,15 @@ impl Rx90 {
                 + c3_arm * minus_force4_z_by_6_arm;
             let moment2_z_by_6_arm = moment3_z_by_6_arm
                 - D3 * minus_force2_y_by_6_arm;
-            let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
-            let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
-            let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
-            let masses_arm_6_6 = parameters[64] + parameters[69];
-            ::core::result::Result::Ok([
+            let ia_3 = parameters[27];
+            let masses_arm_3_3 = inertia3_zz_arm + ia_3;
+            let ia_4 = parameters[41];
+            let masses_arm_4_4 = inertia4_zz_arm + ia_4;
+            let ia_5 = parameters[55];
+            let masses_arm_5_5 = inertia5_zz_arm + ia_5;
+            let ia_6 = parameters[69];
+            let masses_arm_6_6 = zz_6 + ia_6;
+            Ok([
                 [
                     masses_arm_1_1, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
                     moment1_z_by_5_arm, moment1_z_by_6_arm,
@@ -2482,104 +2568,127 @@ impl Rx90 {
     /// 226 operations (110 additions, 116 multiplications, 0 divisions), 5 trigonometric pairs, 2 negations, 215 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn mass_matrix_base(
-        joints: &[::core::primitive::f64; 6],
-        base_parameters: &[::core::primitive::f64; 58],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        base_parameters: &[f64; 58],
+    ) -> Result<[[f64; 6]; 6], Error> {
+        guard::within(
             &[("joints", joints, 1e12), ("base_parameters", base_parameters, 1e12)],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             // --- sines and cosines
             let [(s5_arm, c5_arm), (s6_arm, c6_arm), (s3_arm, c3_arm),
-            (s4_arm, c4_arm), (s2_arm, c2_arm)] = ::overact::math::wide::sin_cos_all([
+            (s4_arm, c4_arm), (s2_arm, c2_arm)] = math::wide::sin_cos_all([
                 joints[4], joints[5], joints[2], joints[3], joints[1],
             ]);
             // --- arm
-            let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
-                + c6_arm * (2.0 * base_parameters[54]);
+            let xx_6R = base_parameters[49];
+            let xy_6 = base_parameters[54];
+            let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * xx_6R
+                + c6_arm * (2.0 * xy_6);
             let t1_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
-            let inertia5_xx_arm = base_parameters[43] + base_parameters[49] - t1_arm;
-            let moment5_x_by_6_arm = c6_arm * base_parameters[52]
-                - s6_arm * base_parameters[53];
-            let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
-            let t2_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
+            let xx_5R = base_parameters[43];
+            let inertia5_xx_arm = xx_5R + xx_6R - t1_arm;
+            let zz_6 = base_parameters[48];
+            let xz_6 = base_parameters[52];
+            let yz_6 = base_parameters[53];
+            let moment5_x_by_6_arm = c6_arm * xz_6 - s6_arm * yz_6;
+            let xy_5 = base_parameters[45];
+            let inertia5_xy_arm = xy_5 + moment5_x_by_6_arm;
+            let t2_arm = s5_arm * (inertia5_xx_arm - zz_6)
                 + c5_arm * (2.0 * inertia5_xy_arm);
             let t3_arm = s5_arm * t2_arm;
-            let inertia4_zz_arm = base_parameters[36] + base_parameters[48] + t3_arm;
-            let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
-            let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t3_arm;
-            let inertia5_zz_arm = base_parameters[42] + t1_arm;
-            let inertia5_xz_arm = base_parameters[46]
-                - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
-            let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
-                + c6_arm * base_parameters[53];
-            let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
+            let zz_4R = base_parameters[36];
+            let inertia4_zz_arm = zz_4R + zz_6 + t3_arm;
+            let yy_3R = base_parameters[29];
+            let inertia3_yy_arm = yy_3R + inertia4_zz_arm;
+            let xx_4R = base_parameters[37];
+            let inertia4_xx_arm = xx_4R + inertia5_xx_arm - t3_arm;
+            let zz_5R = base_parameters[42];
+            let inertia5_zz_arm = zz_5R + t1_arm;
+            let xz_5 = base_parameters[46];
+            let inertia5_xz_arm = xz_5
+                - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - xy_6);
+            let minus_moment5_z_by_6_arm = s6_arm * xz_6 + c6_arm * yz_6;
+            let yz_5 = base_parameters[47];
+            let inertia5_yz_arm = yz_5 - minus_moment5_z_by_6_arm;
             let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
                 - s5_arm * inertia5_yz_arm;
-            let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
+            let xy_4 = base_parameters[40];
+            let inertia4_xy_arm = xy_4 - moment4_x_by_5_arm;
             let t4_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
                 + c4_arm * (2.0 * inertia4_xy_arm);
             let t5_arm = s4_arm * t4_arm;
-            let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
-                - s6_arm * base_parameters[57];
-            let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
-            let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
-            let d3_m_4R = D3 * base_parameters[35];
+            let mx_6 = base_parameters[56];
+            let my_6 = base_parameters[57];
+            let minus_force5_z_by_6_arm = c6_arm * mx_6 - s6_arm * my_6;
+            let mx_5 = base_parameters[55];
+            let first5_x_arm = mx_5 + minus_force5_z_by_6_arm;
+            let my_5R = base_parameters[50];
+            let first4_z_arm = s5_arm * first5_x_arm + c5_arm * my_5R;
+            let m_4R = base_parameters[35];
+            let d3_m_4R = D3 * m_4R;
             let first3_y_arm = first4_z_arm + d3_m_4R;
             let t6_arm = D3 * (first4_z_arm + first3_y_arm);
             let inertia3_xx_arm = inertia4_xx_arm - t5_arm + t6_arm;
-            let inertia4_xz_arm = base_parameters[39] + c5_arm * t2_arm
-                - inertia5_xy_arm;
+            let xz_4 = base_parameters[39];
+            let inertia4_xz_arm = xz_4 + c5_arm * t2_arm - inertia5_xy_arm;
             let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
                 + c5_arm * inertia5_yz_arm;
-            let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
-            let force4_z_by_5_arm = c5_arm * first5_x_arm
-                - s5_arm * base_parameters[50];
-            let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
-            let minus_first5_z_arm = s6_arm * base_parameters[56]
-                + c6_arm * base_parameters[57];
-            let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
+            let yz_4 = base_parameters[38];
+            let inertia4_yz_arm = yz_4 - moment4_z_by_5_arm;
+            let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * my_5R;
+            let mx_4 = base_parameters[51];
+            let first4_x_arm = mx_4 + force4_z_by_5_arm;
+            let minus_first5_z_arm = s6_arm * mx_6 + c6_arm * my_6;
+            let my_4R = base_parameters[44];
+            let first4_y_arm = my_4R + minus_first5_z_arm;
             let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
                 - s4_arm * first4_y_arm;
             let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
             let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
                 - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
-            let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
+            let xy_3 = base_parameters[32];
+            let inertia3_xy_arm = xy_3 + moment3_x_by_4_arm;
             let t7_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
                 + c3_arm * (2.0 * inertia3_xy_arm);
             let t8_arm = s3_arm * t7_arm;
-            let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
+            let yy_2R = base_parameters[27];
+            let mx_3 = base_parameters[41];
+            let first3_x_arm = mx_3 + minus_force3_z_by_4_arm;
             let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
             let t9_arm = D3 * (force2_y_by_3_arm + force2_y_by_3_arm + d3_m_4R);
-            let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t8_arm
-                + t9_arm;
+            let inertia2_yy_arm = yy_2R + inertia3_yy_arm + t8_arm + t9_arm;
             let inertia2_xx_arm = inertia3_xx_arm - t8_arm;
+            let xy_2 = base_parameters[31];
             let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
                 + c3_arm * first3_y_arm;
-            let inertia2_xy_arm = base_parameters[31] + c3_arm * t7_arm
-                - inertia3_xy_arm - D3 * minus_force2_x_by_3_arm;
-            let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
+            let inertia2_xy_arm = xy_2 + c3_arm * t7_arm - inertia3_xy_arm
+                - D3 * minus_force2_x_by_3_arm;
+            let zz_1R = base_parameters[0];
+            let inertia1_zz_arm = zz_1R + inertia2_yy_arm
                 + s2_arm
                     * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
                         + c2_arm * (2.0 * inertia2_xy_arm));
-            let inertia3_xz_arm = base_parameters[33]
-                - (c4_arm * t4_arm - inertia4_xy_arm);
+            let xz_3 = base_parameters[33];
+            let inertia3_xz_arm = xz_3 - (c4_arm * t4_arm - inertia4_xy_arm);
             let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
             let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
             let moment3_z_by_4_arm = minus_d3_first3_z_arm
                 - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-            let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
+            let yz_3 = base_parameters[34];
+            let inertia3_yz_arm = yz_3 + moment3_z_by_4_arm;
             let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
                 - s3_arm * inertia3_yz_arm;
-            let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
-                + minus_d3_first3_z_arm;
+            let xz_2R = base_parameters[28];
+            let inertia2_xz_arm = xz_2R + moment2_x_by_3_arm + minus_d3_first3_z_arm;
             let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
                 + c3_arm * inertia3_yz_arm;
-            let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
+            let yz_2 = base_parameters[30];
+            let inertia2_yz_arm = yz_2 + moment2_y_by_3_arm;
             let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
                 + c2_arm * inertia2_yz_arm;
             let moment1_z_by_3_arm = s2_arm * moment2_x_by_3_arm
@@ -2600,25 +2709,24 @@ impl Rx90 {
                 + c3_arm * moment4_z_by_5_arm - d3_force3_z_by_5_arm;
             let moment1_z_by_5_arm = s2_arm * moment2_x_by_5_arm
                 + c2_arm * moment2_y_by_5_arm;
-            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
-                - s5_arm * base_parameters[48];
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * zz_6;
             let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
             let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
                 - s4_arm * minus_force4_x_by_6_arm;
             let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
             let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
                 - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
-                + c5_arm * base_parameters[48];
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * zz_6;
             let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
                 - s3_arm * moment4_z_by_6_arm;
             let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
                 + c3_arm * moment4_z_by_6_arm + minus_d3_force3_z_by_6_arm;
             let moment1_z_by_6_arm = s2_arm * moment2_x_by_6_arm
                 + c2_arm * moment2_y_by_6_arm;
-            let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t5_arm
-                + t6_arm;
-            let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t9_arm;
+            let zz_3R = base_parameters[24];
+            let inertia3_zz_arm = zz_3R + inertia5_zz_arm + t5_arm + t6_arm;
+            let zz_2R = base_parameters[4];
+            let inertia2_zz_arm = zz_2R + inertia3_zz_arm + t9_arm;
             let moment2_z_by_3_arm = inertia3_zz_arm + D3 * force2_y_by_3_arm;
             let moment2_z_by_4_arm = moment3_z_by_4_arm
                 - s3_arm * minus_d3_first3_z_arm;
@@ -2637,11 +2745,15 @@ impl Rx90 {
                 + c3_arm * minus_force4_z_by_6_arm;
             let moment2_z_by_6_arm = moment3_z_by_6_arm
                 - D3 * minus_force2_y_by_6_arm;
-            let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
-            let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
-            let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
-            let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
-            ::core::result::Result::Ok([
+            let ia_3 = base_parameters[8];
+            let masses_arm_3_3 = inertia3_zz_arm + ia_3;
+            let ia_4 = base_parameters[12];
+            let masses_arm_4_4 = inertia4_zz_arm + ia_4;
+            let ia_5 = base_parameters[16];
+            let masses_arm_5_5 = inertia5_zz_arm + ia_5;
+            let ia_6 = base_parameters[20];
+            let masses_arm_6_6 = zz_6 + ia_6;
+            Ok([
                 [
                     inertia1_zz_arm, minus_inertia1_yz_arm, moment1_z_by_3_arm, moment1_z_by_4_arm,
                     moment1_z_by_5_arm, moment1_z_by_6_arm,
@@ -2681,85 +2793,110 @@ impl Rx90 {
     /// 491 operations (245 additions, 246 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 495 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn bias(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        parameters: &[::core::primitive::f64; 73],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        parameters: &[f64; 73],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             /// d3²
-            const D3_SQUARED: ::core::primitive::f64 = 0.2025;
+            const D3_SQUARED: f64 = 0.2025;
             /// 2 d3
-            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            const TWICE_D3: f64 = 0.9;
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
             // --- arm
             let w2_y_arm = c2_arm * joint_velocities[0];
             let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-            let t1_arm = parameters[40] + parameters[54] + parameters[68];
-            let t2_arm = parameters[26] + t1_arm;
+            let m_5 = parameters[54];
+            let m_6 = parameters[68];
+            let m_4 = parameters[40];
+            let t1_arm = m_4 + m_5 + m_6;
+            let m_3 = parameters[26];
+            let t2_arm = m_3 + t1_arm;
             let t3_arm = D3_SQUARED * t2_arm;
-            let t4_arm = parameters[5] - (parameters[8] + t3_arm);
-            let t5_arm = parameters[10] + t3_arm;
+            let yy_2 = parameters[8];
+            let xx_2 = parameters[5];
+            let t4_arm = xx_2 - (yy_2 + t3_arm);
+            let zz_2 = parameters[10];
+            let t5_arm = zz_2 + t3_arm;
             let w2_x_arm = s2_arm * joint_velocities[0];
             let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-            let twice_xy_2 = parameters[6] + parameters[6];
+            let xy_2 = parameters[6];
+            let twice_xy_2 = xy_2 + xy_2;
             let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
-            let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
+            let mz_3 = parameters[25];
+            let xz_2 = parameters[7];
+            let xz_2_minus_d3_mz_3 = xz_2 - D3 * mz_3;
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let yz_2 = parameters[9];
             let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-            let t6_arm = parameters[39] + D3 * t1_arm;
-            let t7_arm = parameters[34] + D3 * (parameters[39] + t6_arm);
-            let t8_arm = parameters[17] + t7_arm - parameters[20];
-            let t9_arm = parameters[22] + t7_arm;
+            let mz_4 = parameters[39];
+            let t6_arm = mz_4 + D3 * t1_arm;
+            let yy_4 = parameters[34];
+            let t7_arm = yy_4 + D3 * (mz_4 + t6_arm);
+            let xx_3 = parameters[17];
+            let yy_3 = parameters[20];
+            let t8_arm = xx_3 + t7_arm - yy_3;
+            let zz_3 = parameters[22];
+            let t9_arm = zz_3 + t7_arm;
             let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
             let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
             let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let xy_3 = parameters[18];
             let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let xz_3 = parameters[19];
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let yz_3 = parameters[21];
             let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-            let t10_arm = t6_arm + parameters[24];
-            let t11_arm = bias_wd3_x_arm * (t8_arm + t9_arm)
-                - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
-                + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
+            let my_3 = parameters[24];
+            let t10_arm = t6_arm + my_3;
+            let t11_arm = bias_wd3_x_arm * (t8_arm + t9_arm) - xy_3 * bias_u3_zx_arm
+                + xz_3 * bias_u3_xy_arm
+                + yz_3 * (w3_y_squared_arm - w3_z_squared_arm)
                 + bias_a3_z_arm * t10_arm;
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
                 - joint_velocities[3] * minus_w4_y_arm;
-            let t12_arm = parameters[31] + parameters[48] - parameters[34];
+            let xx_4 = parameters[31];
+            let yy_5 = parameters[48];
+            let t12_arm = xx_4 + yy_5 - yy_4;
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-            let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+            let zz_4 = parameters[36];
+            let zz_4_plus_yy_5 = zz_4 + yy_5;
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
                 + joint_velocities[3] * w4_x_arm;
             let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let xy_4 = parameters[32];
             let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
             let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let xz_4 = parameters[33];
             let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
             let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let yz_4 = parameters[35];
             let t13_arm = bias_wd4_x_arm * t12_arm
-                - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
-                - parameters[32] * bias_u4_zx_arm
-                - parameters[33] * minus_bias_u4_yx_arm
-                + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+                - minus_w4_y_w4_z_arm * zz_4_plus_yy_5 - xy_4 * bias_u4_zx_arm
+                - xz_4 * minus_bias_u4_yx_arm
+                + yz_4 * (w4_y_squared_arm - w4_z_squared_arm);
             let bias_a2_y_arm = 9.81 * c2_arm;
             let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
                 + D3 * bias_u2_xy_arm;
@@ -2772,26 +2909,34 @@ impl Rx90 {
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
             let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-            let my_4_minus_mz_5 = parameters[38] - parameters[53];
+            let my_4 = parameters[38];
+            let mz_5 = parameters[53];
+            let my_4_minus_mz_5 = my_4 - mz_5;
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
                 - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
-            let t14_arm = parameters[45] + parameters[62] - parameters[48];
+            let xx_5 = parameters[45];
+            let yy_6 = parameters[62];
+            let t14_arm = xx_5 + yy_6 - yy_5;
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-            let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+            let zz_5 = parameters[50];
+            let zz_5_plus_yy_6 = zz_5 + yy_6;
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
                 + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
             let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let xy_5 = parameters[46];
             let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
             let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let xz_5 = parameters[47];
             let w5_y_squared_arm = w5_y_arm * w5_y_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let yz_5 = parameters[49];
             let t15_arm = bias_wd5_x_arm * t14_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
-                - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
-                + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+                - xy_5 * bias_u5_zx_arm + xz_5 * bias_u5_yx_arm
+                + yz_5 * (w5_y_squared_arm - w5_z_squared_arm);
             let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
                 + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
             let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
@@ -2799,20 +2944,26 @@ impl Rx90 {
             let t16_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
             let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 + c4_arm * t16_arm;
-            let my_5_plus_mz_6 = parameters[52] + parameters[67];
+            let my_5 = parameters[52];
+            let mz_6 = parameters[67];
+            let my_5_plus_mz_6 = my_5 + mz_6;
             let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
             let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
-            let xx_6_minus_yy_6 = parameters[59] - parameters[62];
+            let xx_6 = parameters[59];
+            let xx_6_minus_yy_6 = xx_6 - yy_6;
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let zz_6 = parameters[64];
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
                 + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
             let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let xy_6 = parameters[60];
             let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
             let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let xz_6 = parameters[61];
             let w6_x_squared_arm = w6_x_arm * w6_x_arm;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
             let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
@@ -2820,29 +2971,31 @@ impl Rx90 {
             let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
             let bias_u6_yy_minus_bias_u5_yy_arm = minus_bias_u5_yy_arm
                 - minus_bias_u6_yy_arm;
+            let yz_6 = parameters[63];
             let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 - s4_arm * t16_arm;
             let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
+            let my_6 = parameters[66];
             let moment6_x_arm = bias_wd6_x_arm * xx_6_minus_yy_6
-                - parameters[64] * minus_w6_y_w6_z_arm
-                - parameters[60] * bias_u6_zx_arm
-                - parameters[61] * minus_bias_u6_yx_arm
-                + parameters[63] * bias_u6_yy_minus_bias_u5_yy_arm
-                + parameters[66] * bias_a5_y_arm;
+                - zz_6 * minus_w6_y_w6_z_arm - xy_6 * bias_u6_zx_arm
+                - xz_6 * minus_bias_u6_yx_arm
+                + yz_6 * bias_u6_yy_minus_bias_u5_yy_arm + my_6 * bias_a5_y_arm;
             let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
             let t17_arm = w6_z_squared_arm - w6_x_squared_arm;
             let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
-                + parameters[60] * bias_u6_zy_arm + parameters[61] * t17_arm
-                - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
+            let mx_6 = parameters[65];
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - zz_6)
+                + xy_6 * bias_u6_zy_arm + xz_6 * t17_arm - yz_6 * bias_u6_xy_arm
+                - mx_6 * bias_a5_y_arm;
             let moment5_x_arm = t15_arm + bias_a5_z_arm * my_5_plus_mz_6
                 + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
             let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
             let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+            let mx_5 = parameters[51];
             let t18_arm = w5_x_w5_z_arm * (t14_arm - zz_5_plus_yy_6)
-                + parameters[46] * bias_u5_zy_arm
-                + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-                - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
+                + xy_5 * bias_u5_zy_arm
+                + xz_5 * (w5_z_squared_arm - w5_x_squared_arm)
+                - yz_5 * bias_u5_xy_arm - mx_5 * bias_a5_z_arm;
             let t19_arm = bias_u6_yy_minus_bias_u5_yy_arm + t17_arm;
             let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
             let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
@@ -2851,135 +3004,144 @@ impl Rx90 {
                 + c6_arm * bias_a5_z_arm;
             let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
             let moment6_z_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-                - parameters[64] * minus_bias_wd5_y_arm - parameters[60] * t19_arm
-                + parameters[61] * minus_bias_u6_yz_arm
-                + parameters[63] * bias_u6_xz_arm
-                - (parameters[65] * minus_bias_a6_y_arm
-                    + parameters[66] * bias_a6_x_arm);
+                - zz_6 * minus_bias_wd5_y_arm - xy_6 * t19_arm
+                + xz_6 * minus_bias_u6_yz_arm + yz_6 * bias_u6_xz_arm
+                - (mx_6 * minus_bias_a6_y_arm + my_6 * bias_a6_x_arm);
             let moment5_y_arm = t18_arm + moment6_z_arm;
             let moment4_x_arm = t13_arm + bias_a4_z_arm * my_4_minus_mz_5
                 + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
             let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+            let mx_4 = parameters[37];
             let t20_arm = w4_x_w4_z_arm * (t12_arm - zz_4_plus_yy_5)
-                + parameters[32] * bias_u4_zy_arm
-                + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
-                - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
+                + xy_4 * bias_u4_zy_arm
+                + xz_4 * (w4_z_squared_arm - w4_x_squared_arm)
+                - yz_4 * bias_u4_xy_arm - mx_4 * bias_a4_z_arm;
             let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
             let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
             let t21_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t14_arm
-                + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-                - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
-            let moment5_z_arm = t21_arm + parameters[51] * bias_a5_y_arm
+                + xy_5 * (w5_x_squared_arm - w5_y_squared_arm)
+                - xz_5 * bias_u5_yz_arm + yz_5 * bias_u5_xz_arm;
+            let moment5_z_arm = t21_arm + mx_5 * bias_a5_y_arm
                 - bias_a5_x_arm * my_5_plus_mz_6
                 - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
             let moment4_y_arm = t20_arm - moment5_z_arm;
             let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
             let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
             let minus_bias_u6_xx_arm = t19_arm + minus_bias_u6_yy_arm;
-            let force6_x_arm = parameters[66] * bias_u6_xy_arm
-                - parameters[65] * minus_bias_u6_xx_arm;
-            let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
-                + parameters[66] * minus_bias_u6_yy_arm;
+            let force6_x_arm = my_6 * bias_u6_xy_arm - mx_6 * minus_bias_u6_xx_arm;
+            let minus_force6_y_arm = mx_6 * minus_bias_u6_yx_arm
+                + my_6 * minus_bias_u6_yy_arm;
             let force5_x_arm = bias_u5_xy_arm * my_5_plus_mz_6
-                - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+                - mx_5 * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
                 + s6_arm * minus_force6_y_arm;
-            let force6_z_arm = parameters[65] * bias_u6_zx_arm
-                + parameters[66] * bias_u6_zy_arm;
-            let force5_y_arm = parameters[51] * bias_u5_yx_arm
+            let force6_z_arm = mx_6 * bias_u6_zx_arm + my_6 * bias_u6_zy_arm;
+            let force5_y_arm = mx_5 * bias_u5_yx_arm
                 - minus_bias_u5_yy_arm * my_5_plus_mz_6 + force6_z_arm;
             let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
-                - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+                - mx_4 * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
                 - s5_arm * force5_y_arm;
             let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-            let force5_z_arm = parameters[51] * bias_u5_zx_arm
+            let force5_z_arm = mx_5 * bias_u5_zx_arm
                 + bias_u5_zy_arm * my_5_plus_mz_6
                 - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-            let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+            let minus_force4_y_arm = mx_4 * minus_bias_u4_yx_arm
                 + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
             let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
                 - c4_arm * minus_force4_y_arm;
             let moment3_x_arm = t11_arm + c4_arm * moment4_x_arm
                 - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
             let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+            let mx_3 = parameters[23];
             let t22_arm = minus_bias_wd3_y_arm * (t8_arm - t9_arm)
-                + parameters[18] * bias_u3_zy_arm
-                + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-                - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
+                + xy_3 * bias_u3_zy_arm
+                + xz_3 * (w3_z_squared_arm - w3_x_squared_arm)
+                - yz_3 * bias_u3_xy_arm - mx_3 * bias_a3_z_arm;
             let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
             let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
             let t23_arm = minus_w4_x_w4_y_arm * t12_arm
                 - minus_bias_wd3_y_arm * zz_4_plus_yy_5
-                + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
-                + parameters[33] * minus_bias_u4_yz_arm
-                + parameters[35] * bias_u4_xz_arm;
+                + xy_4 * (w4_x_squared_arm - w4_y_squared_arm)
+                + xz_4 * minus_bias_u4_yz_arm + yz_4 * bias_u4_xz_arm;
             let moment4_z_arm = t23_arm
-                - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
+                - (mx_4 * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
                 + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
             let moment3_y_arm = t22_arm + moment4_z_arm;
             let moment2_x_arm = bias_wd2_x_arm * (t4_arm + t5_arm)
                 - minus_bias_wd2_y_arm * twice_xy_2
                 + bias_u2_xy_arm * xz_2_minus_d3_mz_3
-                + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
+                + yz_2 * (w2_y_squared_arm - rate_2_squared_arm)
                 + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-            let force3_z_arm = parameters[23] * bias_u3_zx_arm
-                + bias_u3_zy_arm * t10_arm - s4_force4_x_plus_c4_force4_y_arm;
+            let force3_z_arm = mx_3 * bias_u3_zx_arm + bias_u3_zy_arm * t10_arm
+                - s4_force4_x_plus_c4_force4_y_arm;
             let moment2_y_arm = minus_bias_wd2_y_arm * (t4_arm - t5_arm)
                 + bias_wd2_x_arm * twice_xy_2
                 + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
-                - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+                - yz_2 * bias_u2_xy_arm + s3_arm * moment3_x_arm
                 + c3_arm * moment3_y_arm - D3 * force3_z_arm;
             let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-            let tau_1_arm = joint_velocities[0] * parameters[2]
-                + ::overact::math::wide::signed(parameters[3], joint_velocities[0])
-                + parameters[4];
+            let fv_1 = parameters[2];
+            let fs_1 = parameters[3];
+            let off_1 = parameters[4];
+            let tau_1_arm = joint_velocities[0] * fv_1
+                + math::wide::signed(fs_1, joint_velocities[0]) + off_1;
             let force_on_u1_arm = moment1_z_arm + tau_1_arm;
-            let t24_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-                - bias_u2_xy_arm * t4_arm
-                + bias_a2_y_arm * (parameters[11] + D3 * t2_arm)
-                - parameters[12] * bias_a2_x_arm;
+            let mx_2 = parameters[11];
+            let my_2 = parameters[12];
+            let t24_arm = xy_2 * (w2_x_squared_arm - w2_y_squared_arm)
+                - bias_u2_xy_arm * t4_arm + bias_a2_y_arm * (mx_2 + D3 * t2_arm)
+                - my_2 * bias_a2_x_arm;
             let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
             let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
                 + s4_arm * minus_force4_y_arm;
-            let force3_x_arm = bias_u3_xy_arm * t10_arm
-                - parameters[23] * minus_bias_u3_xx_arm
+            let force3_x_arm = bias_u3_xy_arm * t10_arm - mx_3 * minus_bias_u3_xx_arm
                 + c4_force4_x_minus_s4_force4_y_arm;
-            let force4_z_arm = parameters[37] * bias_u4_zx_arm
+            let force4_z_arm = mx_4 * bias_u4_zx_arm
                 + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
                 + c5_arm * force5_y_arm;
-            let force3_y_arm = parameters[23] * bias_u3_xy_arm
-                - minus_bias_u3_yy_arm * t10_arm + force4_z_arm;
-            let t25_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-                - bias_u3_xy_arm * t8_arm + parameters[23] * bias_a3_y_arm
+            let force3_y_arm = mx_3 * bias_u3_xy_arm - minus_bias_u3_yy_arm * t10_arm
+                + force4_z_arm;
+            let t25_arm = xy_3 * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * t8_arm + mx_3 * bias_a3_y_arm
                 - bias_a3_x_arm * t10_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
             let moment3_z_arm = t25_arm
                 - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
             let moment2_z_arm = t24_arm
                 + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm)
                 + moment3_z_arm;
-            let tau_2_arm = joint_velocities[1] * parameters[14]
-                + ::overact::math::wide::signed(parameters[15], joint_velocities[1])
-                + parameters[16];
+            let fv_2 = parameters[14];
+            let fs_2 = parameters[15];
+            let off_2 = parameters[16];
+            let tau_2_arm = joint_velocities[1] * fv_2
+                + math::wide::signed(fs_2, joint_velocities[1]) + off_2;
             let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-            let tau_3_arm = joint_velocities[2] * parameters[28]
-                + ::overact::math::wide::signed(parameters[29], joint_velocities[2])
-                + parameters[30];
+            let fv_3 = parameters[28];
+            let fs_3 = parameters[29];
+            let off_3 = parameters[30];
+            let tau_3_arm = joint_velocities[2] * fv_3
+                + math::wide::signed(fs_3, joint_velocities[2]) + off_3;
             let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-            let tau_4_arm = joint_velocities[3] * parameters[42]
-                + ::overact::math::wide::signed(parameters[43], joint_velocities[3])
-                + parameters[44];
+            let fv_4 = parameters[42];
+            let fs_4 = parameters[43];
+            let off_4 = parameters[44];
+            let tau_4_arm = joint_velocities[3] * fv_4
+                + math::wide::signed(fs_4, joint_velocities[3]) + off_4;
             let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-            let tau_5_arm = joint_velocities[4] * parameters[56]
-                + ::overact::math::wide::signed(parameters[57], joint_velocities[4])
-                + parameters[58];
+            let fv_5 = parameters[56];
+            let fs_5 = parameters[57];
+            let off_5 = parameters[58];
+            let tau_5_arm = joint_velocities[4] * fv_5
+                + math::wide::signed(fs_5, joint_velocities[4]) + off_5;
             let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-            let tau_6_arm = joint_velocities[5] * parameters[70]
-                + ::overact::math::wide::signed(parameters[71], joint_velocities[5])
-                + parameters[72];
+            let fv_6 = parameters[70];
+            let fs_6 = parameters[71];
+            let off_6 = parameters[72];
+            let tau_6_arm = joint_velocities[5] * fv_6
+                + math::wide::signed(fs_6, joint_velocities[5]) + off_6;
             let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-            ::core::result::Result::Ok([
+            Ok([
                 force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
                 force_on_u6_arm,
             ])
@@ -2997,76 +3159,89 @@ impl Rx90 {
     /// 470 operations (225 additions, 245 multiplications, 0 divisions), 5 trigonometric pairs, 6 signs, 474 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn bias_base(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        base_parameters: &[::core::primitive::f64; 58],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        base_parameters: &[f64; 58],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             /// 2 d3
-            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            const TWICE_D3: f64 = 0.9;
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
             // --- arm
             let w2_y_arm = c2_arm * joint_velocities[0];
             let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-            let yy_2R_minus_zz_2R = base_parameters[27] - base_parameters[4];
+            let yy_2R = base_parameters[27];
+            let zz_2R = base_parameters[4];
+            let yy_2R_minus_zz_2R = yy_2R - zz_2R;
             let w2_x_arm = s2_arm * joint_velocities[0];
             let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
             let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+            let xy_2 = base_parameters[31];
             let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+            let xz_2R = base_parameters[28];
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let yz_2 = base_parameters[30];
             let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-            let d3_m_4R = D3 * base_parameters[35];
+            let m_4R = base_parameters[35];
+            let d3_m_4R = D3 * m_4R;
             let d3_d3_m_4R = D3 * d3_m_4R;
-            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
-            let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
+            let yy_3R = base_parameters[29];
+            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - yy_3R;
+            let zz_3R = base_parameters[24];
+            let zz_3R_plus_d3_d3_m_4R = zz_3R + d3_d3_m_4R;
             let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
             let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
             let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let xy_3 = base_parameters[32];
             let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let xz_3 = base_parameters[33];
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let yz_3 = base_parameters[34];
             let t1_arm = bias_wd3_x_arm
                 * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
-                - base_parameters[32] * bias_u3_zx_arm
-                + base_parameters[33] * bias_u3_xy_arm
-                + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
+                - xy_3 * bias_u3_zx_arm + xz_3 * bias_u3_xy_arm
+                + yz_3 * (w3_y_squared_arm - w3_z_squared_arm)
                 + d3_d3_m_4R * bias_u2_zx_arm;
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
                 - joint_velocities[3] * minus_w4_y_arm;
+            let xx_4R = base_parameters[37];
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let zz_4R = base_parameters[36];
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
                 + joint_velocities[3] * w4_x_arm;
             let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let xy_4 = base_parameters[40];
             let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
             let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let xz_4 = base_parameters[39];
             let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
             let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-            let t2_arm = base_parameters[37] * bias_wd4_x_arm
-                - base_parameters[36] * minus_w4_y_w4_z_arm
-                - base_parameters[40] * bias_u4_zx_arm
-                - base_parameters[39] * minus_bias_u4_yx_arm
-                + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+            let yz_4 = base_parameters[38];
+            let t2_arm = xx_4R * bias_wd4_x_arm - zz_4R * minus_w4_y_w4_z_arm
+                - xy_4 * bias_u4_zx_arm - xz_4 * minus_bias_u4_yx_arm
+                + yz_4 * (w4_y_squared_arm - w4_z_squared_arm);
             let bias_a2_y_arm = 9.81 * c2_arm;
             let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
                 + D3 * bias_u2_xy_arm;
@@ -3079,25 +3254,29 @@ impl Rx90 {
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
             let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+            let my_4R = base_parameters[44];
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
                 - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
+            let xx_5R = base_parameters[43];
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let zz_5R = base_parameters[42];
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
                 + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
             let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let xy_5 = base_parameters[45];
             let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
             let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let xz_5 = base_parameters[46];
             let w5_y_squared_arm = w5_y_arm * w5_y_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-            let t3_arm = base_parameters[43] * bias_wd5_x_arm
-                + base_parameters[42] * w5_y_w5_z_arm
-                - base_parameters[45] * bias_u5_zx_arm
-                + base_parameters[46] * bias_u5_yx_arm
-                + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+            let yz_5 = base_parameters[47];
+            let t3_arm = xx_5R * bias_wd5_x_arm + zz_5R * w5_y_w5_z_arm
+                - xy_5 * bias_u5_zx_arm + xz_5 * bias_u5_yx_arm
+                + yz_5 * (w5_y_squared_arm - w5_z_squared_arm);
             let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
                 + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
             let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
@@ -3105,29 +3284,34 @@ impl Rx90 {
             let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
             let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 + c4_arm * t4_arm;
+            let my_5R = base_parameters[50];
             let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
             let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
+            let xx_6R = base_parameters[49];
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let zz_6 = base_parameters[48];
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
                 + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
             let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let xy_6 = base_parameters[54];
             let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
             let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let xz_6 = base_parameters[52];
             let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
             let t5_arm = w6_y_squared_arm - w6_z_squared_arm;
+            let yz_6 = base_parameters[53];
             let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 - s4_arm * t4_arm;
             let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-            let moment6_x_arm = base_parameters[49] * bias_wd6_x_arm
-                - base_parameters[48] * minus_w6_y_w6_z_arm
-                - base_parameters[54] * bias_u6_zx_arm
-                - base_parameters[52] * minus_bias_u6_yx_arm
-                + base_parameters[53] * t5_arm + base_parameters[57] * bias_a5_y_arm;
+            let my_6 = base_parameters[57];
+            let moment6_x_arm = xx_6R * bias_wd6_x_arm - zz_6 * minus_w6_y_w6_z_arm
+                - xy_6 * bias_u6_zx_arm - xz_6 * minus_bias_u6_yx_arm + yz_6 * t5_arm
+                + my_6 * bias_a5_y_arm;
             let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
             let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
             let w5_x_squared_arm = w5_x_arm * w5_x_arm;
@@ -3135,21 +3319,18 @@ impl Rx90 {
             let bias_u5_yy_minus_bias_u6_xx_arm = minus_bias_u6_xx_arm
                 - minus_bias_u5_yy_arm;
             let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-            let moment6_y_arm = w6_x_w6_z_arm
-                * (base_parameters[49] - base_parameters[48])
-                + base_parameters[54] * bias_u6_zy_arm
-                + base_parameters[52] * bias_u5_yy_minus_bias_u6_xx_arm
-                - base_parameters[53] * bias_u6_xy_arm
-                - base_parameters[56] * bias_a5_y_arm;
-            let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
+            let mx_6 = base_parameters[56];
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6R - zz_6)
+                + xy_6 * bias_u6_zy_arm + xz_6 * bias_u5_yy_minus_bias_u6_xx_arm
+                - yz_6 * bias_u6_xy_arm - mx_6 * bias_a5_y_arm;
+            let moment5_x_arm = t3_arm + my_5R * bias_a5_z_arm
                 + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
             let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
             let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-            let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
-                + base_parameters[45] * bias_u5_zy_arm
-                + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
-                - base_parameters[47] * bias_u5_xy_arm
-                - base_parameters[55] * bias_a5_z_arm;
+            let mx_5 = base_parameters[55];
+            let t6_arm = w5_x_w5_z_arm * (xx_5R - zz_5R) + xy_5 * bias_u5_zy_arm
+                + xz_5 * (w5_z_squared_arm - w5_x_squared_arm)
+                - yz_5 * bias_u5_xy_arm - mx_5 * bias_a5_z_arm;
             let t7_arm = t5_arm + bias_u5_yy_minus_bias_u6_xx_arm;
             let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
             let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
@@ -3157,159 +3338,141 @@ impl Rx90 {
             let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm
                 + c6_arm * bias_a5_z_arm;
             let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
-            let moment6_z_arm = base_parameters[49] * minus_w6_x_w6_y_arm
-                - base_parameters[48] * minus_bias_wd5_y_arm
-                - base_parameters[54] * t7_arm
-                + base_parameters[52] * minus_bias_u6_yz_arm
-                + base_parameters[53] * bias_u6_xz_arm
-                - (base_parameters[56] * minus_bias_a6_y_arm
-                    + base_parameters[57] * bias_a6_x_arm);
+            let moment6_z_arm = xx_6R * minus_w6_x_w6_y_arm
+                - zz_6 * minus_bias_wd5_y_arm - xy_6 * t7_arm
+                + xz_6 * minus_bias_u6_yz_arm + yz_6 * bias_u6_xz_arm
+                - (mx_6 * minus_bias_a6_y_arm + my_6 * bias_a6_x_arm);
             let moment5_y_arm = t6_arm + moment6_z_arm;
-            let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
+            let moment4_x_arm = t2_arm + my_4R * bias_a4_z_arm
                 + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
             let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-            let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
-                + base_parameters[40] * bias_u4_zy_arm
-                + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
-                - base_parameters[38] * bias_u4_xy_arm
-                - base_parameters[51] * bias_a4_z_arm;
+            let mx_4 = base_parameters[51];
+            let t8_arm = w4_x_w4_z_arm * (xx_4R - zz_4R) + xy_4 * bias_u4_zy_arm
+                + xz_4 * (w4_z_squared_arm - w4_x_squared_arm)
+                - yz_4 * bias_u4_xy_arm - mx_4 * bias_a4_z_arm;
             let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
             let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-            let t9_arm = base_parameters[42] * bias_wd5_z_arm
-                - base_parameters[43] * w5_x_w5_y_arm
-                + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
-                - base_parameters[46] * bias_u5_yz_arm
-                + base_parameters[47] * bias_u5_xz_arm;
-            let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
-                - base_parameters[50] * bias_a5_x_arm
+            let t9_arm = zz_5R * bias_wd5_z_arm - xx_5R * w5_x_w5_y_arm
+                + xy_5 * (w5_x_squared_arm - w5_y_squared_arm)
+                - xz_5 * bias_u5_yz_arm + yz_5 * bias_u5_xz_arm;
+            let moment5_z_arm = t9_arm + mx_5 * bias_a5_y_arm - my_5R * bias_a5_x_arm
                 - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
             let moment4_y_arm = t8_arm - moment5_z_arm;
             let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
             let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
-            let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
-                - base_parameters[56] * minus_bias_u6_xx_arm;
+            let force6_x_arm = my_6 * bias_u6_xy_arm - mx_6 * minus_bias_u6_xx_arm;
             let minus_bias_u6_yy_arm = minus_bias_u6_xx_arm - t7_arm;
-            let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
-                + base_parameters[57] * minus_bias_u6_yy_arm;
-            let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
-                - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
-                + s6_arm * minus_force6_y_arm;
-            let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
-                + base_parameters[57] * bias_u6_zy_arm;
-            let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
-                - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
-            let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
-                - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
-                - s5_arm * force5_y_arm;
+            let minus_force6_y_arm = mx_6 * minus_bias_u6_yx_arm
+                + my_6 * minus_bias_u6_yy_arm;
+            let force5_x_arm = my_5R * bias_u5_xy_arm - mx_5 * minus_bias_u5_xx_arm
+                + c6_arm * force6_x_arm + s6_arm * minus_force6_y_arm;
+            let force6_z_arm = mx_6 * bias_u6_zx_arm + my_6 * bias_u6_zy_arm;
+            let force5_y_arm = mx_5 * bias_u5_yx_arm - my_5R * minus_bias_u5_yy_arm
+                + force6_z_arm;
+            let force4_x_arm = my_4R * bias_u4_xy_arm - mx_4 * minus_bias_u4_xx_arm
+                + c5_arm * force5_x_arm - s5_arm * force5_y_arm;
             let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-            let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
-                + base_parameters[50] * bias_u5_zy_arm
+            let force5_z_arm = mx_5 * bias_u5_zx_arm + my_5R * bias_u5_zy_arm
                 - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-            let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
-                + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
+            let minus_force4_y_arm = mx_4 * minus_bias_u4_yx_arm
+                + my_4R * minus_bias_u4_yy_arm + force5_z_arm;
             let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
                 - c4_arm * minus_force4_y_arm;
             let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm
                 - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
             let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
             let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
+            let mx_3 = base_parameters[41];
             let t10_arm = minus_bias_wd3_y_arm
                 * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
-                + base_parameters[32] * bias_u3_zy_arm
-                + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
-                - base_parameters[34] * bias_u3_xy_arm
-                - base_parameters[41] * bias_a3_z_arm;
+                + xy_3 * bias_u3_zy_arm
+                + xz_3 * (w3_z_squared_arm - w3_x_squared_arm)
+                - yz_3 * bias_u3_xy_arm - mx_3 * bias_a3_z_arm;
             let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
             let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-            let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
-                - base_parameters[36] * minus_bias_wd3_y_arm
-                + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
-                + base_parameters[39] * minus_bias_u4_yz_arm
-                + base_parameters[38] * bias_u4_xz_arm;
+            let t11_arm = xx_4R * minus_w4_x_w4_y_arm - zz_4R * minus_bias_wd3_y_arm
+                + xy_4 * (w4_x_squared_arm - w4_y_squared_arm)
+                + xz_4 * minus_bias_u4_yz_arm + yz_4 * bias_u4_xz_arm;
             let moment4_z_arm = t11_arm
-                - (base_parameters[51] * bias_a5_z_arm
-                    + base_parameters[44] * bias_a4_x_arm) + s5_arm * moment5_x_arm
-                + c5_arm * moment5_y_arm;
+                - (mx_4 * bias_a5_z_arm + my_4R * bias_a4_x_arm)
+                + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
             let moment3_y_arm = t10_arm + moment4_z_arm;
-            let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
-                - (bias_wd2_x_arm * yy_2R_minus_zz_2R
-                    + base_parameters[31] * bias_u2_zx_arm)
-                + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
+            let moment2_x_arm = xz_2R * bias_u2_xy_arm
+                - (bias_wd2_x_arm * yy_2R_minus_zz_2R + xy_2 * bias_u2_zx_arm)
+                + yz_2 * (w2_y_squared_arm - rate_2_squared_arm)
                 + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-            let zz_2R_plus_d3_d3_m_4R = base_parameters[4] + d3_d3_m_4R;
+            let zz_2R_plus_d3_d3_m_4R = zz_2R + d3_d3_m_4R;
             let t12_arm = zz_2R_plus_d3_d3_m_4R + yy_2R_minus_zz_2R;
             let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-            let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
-                + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
-            let moment2_y_arm = base_parameters[31] * bias_u2_zy_arm
+            let force3_z_arm = mx_3 * bias_u3_zx_arm + bias_u3_zy_arm * d3_m_4R
+                - s4_force4_x_plus_c4_force4_y_arm;
+            let moment2_y_arm = xy_2 * bias_u2_zy_arm
                 - minus_bias_wd2_y_arm * (t12_arm + zz_2R_plus_d3_d3_m_4R)
-                + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
-                - base_parameters[30] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+                + xz_2R * (rate_2_squared_arm - w2_x_squared_arm)
+                - yz_2 * bias_u2_xy_arm + s3_arm * moment3_x_arm
                 + c3_arm * moment3_y_arm - D3 * force3_z_arm;
             let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-            let tau_1_arm = joint_velocities[0] * base_parameters[1]
-                + ::overact::math::wide::signed(
-                    base_parameters[2],
-                    joint_velocities[0],
-                ) + base_parameters[3];
+            let fv_1 = base_parameters[1];
+            let fs_1 = base_parameters[2];
+            let off_1 = base_parameters[3];
+            let tau_1_arm = joint_velocities[0] * fv_1
+                + math::wide::signed(fs_1, joint_velocities[0]) + off_1;
             let force_on_u1_arm = moment1_z_arm + tau_1_arm;
+            let mx_2R = base_parameters[25];
+            let my_2 = base_parameters[26];
             let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
             let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
                 + s4_arm * minus_force4_y_arm;
-            let force3_x_arm = bias_u3_xy_arm * d3_m_4R
-                - base_parameters[41] * minus_bias_u3_xx_arm
+            let force3_x_arm = bias_u3_xy_arm * d3_m_4R - mx_3 * minus_bias_u3_xx_arm
                 + c4_force4_x_minus_s4_force4_y_arm;
-            let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
-                + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
-                + c5_arm * force5_y_arm;
-            let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
-                - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
-            let t13_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
-                + bias_u2_xy_arm * t12_arm
-                + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
-                - base_parameters[26] * bias_a2_x_arm
+            let force4_z_arm = mx_4 * bias_u4_zx_arm + my_4R * bias_u4_zy_arm
+                + s5_arm * force5_x_arm + c5_arm * force5_y_arm;
+            let force3_y_arm = mx_3 * bias_u3_xy_arm - minus_bias_u3_yy_arm * d3_m_4R
+                + force4_z_arm;
+            let t13_arm = xy_2 * (w2_x_squared_arm - w2_y_squared_arm)
+                + bias_u2_xy_arm * t12_arm + bias_a2_y_arm * (mx_2R + d3_m_4R)
+                - my_2 * bias_a2_x_arm
                 + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
-            let t14_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-                - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
-                + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
-                - D3 * c4_force4_x_minus_s4_force4_y_arm;
+            let t14_arm = xy_3 * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R + mx_3 * bias_a3_y_arm
+                - bias_a3_x_arm * d3_m_4R - D3 * c4_force4_x_minus_s4_force4_y_arm;
             let moment3_z_arm = t14_arm
                 - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
             let moment2_z_arm = t13_arm + moment3_z_arm;
-            let tau_2_arm = joint_velocities[1] * base_parameters[5]
-                + ::overact::math::wide::signed(
-                    base_parameters[6],
-                    joint_velocities[1],
-                ) + base_parameters[7];
+            let fv_2 = base_parameters[5];
+            let fs_2 = base_parameters[6];
+            let off_2 = base_parameters[7];
+            let tau_2_arm = joint_velocities[1] * fv_2
+                + math::wide::signed(fs_2, joint_velocities[1]) + off_2;
             let force_on_u2_arm = moment2_z_arm + tau_2_arm;
-            let tau_3_arm = joint_velocities[2] * base_parameters[9]
-                + ::overact::math::wide::signed(
-                    base_parameters[10],
-                    joint_velocities[2],
-                ) + base_parameters[11];
+            let fv_3 = base_parameters[9];
+            let fs_3 = base_parameters[10];
+            let off_3 = base_parameters[11];
+            let tau_3_arm = joint_velocities[2] * fv_3
+                + math::wide::signed(fs_3, joint_velocities[2]) + off_3;
             let force_on_u3_arm = moment3_z_arm + tau_3_arm;
-            let tau_4_arm = joint_velocities[3] * base_parameters[13]
-                + ::overact::math::wide::signed(
-                    base_parameters[14],
-                    joint_velocities[3],
-                ) + base_parameters[15];
+            let fv_4 = base_parameters[13];
+            let fs_4 = base_parameters[14];
+            let off_4 = base_parameters[15];
+            let tau_4_arm = joint_velocities[3] * fv_4
+                + math::wide::signed(fs_4, joint_velocities[3]) + off_4;
             let force_on_u4_arm = moment4_z_arm + tau_4_arm;
-            let tau_5_arm = joint_velocities[4] * base_parameters[17]
-                + ::overact::math::wide::signed(
-                    base_parameters[18],
-                    joint_velocities[4],
-                ) + base_parameters[19];
+            let fv_5 = base_parameters[17];
+            let fs_5 = base_parameters[18];
+            let off_5 = base_parameters[19];
+            let tau_5_arm = joint_velocities[4] * fv_5
+                + math::wide::signed(fs_5, joint_velocities[4]) + off_5;
             let force_on_u5_arm = moment5_z_arm + tau_5_arm;
-            let tau_6_arm = joint_velocities[5] * base_parameters[21]
-                + ::overact::math::wide::signed(
-                    base_parameters[22],
-                    joint_velocities[5],
-                ) + base_parameters[23];
+            let fv_6 = base_parameters[21];
+            let fs_6 = base_parameters[22];
+            let off_6 = base_parameters[23];
+            let tau_6_arm = joint_velocities[5] * fv_6
+                + math::wide::signed(fs_6, joint_velocities[5]) + off_6;
             let force_on_u6_arm = moment6_z_arm + tau_6_arm;
-            ::core::result::Result::Ok([
+            Ok([
                 force_on_u1_arm, force_on_u2_arm, force_on_u3_arm, force_on_u4_arm, force_on_u5_arm,
                 force_on_u6_arm,
             ])
@@ -3328,89 +3491,113 @@ impl Rx90 {
     /// 884 operations (432 additions, 446 multiplications, 6 divisions), 5 trigonometric pairs, 6 signs, 19 guards, 888 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        torques: &[::core::primitive::f64; 6],
-        parameters: &[::core::primitive::f64; 73],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        torques: &[f64; 6],
+        parameters: &[f64; 73],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("torques", torques, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             /// d3²
-            const D3_SQUARED: ::core::primitive::f64 = 0.2025;
+            const D3_SQUARED: f64 = 0.2025;
             /// 2 d3
-            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            const TWICE_D3: f64 = 0.9;
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
             // --- arm
             let w2_y_arm = c2_arm * joint_velocities[0];
             let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
-            let mass5_arm = parameters[54] + parameters[68];
-            let mass4_arm = parameters[40] + mass5_arm;
-            let mass3_arm = parameters[26] + mass4_arm;
+            let m_5 = parameters[54];
+            let m_6 = parameters[68];
+            let mass5_arm = m_5 + m_6;
+            let m_4 = parameters[40];
+            let mass4_arm = m_4 + mass5_arm;
+            let m_3 = parameters[26];
+            let mass3_arm = m_3 + mass4_arm;
             let d3_squared_mass3_arm = D3_SQUARED * mass3_arm;
-            let t1_arm = parameters[5] - (parameters[8] + d3_squared_mass3_arm);
-            let zz_2_plus_d3_squared_mass3_arm = parameters[10]
-                + d3_squared_mass3_arm;
+            let yy_2 = parameters[8];
+            let xx_2 = parameters[5];
+            let t1_arm = xx_2 - (yy_2 + d3_squared_mass3_arm);
+            let zz_2 = parameters[10];
+            let zz_2_plus_d3_squared_mass3_arm = zz_2 + d3_squared_mass3_arm;
             let w2_x_arm = s2_arm * joint_velocities[0];
             let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
-            let twice_xy_2 = parameters[6] + parameters[6];
+            let xy_2 = parameters[6];
+            let twice_xy_2 = xy_2 + xy_2;
             let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
-            let xz_2_minus_d3_mz_3 = parameters[7] - D3 * parameters[25];
+            let mz_3 = parameters[25];
+            let xz_2 = parameters[7];
+            let xz_2_minus_d3_mz_3 = xz_2 - D3 * mz_3;
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let yz_2 = parameters[9];
             let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-            let mz_4_plus_d3_mass4_arm = parameters[39] + D3 * mass4_arm;
-            let t2_arm = D3 * (parameters[39] + mz_4_plus_d3_mass4_arm);
-            let t3_arm = parameters[34] + t2_arm;
-            let t4_arm = parameters[17] + t3_arm - parameters[20];
-            let t5_arm = parameters[22] + t3_arm;
+            let mz_4 = parameters[39];
+            let mz_4_plus_d3_mass4_arm = mz_4 + D3 * mass4_arm;
+            let t2_arm = D3 * (mz_4 + mz_4_plus_d3_mass4_arm);
+            let yy_4 = parameters[34];
+            let t3_arm = yy_4 + t2_arm;
+            let xx_3 = parameters[17];
+            let yy_3 = parameters[20];
+            let t4_arm = xx_3 + t3_arm - yy_3;
+            let zz_3 = parameters[22];
+            let t5_arm = zz_3 + t3_arm;
             let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
             let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
             let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let xy_3 = parameters[18];
             let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let xz_3 = parameters[19];
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let yz_3 = parameters[21];
             let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
-            let t6_arm = mz_4_plus_d3_mass4_arm + parameters[24];
-            let t7_arm = bias_wd3_x_arm * (t4_arm + t5_arm)
-                - parameters[18] * bias_u3_zx_arm + parameters[19] * bias_u3_xy_arm
-                + parameters[21] * (w3_y_squared_arm - w3_z_squared_arm)
+            let my_3 = parameters[24];
+            let t6_arm = mz_4_plus_d3_mass4_arm + my_3;
+            let t7_arm = bias_wd3_x_arm * (t4_arm + t5_arm) - xy_3 * bias_u3_zx_arm
+                + xz_3 * bias_u3_xy_arm
+                + yz_3 * (w3_y_squared_arm - w3_z_squared_arm)
                 + bias_a3_z_arm * t6_arm;
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
                 - joint_velocities[3] * minus_w4_y_arm;
-            let t8_arm = parameters[31] + parameters[48] - parameters[34];
+            let xx_4 = parameters[31];
+            let yy_5 = parameters[48];
+            let t8_arm = xx_4 + yy_5 - yy_4;
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
-            let zz_4_plus_yy_5 = parameters[36] + parameters[48];
+            let zz_4 = parameters[36];
+            let zz_4_plus_yy_5 = zz_4 + yy_5;
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
                 + joint_velocities[3] * w4_x_arm;
             let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let xy_4 = parameters[32];
             let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
             let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let xz_4 = parameters[33];
             let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
             let w4_z_squared_arm = w4_z_arm * w4_z_arm;
+            let yz_4 = parameters[35];
             let t9_arm = bias_wd4_x_arm * t8_arm
-                - minus_w4_y_w4_z_arm * zz_4_plus_yy_5
-                - parameters[32] * bias_u4_zx_arm
-                - parameters[33] * minus_bias_u4_yx_arm
-                + parameters[35] * (w4_y_squared_arm - w4_z_squared_arm);
+                - minus_w4_y_w4_z_arm * zz_4_plus_yy_5 - xy_4 * bias_u4_zx_arm
+                - xz_4 * minus_bias_u4_yx_arm
+                + yz_4 * (w4_y_squared_arm - w4_z_squared_arm);
             let bias_a2_y_arm = 9.81 * c2_arm;
             let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
                 + D3 * bias_u2_xy_arm;
@@ -3423,26 +3610,34 @@ impl Rx90 {
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
             let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
-            let my_4_minus_mz_5 = parameters[38] - parameters[53];
+            let my_4 = parameters[38];
+            let mz_5 = parameters[53];
+            let my_4_minus_mz_5 = my_4 - mz_5;
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
                 - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
-            let t10_arm = parameters[45] + parameters[62] - parameters[48];
+            let xx_5 = parameters[45];
+            let yy_6 = parameters[62];
+            let t10_arm = xx_5 + yy_6 - yy_5;
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
-            let zz_5_plus_yy_6 = parameters[50] + parameters[62];
+            let zz_5 = parameters[50];
+            let zz_5_plus_yy_6 = zz_5 + yy_6;
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
                 + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
             let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let xy_5 = parameters[46];
             let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
             let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let xz_5 = parameters[47];
             let w5_y_squared_arm = w5_y_arm * w5_y_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
+            let yz_5 = parameters[49];
             let t11_arm = bias_wd5_x_arm * t10_arm + w5_y_w5_z_arm * zz_5_plus_yy_6
-                - parameters[46] * bias_u5_zx_arm + parameters[47] * bias_u5_yx_arm
-                + parameters[49] * (w5_y_squared_arm - w5_z_squared_arm);
+                - xy_5 * bias_u5_zx_arm + xz_5 * bias_u5_yx_arm
+                + yz_5 * (w5_y_squared_arm - w5_z_squared_arm);
             let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
                 + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
             let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
@@ -3450,270 +3645,272 @@ impl Rx90 {
             let t12_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
             let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 + c4_arm * t12_arm;
-            let first5_y_arm = parameters[52] + parameters[67];
+            let my_5 = parameters[52];
+            let mz_6 = parameters[67];
+            let first5_y_arm = my_5 + mz_6;
             let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
             let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
-            let xx_6_minus_yy_6 = parameters[59] - parameters[62];
+            let xx_6 = parameters[59];
+            let xx_6_minus_yy_6 = xx_6 - yy_6;
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let zz_6 = parameters[64];
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
                 + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
             let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let xy_6 = parameters[60];
             let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
             let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let xz_6 = parameters[61];
             let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
+            let yz_6 = parameters[63];
             let t13_arm = bias_wd6_x_arm * xx_6_minus_yy_6
-                - parameters[64] * minus_w6_y_w6_z_arm
-                - parameters[60] * bias_u6_zx_arm
-                - parameters[61] * minus_bias_u6_yx_arm
-                + parameters[63] * (w6_y_squared_arm - w6_z_squared_arm);
+                - zz_6 * minus_w6_y_w6_z_arm - xy_6 * bias_u6_zx_arm
+                - xz_6 * minus_bias_u6_yx_arm
+                + yz_6 * (w6_y_squared_arm - w6_z_squared_arm);
             let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 - s4_arm * t12_arm;
             let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-            let moment6_x_arm = t13_arm + parameters[66] * bias_a5_y_arm;
+            let my_6 = parameters[66];
+            let moment6_x_arm = t13_arm + my_6 * bias_a5_y_arm;
             let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
             let w6_x_squared_arm = w6_x_arm * w6_x_arm;
             let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - parameters[64])
-                + parameters[60] * bias_u6_zy_arm
-                + parameters[61] * (w6_z_squared_arm - w6_x_squared_arm)
-                - parameters[63] * bias_u6_xy_arm - parameters[65] * bias_a5_y_arm;
+            let mx_6 = parameters[65];
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6_minus_yy_6 - zz_6)
+                + xy_6 * bias_u6_zy_arm
+                + xz_6 * (w6_z_squared_arm - w6_x_squared_arm)
+                - yz_6 * bias_u6_xy_arm - mx_6 * bias_a5_y_arm;
             let moment5_x_arm = t11_arm + bias_a5_z_arm * first5_y_arm
                 + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
             let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
             let w5_x_squared_arm = w5_x_arm * w5_x_arm;
             let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
+            let mx_5 = parameters[51];
             let t14_arm = w5_x_w5_z_arm * (t10_arm - zz_5_plus_yy_6)
-                + parameters[46] * bias_u5_zy_arm
-                + parameters[47] * (w5_z_squared_arm - w5_x_squared_arm)
-                - parameters[49] * bias_u5_xy_arm - parameters[51] * bias_a5_z_arm;
+                + xy_5 * bias_u5_zy_arm
+                + xz_5 * (w5_z_squared_arm - w5_x_squared_arm)
+                - yz_5 * bias_u5_xy_arm - mx_5 * bias_a5_z_arm;
             let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
             let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
             let t15_arm = minus_w6_x_w6_y_arm * xx_6_minus_yy_6
-                - parameters[64] * minus_bias_wd5_y_arm
-                + parameters[60] * (w6_x_squared_arm - w6_y_squared_arm)
-                + parameters[61] * minus_bias_u6_yz_arm
-                + parameters[63] * bias_u6_xz_arm;
+                - zz_6 * minus_bias_wd5_y_arm
+                + xy_6 * (w6_x_squared_arm - w6_y_squared_arm)
+                + xz_6 * minus_bias_u6_yz_arm + yz_6 * bias_u6_xz_arm;
             let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
             let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm
                 + c6_arm * bias_a5_z_arm;
             let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
             let moment6_z_arm = t15_arm
-                - (parameters[65] * minus_bias_a6_y_arm
-                    + parameters[66] * bias_a6_x_arm);
+                - (mx_6 * minus_bias_a6_y_arm + my_6 * bias_a6_x_arm);
             let moment5_y_arm = t14_arm + moment6_z_arm;
             let moment4_x_arm = t9_arm + bias_a4_z_arm * my_4_minus_mz_5
                 + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
             let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
+            let mx_4 = parameters[37];
             let t16_arm = w4_x_w4_z_arm * (t8_arm - zz_4_plus_yy_5)
-                + parameters[32] * bias_u4_zy_arm
-                + parameters[33] * (w4_z_squared_arm - w4_x_squared_arm)
-                - parameters[35] * bias_u4_xy_arm - parameters[37] * bias_a4_z_arm;
+                + xy_4 * bias_u4_zy_arm
+                + xz_4 * (w4_z_squared_arm - w4_x_squared_arm)
+                - yz_4 * bias_u4_xy_arm - mx_4 * bias_a4_z_arm;
             let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
             let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
             let t17_arm = bias_wd5_z_arm * zz_5_plus_yy_6 - w5_x_w5_y_arm * t10_arm
-                + parameters[46] * (w5_x_squared_arm - w5_y_squared_arm)
-                - parameters[47] * bias_u5_yz_arm + parameters[49] * bias_u5_xz_arm;
-            let moment5_z_arm = t17_arm + parameters[51] * bias_a5_y_arm
+                + xy_5 * (w5_x_squared_arm - w5_y_squared_arm)
+                - xz_5 * bias_u5_yz_arm + yz_5 * bias_u5_xz_arm;
+            let moment5_z_arm = t17_arm + mx_5 * bias_a5_y_arm
                 - bias_a5_x_arm * first5_y_arm
                 - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
             let moment4_y_arm = t16_arm - moment5_z_arm;
             let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
             let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
             let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-            let force6_x_arm = parameters[66] * bias_u6_xy_arm
-                - parameters[65] * minus_bias_u6_xx_arm;
+            let force6_x_arm = my_6 * bias_u6_xy_arm - mx_6 * minus_bias_u6_xx_arm;
             let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-            let minus_force6_y_arm = parameters[65] * minus_bias_u6_yx_arm
-                + parameters[66] * minus_bias_u6_yy_arm;
+            let minus_force6_y_arm = mx_6 * minus_bias_u6_yx_arm
+                + my_6 * minus_bias_u6_yy_arm;
             let force5_x_arm = bias_u5_xy_arm * first5_y_arm
-                - parameters[51] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
+                - mx_5 * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
                 + s6_arm * minus_force6_y_arm;
             let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-            let force6_z_arm = parameters[65] * bias_u6_zx_arm
-                + parameters[66] * bias_u6_zy_arm;
-            let force5_y_arm = parameters[51] * bias_u5_yx_arm
+            let force6_z_arm = mx_6 * bias_u6_zx_arm + my_6 * bias_u6_zy_arm;
+            let force5_y_arm = mx_5 * bias_u5_yx_arm
                 - minus_bias_u5_yy_arm * first5_y_arm + force6_z_arm;
             let force4_x_arm = bias_u4_xy_arm * my_4_minus_mz_5
-                - parameters[37] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
+                - mx_4 * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
                 - s5_arm * force5_y_arm;
             let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-            let force5_z_arm = parameters[51] * bias_u5_zx_arm
-                + bias_u5_zy_arm * first5_y_arm
+            let force5_z_arm = mx_5 * bias_u5_zx_arm + bias_u5_zy_arm * first5_y_arm
                 - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-            let minus_force4_y_arm = parameters[37] * minus_bias_u4_yx_arm
+            let minus_force4_y_arm = mx_4 * minus_bias_u4_yx_arm
                 + minus_bias_u4_yy_arm * my_4_minus_mz_5 + force5_z_arm;
             let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
                 - c4_arm * minus_force4_y_arm;
             let moment3_x_arm = t7_arm + c4_arm * moment4_x_arm
                 - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
             let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+            let mx_3 = parameters[23];
             let t18_arm = minus_bias_wd3_y_arm * (t4_arm - t5_arm)
-                + parameters[18] * bias_u3_zy_arm
-                + parameters[19] * (w3_z_squared_arm - w3_x_squared_arm)
-                - parameters[21] * bias_u3_xy_arm - parameters[23] * bias_a3_z_arm;
+                + xy_3 * bias_u3_zy_arm
+                + xz_3 * (w3_z_squared_arm - w3_x_squared_arm)
+                - yz_3 * bias_u3_xy_arm - mx_3 * bias_a3_z_arm;
             let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
             let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
             let t19_arm = minus_w4_x_w4_y_arm * t8_arm
                 - minus_bias_wd3_y_arm * zz_4_plus_yy_5
-                + parameters[32] * (w4_x_squared_arm - w4_y_squared_arm)
-                + parameters[33] * minus_bias_u4_yz_arm
-                + parameters[35] * bias_u4_xz_arm;
+                + xy_4 * (w4_x_squared_arm - w4_y_squared_arm)
+                + xz_4 * minus_bias_u4_yz_arm + yz_4 * bias_u4_xz_arm;
             let moment4_z_arm = t19_arm
-                - (parameters[37] * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
+                - (mx_4 * bias_a5_z_arm + bias_a4_x_arm * my_4_minus_mz_5)
                 + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
             let moment3_y_arm = t18_arm + moment4_z_arm;
             let moment2_x_arm = bias_wd2_x_arm
                 * (t1_arm + zz_2_plus_d3_squared_mass3_arm)
                 - minus_bias_wd2_y_arm * twice_xy_2
                 + bias_u2_xy_arm * xz_2_minus_d3_mz_3
-                + parameters[9] * (w2_y_squared_arm - rate_2_squared_arm)
+                + yz_2 * (w2_y_squared_arm - rate_2_squared_arm)
                 + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-            let force3_z_arm = parameters[23] * bias_u3_zx_arm
-                + bias_u3_zy_arm * t6_arm - s4_force4_x_plus_c4_force4_y_arm;
+            let force3_z_arm = mx_3 * bias_u3_zx_arm + bias_u3_zy_arm * t6_arm
+                - s4_force4_x_plus_c4_force4_y_arm;
             let moment2_y_arm = minus_bias_wd2_y_arm
                 * (t1_arm - zz_2_plus_d3_squared_mass3_arm)
                 + bias_wd2_x_arm * twice_xy_2
                 + xz_2_minus_d3_mz_3 * (rate_2_squared_arm - w2_x_squared_arm)
-                - parameters[9] * bias_u2_xy_arm + s3_arm * moment3_x_arm
+                - yz_2 * bias_u2_xy_arm + s3_arm * moment3_x_arm
                 + c3_arm * moment3_y_arm - D3 * force3_z_arm;
             let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-            let tau_1_arm = joint_velocities[0] * parameters[2]
-                + ::overact::math::wide::signed(parameters[3], joint_velocities[0])
-                + parameters[4];
+            let fv_1 = parameters[2];
+            let fs_1 = parameters[3];
+            let off_1 = parameters[4];
+            let tau_1_arm = joint_velocities[0] * fv_1
+                + math::wide::signed(fs_1, joint_velocities[0]) + off_1;
             let force_on_u1_arm = moment1_z_arm + tau_1_arm;
             let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
-            let inertia5_yy_arm = parameters[48] + parameters[64];
-            let t20_arm = s6_arm * xx_6_minus_yy_6 + c6_arm * (2.0 * parameters[60]);
+            let inertia5_yy_arm = yy_5 + zz_6;
+            let t20_arm = s6_arm * xx_6_minus_yy_6 + c6_arm * (2.0 * xy_6);
             let t21_arm = s6_arm * t20_arm;
-            let inertia5_xx_arm = parameters[45] + parameters[59] - t21_arm;
-            let moment5_x_by_6_arm = c6_arm * parameters[61]
-                - s6_arm * parameters[63];
-            let inertia5_xy_arm = parameters[46] + moment5_x_by_6_arm;
+            let inertia5_xx_arm = xx_5 + xx_6 - t21_arm;
+            let moment5_x_by_6_arm = c6_arm * xz_6 - s6_arm * yz_6;
+            let inertia5_xy_arm = xy_5 + moment5_x_by_6_arm;
             let t22_arm = s5_arm * (inertia5_xx_arm - inertia5_yy_arm)
                 + c5_arm * (2.0 * inertia5_xy_arm);
             let t23_arm = s5_arm * t22_arm;
-            let inertia4_zz_arm = parameters[36] + inertia5_yy_arm + t23_arm;
-            let inertia3_yy_arm = parameters[20] + inertia4_zz_arm;
-            let inertia4_xx_arm = parameters[31] + inertia5_xx_arm - t23_arm;
+            let inertia4_zz_arm = zz_4 + inertia5_yy_arm + t23_arm;
+            let inertia3_yy_arm = yy_3 + inertia4_zz_arm;
+            let inertia4_xx_arm = xx_4 + inertia5_xx_arm - t23_arm;
             let inertia5_zz_arm = zz_5_plus_yy_6 + t21_arm;
-            let inertia4_yy_arm = parameters[34] + inertia5_zz_arm;
-            let inertia5_xz_arm = parameters[47]
-                - (c6_arm * t20_arm - parameters[60]);
-            let minus_moment5_z_by_6_arm = s6_arm * parameters[61]
-                + c6_arm * parameters[63];
-            let inertia5_yz_arm = parameters[49] - minus_moment5_z_by_6_arm;
+            let inertia4_yy_arm = yy_4 + inertia5_zz_arm;
+            let inertia5_xz_arm = xz_5 - (c6_arm * t20_arm - xy_6);
+            let minus_moment5_z_by_6_arm = s6_arm * xz_6 + c6_arm * yz_6;
+            let inertia5_yz_arm = yz_5 - minus_moment5_z_by_6_arm;
             let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
                 - s5_arm * inertia5_yz_arm;
-            let inertia4_xy_arm = parameters[32] - moment4_x_by_5_arm;
+            let inertia4_xy_arm = xy_4 - moment4_x_by_5_arm;
             let t24_arm = s4_arm * (inertia4_xx_arm - inertia4_yy_arm)
                 + c4_arm * (2.0 * inertia4_xy_arm);
             let t25_arm = s4_arm * t24_arm;
-            let minus_force5_z_by_6_arm = c6_arm * parameters[65]
-                - s6_arm * parameters[66];
-            let first5_x_arm = parameters[51] + minus_force5_z_by_6_arm;
+            let minus_force5_z_by_6_arm = c6_arm * mx_6 - s6_arm * my_6;
+            let first5_x_arm = mx_5 + minus_force5_z_by_6_arm;
             let minus_force4_x_by_5_arm = s5_arm * first5_x_arm
                 + c5_arm * first5_y_arm;
             let t26_arm = t2_arm + TWICE_D3 * minus_force4_x_by_5_arm;
-            let inertia3_xx_arm = parameters[17] + inertia4_xx_arm - t25_arm
-                + t26_arm;
-            let inertia4_xz_arm = parameters[33] + c5_arm * t22_arm
-                - inertia5_xy_arm;
+            let inertia3_xx_arm = xx_3 + inertia4_xx_arm - t25_arm + t26_arm;
+            let inertia4_xz_arm = xz_4 + c5_arm * t22_arm - inertia5_xy_arm;
             let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
                 + c5_arm * inertia5_yz_arm;
-            let inertia4_yz_arm = parameters[35] - moment4_z_by_5_arm;
+            let inertia4_yz_arm = yz_4 - moment4_z_by_5_arm;
             let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * first5_y_arm;
-            let first4_x_arm = parameters[37] + force4_z_by_5_arm;
-            let minus_force5_x_by_6_arm = s6_arm * parameters[65]
-                + c6_arm * parameters[66];
+            let first4_x_arm = mx_4 + force4_z_by_5_arm;
+            let minus_force5_x_by_6_arm = s6_arm * mx_6 + c6_arm * my_6;
             let first4_y_arm = my_4_minus_mz_5 + minus_force5_x_by_6_arm;
             let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
                 - s4_arm * first4_y_arm;
             let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
             let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
                 - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
-            let inertia3_xy_arm = parameters[18] + moment3_x_by_4_arm;
+            let inertia3_xy_arm = xy_3 + moment3_x_by_4_arm;
             let t27_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
                 + c3_arm * (2.0 * inertia3_xy_arm);
             let t28_arm = s3_arm * t27_arm;
-            let first3_x_arm = parameters[23] + minus_force3_z_by_4_arm;
+            let first3_x_arm = mx_3 + minus_force3_z_by_4_arm;
             let first3_y_arm = t6_arm + minus_force4_x_by_5_arm;
             let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
             let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
             let t29_arm = d3_force2_y_by_3_arm + d3_squared_mass3_arm
                 + d3_force2_y_by_3_arm;
-            let inertia2_yy_arm = parameters[8] + inertia3_yy_arm + t28_arm
-                + t29_arm;
-            let inertia2_xx_arm = parameters[5] + inertia3_xx_arm - t28_arm;
+            let inertia2_yy_arm = yy_2 + inertia3_yy_arm + t28_arm + t29_arm;
+            let inertia2_xx_arm = xx_2 + inertia3_xx_arm - t28_arm;
             let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
                 + c3_arm * first3_y_arm;
-            let inertia2_xy_arm = parameters[6] + c3_arm * t27_arm - inertia3_xy_arm
+            let inertia2_xy_arm = xy_2 + c3_arm * t27_arm - inertia3_xy_arm
                 - D3 * minus_force2_x_by_3_arm;
-            let inertia1_zz_arm = parameters[0] + inertia2_yy_arm
+            let zz_1 = parameters[0];
+            let inertia1_zz_arm = zz_1 + inertia2_yy_arm
                 + s2_arm
                     * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
                         + c2_arm * (2.0 * inertia2_xy_arm));
-            let masses_arm_1_1 = inertia1_zz_arm + parameters[1];
-            ::overact::guard::mass(masses_arm_1_1)?;
+            let ia_1 = parameters[1];
+            let masses_arm_1_1 = inertia1_zz_arm + ia_1;
+            guard::mass(masses_arm_1_1)?;
             let inv_pivot_1 = 1.0 / masses_arm_1_1;
             let minus_force3_x_by_4_arm = s4_arm * first4_x_arm
                 + c4_arm * first4_y_arm;
             let minus_d3_force3_x_by_4_arm = D3 * minus_force3_x_by_4_arm;
-            let inertia3_xz_arm = parameters[19]
-                - (c4_arm * t24_arm - inertia4_xy_arm);
+            let inertia3_xz_arm = xz_3 - (c4_arm * t24_arm - inertia4_xy_arm);
             let moment3_z_by_4_arm = minus_d3_force3_x_by_4_arm
                 - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-            let inertia3_yz_arm = parameters[21] + moment3_z_by_4_arm;
+            let inertia3_yz_arm = yz_3 + moment3_z_by_4_arm;
             let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
                 - s3_arm * inertia3_yz_arm;
             let inertia2_xz_arm = minus_d3_force3_x_by_4_arm + xz_2_minus_d3_mz_3
                 + moment2_x_by_3_arm;
             let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
                 + c3_arm * inertia3_yz_arm;
-            let inertia2_yz_arm = parameters[9] + moment2_y_by_3_arm;
+            let inertia2_yz_arm = yz_2 + moment2_y_by_3_arm;
             let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
                 + c2_arm * inertia2_yz_arm;
             let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
-            let inertia3_zz_arm = parameters[22] + inertia4_yy_arm + t25_arm
-                + t26_arm;
-            let inertia2_zz_arm = parameters[10] + inertia3_zz_arm + t29_arm;
-            let masses_arm_2_2 = inertia2_zz_arm + parameters[13];
+            let inertia3_zz_arm = zz_3 + inertia4_yy_arm + t25_arm + t26_arm;
+            let inertia2_zz_arm = zz_2 + inertia3_zz_arm + t29_arm;
+            let ia_2 = parameters[13];
+            let masses_arm_2_2 = inertia2_zz_arm + ia_2;
             let pivot_2 = masses_arm_2_2 - minus_inertia1_yz_arm * l_2_1;
-            ::overact::guard::mass(pivot_2)?;
+            guard::mass(pivot_2)?;
             let inv_pivot_2 = 1.0 / pivot_2;
-            let t30_arm = parameters[6] * (w2_x_squared_arm - w2_y_squared_arm)
-                - bias_u2_xy_arm * t1_arm
-                + bias_a2_y_arm * (parameters[11] + D3 * mass3_arm)
-                - parameters[12] * bias_a2_x_arm;
+            let mx_2 = parameters[11];
+            let my_2 = parameters[12];
+            let t30_arm = xy_2 * (w2_x_squared_arm - w2_y_squared_arm)
+                - bias_u2_xy_arm * t1_arm + bias_a2_y_arm * (mx_2 + D3 * mass3_arm)
+                - my_2 * bias_a2_x_arm;
             let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
             let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
                 + s4_arm * minus_force4_y_arm;
-            let force3_x_arm = bias_u3_xy_arm * t6_arm
-                - parameters[23] * minus_bias_u3_xx_arm
+            let force3_x_arm = bias_u3_xy_arm * t6_arm - mx_3 * minus_bias_u3_xx_arm
                 + c4_force4_x_minus_s4_force4_y_arm;
-            let force4_z_arm = parameters[37] * bias_u4_zx_arm
+            let force4_z_arm = mx_4 * bias_u4_zx_arm
                 + bias_u4_zy_arm * my_4_minus_mz_5 + s5_arm * force5_x_arm
                 + c5_arm * force5_y_arm;
-            let force3_y_arm = parameters[23] * bias_u3_xy_arm
-                - minus_bias_u3_yy_arm * t6_arm + force4_z_arm;
-            let t31_arm = parameters[18] * (w3_x_squared_arm - w3_y_squared_arm)
-                - bias_u3_xy_arm * t4_arm + parameters[23] * bias_a3_y_arm
+            let force3_y_arm = mx_3 * bias_u3_xy_arm - minus_bias_u3_yy_arm * t6_arm
+                + force4_z_arm;
+            let t31_arm = xy_3 * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * t4_arm + mx_3 * bias_a3_y_arm
                 - bias_a3_x_arm * t6_arm - D3 * c4_force4_x_minus_s4_force4_y_arm;
             let moment3_z_arm = t31_arm
                 - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
             let moment2_z_arm = t30_arm
                 + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm)
                 + moment3_z_arm;
-            let tau_2_arm = joint_velocities[1] * parameters[14]
-                + ::overact::math::wide::signed(parameters[15], joint_velocities[1])
-                + parameters[16];
+            let fv_2 = parameters[14];
+            let fs_2 = parameters[15];
+            let off_2 = parameters[16];
+            let tau_2_arm = joint_velocities[1] * fv_2
+                + math::wide::signed(fs_2, joint_velocities[1]) + off_2;
             let force_on_u2_arm = moment2_z_arm + tau_2_arm;
             let t1 = torques[1] - force_on_u2_arm
                 - tau1_minus_force_on_u1_arm * l_2_1;
@@ -3723,14 +3920,17 @@ impl Rx90 {
             let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
             let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
             let l_3_2 = schur_2_3 * inv_pivot_2;
-            let masses_arm_3_3 = inertia3_zz_arm + parameters[27];
+            let ia_3 = parameters[27];
+            let masses_arm_3_3 = inertia3_zz_arm + ia_3;
             let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1
                 - schur_2_3 * l_3_2;
-            ::overact::guard::mass(pivot_3)?;
+            guard::mass(pivot_3)?;
             let inv_pivot_3 = 1.0 / pivot_3;
-            let tau_3_arm = joint_velocities[2] * parameters[28]
-                + ::overact::math::wide::signed(parameters[29], joint_velocities[2])
-                + parameters[30];
+            let fv_3 = parameters[28];
+            let fs_3 = parameters[29];
+            let off_3 = parameters[30];
+            let tau_3_arm = joint_velocities[2] * fv_3
+                + math::wide::signed(fs_3, joint_velocities[2]) + off_3;
             let force_on_u3_arm = moment3_z_arm + tau_3_arm;
             let t2 = torques[2] - force_on_u3_arm
                 - tau1_minus_force_on_u1_arm * l_3_1 - l_3_2 * t1;
@@ -3748,14 +3948,17 @@ impl Rx90 {
             let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
                 - schur_2_3 * l_4_2;
             let l_4_3 = schur_3_4 * inv_pivot_3;
-            let masses_arm_4_4 = inertia4_zz_arm + parameters[41];
+            let ia_4 = parameters[41];
+            let masses_arm_4_4 = inertia4_zz_arm + ia_4;
             let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1
                 - schur_2_4 * l_4_2 - schur_3_4 * l_4_3;
-            ::overact::guard::mass(pivot_4)?;
+            guard::mass(pivot_4)?;
             let inv_pivot_4 = 1.0 / pivot_4;
-            let tau_4_arm = joint_velocities[3] * parameters[42]
-                + ::overact::math::wide::signed(parameters[43], joint_velocities[3])
-                + parameters[44];
+            let fv_4 = parameters[42];
+            let fs_4 = parameters[43];
+            let off_4 = parameters[44];
+            let tau_4_arm = joint_velocities[3] * fv_4
+                + math::wide::signed(fs_4, joint_velocities[3]) + off_4;
             let force_on_u4_arm = moment4_z_arm + tau_4_arm;
             let t3 = torques[3] - force_on_u4_arm
                 - tau1_minus_force_on_u1_arm * l_4_1 - l_4_2 * t1 - l_4_3 * t2;
@@ -3784,28 +3987,29 @@ impl Rx90 {
             let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
                 - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
             let l_5_4 = schur_4_5 * inv_pivot_4;
-            let masses_arm_5_5 = inertia5_zz_arm + parameters[55];
+            let ia_5 = parameters[55];
+            let masses_arm_5_5 = inertia5_zz_arm + ia_5;
             let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1
                 - schur_2_5 * l_5_2 - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
-            ::overact::guard::mass(pivot_5)?;
+            guard::mass(pivot_5)?;
             let inv_pivot_5 = 1.0 / pivot_5;
-            let tau_5_arm = joint_velocities[4] * parameters[56]
-                + ::overact::math::wide::signed(parameters[57], joint_velocities[4])
-                + parameters[58];
+            let fv_5 = parameters[56];
+            let fs_5 = parameters[57];
+            let off_5 = parameters[58];
+            let tau_5_arm = joint_velocities[4] * fv_5
+                + math::wide::signed(fs_5, joint_velocities[4]) + off_5;
             let force_on_u5_arm = moment5_z_arm + tau_5_arm;
             let t4 = torques[4] - force_on_u5_arm
                 - tau1_minus_force_on_u1_arm * l_5_1 - l_5_2 * t1 - l_5_3 * t2
                 - l_5_4 * t3;
-            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
-                - s5_arm * parameters[64];
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * zz_6;
             let minus_force4_x_by_6_arm = c5_arm * minus_force5_x_by_6_arm;
             let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
                 - s4_arm * minus_force4_x_by_6_arm;
             let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
             let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
                 - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
-                + c5_arm * parameters[64];
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * zz_6;
             let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
                 - s3_arm * moment4_z_by_6_arm;
             let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
@@ -3834,40 +4038,43 @@ impl Rx90 {
                 + moment1_z_by_5_arm * l_6_1 + schur_2_5 * l_6_2 + schur_3_5 * l_6_3
                 + schur_4_5 * l_6_4;
             let minus_l_6_5 = minus_schur_5_6 * inv_pivot_5;
-            let tau_6_arm = joint_velocities[5] * parameters[70]
-                + ::overact::math::wide::signed(parameters[71], joint_velocities[5])
-                + parameters[72];
+            let fv_6 = parameters[70];
+            let fs_6 = parameters[71];
+            let off_6 = parameters[72];
+            let tau_6_arm = joint_velocities[5] * fv_6
+                + math::wide::signed(fs_6, joint_velocities[5]) + off_6;
             let force_on_u6_arm = moment6_z_arm + tau_6_arm;
             let t5 = torques[5] - force_on_u6_arm
                 - tau1_minus_force_on_u1_arm * l_6_1 - l_6_2 * t1 - l_6_3 * t2
                 - l_6_4 * t3 + minus_l_6_5 * t4;
-            let masses_arm_6_6 = parameters[64] + parameters[69];
+            let ia_6 = parameters[69];
+            let masses_arm_6_6 = zz_6 + ia_6;
             let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1
                 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
                 - minus_schur_5_6 * minus_l_6_5;
-            ::overact::guard::mass(pivot_6)?;
-            ::overact::guard::size(inv_pivot_1, 1e60)?;
-            ::overact::guard::size(inv_pivot_2, 1e60)?;
-            ::overact::guard::size(inv_pivot_3, 1e60)?;
-            ::overact::guard::size(inv_pivot_4, 1e60)?;
-            ::overact::guard::size(inv_pivot_5, 1e60)?;
-            ::overact::guard::size(pivot_4, 1e60)?;
-            ::overact::guard::size(pivot_5, 1e60)?;
-            ::overact::guard::size(pivot_6, 1e60)?;
+            guard::mass(pivot_6)?;
+            guard::size(inv_pivot_1, 1e60)?;
+            guard::size(inv_pivot_2, 1e60)?;
+            guard::size(inv_pivot_3, 1e60)?;
+            guard::size(inv_pivot_4, 1e60)?;
+            guard::size(inv_pivot_5, 1e60)?;
+            guard::size(pivot_4, 1e60)?;
+            guard::size(pivot_5, 1e60)?;
+            guard::size(pivot_6, 1e60)?;
             let t6 = t5 / pivot_6;
-            ::overact::guard::size(t6, 1e60)?;
+            guard::size(t6, 1e60)?;
             let t7 = inv_pivot_5 * t4 + minus_l_6_5 * t6;
-            ::overact::guard::size(t7, 1e60)?;
+            guard::size(t7, 1e60)?;
             let t8 = inv_pivot_4 * t3 - l_5_4 * t7 - l_6_4 * t6;
-            ::overact::guard::size(t8, 1e60)?;
+            guard::size(t8, 1e60)?;
             let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
-            ::overact::guard::size(t9, 1e60)?;
+            guard::size(t9, 1e60)?;
             let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
                 - l_6_2 * t6;
-            ::overact::guard::size(t10, 1e60)?;
+            guard::size(t10, 1e60)?;
             let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
                 - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
-            ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
+            Ok([t11, t10, t9, t8, t7, t6])
         })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -3883,77 +4090,90 @@ impl Rx90 {
     /// 855 operations (406 additions, 440 multiplications, 9 divisions), 5 trigonometric pairs, 6 signs, 17 guards, 859 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
-        joints: &[::core::primitive::f64; 6],
-        joint_velocities: &[::core::primitive::f64; 6],
-        torques: &[::core::primitive::f64; 6],
-        base_parameters: &[::core::primitive::f64; 58],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        joints: &[f64; 6],
+        joint_velocities: &[f64; 6],
+        torques: &[f64; 6],
+        base_parameters: &[f64; 58],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("joints", joints, 1e12), ("joint_velocities", joint_velocities, 1e9),
                 ("torques", torques, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// d3 = rl4
-            const D3: ::core::primitive::f64 = 0.45;
+            const D3: f64 = 0.45;
             /// 2 d3
-            const TWICE_D3: ::core::primitive::f64 = 0.9;
+            const TWICE_D3: f64 = 0.9;
             // --- sines and cosines
             let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm),
-            (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::wide::sin_cos_all([
+            (s5_arm, c5_arm), (s6_arm, c6_arm)] = math::wide::sin_cos_all([
                 joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
             // --- arm
             let w2_y_arm = c2_arm * joint_velocities[0];
             let bias_wd2_x_arm = joint_velocities[1] * w2_y_arm;
+            let yy_2R = base_parameters[27];
+            let zz_2R = base_parameters[4];
             let w2_x_arm = s2_arm * joint_velocities[0];
             let minus_bias_wd2_y_arm = joint_velocities[1] * w2_x_arm;
             let bias_u2_zx_arm = 2.0 * minus_bias_wd2_y_arm;
+            let xy_2 = base_parameters[31];
             let bias_u2_xy_arm = w2_x_arm * w2_y_arm;
+            let xz_2R = base_parameters[28];
             let w2_y_squared_arm = w2_y_arm * w2_y_arm;
             let rate_2_squared_arm = joint_velocities[1] * joint_velocities[1];
+            let yz_2 = base_parameters[30];
             let w3_y_arm = c3_arm * w2_y_arm - s3_arm * w2_x_arm;
             let w3_z_arm = joint_velocities[1] + joint_velocities[2];
             let bias_wd3_x_arm = w3_y_arm * w3_z_arm;
-            let d3_m_4R = D3 * base_parameters[35];
+            let m_4R = base_parameters[35];
+            let d3_m_4R = D3 * m_4R;
             let d3_d3_m_4R = D3 * d3_m_4R;
-            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - base_parameters[29];
-            let zz_3R_plus_d3_d3_m_4R = base_parameters[24] + d3_d3_m_4R;
+            let yy_3R = base_parameters[29];
+            let d3_d3_m_4R_minus_yy_3R = d3_d3_m_4R - yy_3R;
+            let zz_3R = base_parameters[24];
+            let zz_3R_plus_d3_d3_m_4R = zz_3R + d3_d3_m_4R;
             let w3_x_arm = c3_arm * w2_x_arm + s3_arm * w2_y_arm;
             let minus_bias_wd3_y_arm = w3_x_arm * w3_z_arm;
             let bias_u3_zx_arm = 2.0 * minus_bias_wd3_y_arm;
+            let xy_3 = base_parameters[32];
             let bias_u3_xy_arm = w3_x_arm * w3_y_arm;
+            let xz_3 = base_parameters[33];
             let w3_y_squared_arm = w3_y_arm * w3_y_arm;
             let w3_z_squared_arm = w3_z_arm * w3_z_arm;
+            let yz_3 = base_parameters[34];
             let bias_a3_z_arm = TWICE_D3 * minus_bias_wd2_y_arm;
             let t1_arm = bias_wd3_x_arm
                 * (d3_d3_m_4R_minus_yy_3R + zz_3R_plus_d3_d3_m_4R)
-                - base_parameters[32] * bias_u3_zx_arm
-                + base_parameters[33] * bias_u3_xy_arm
-                + base_parameters[34] * (w3_y_squared_arm - w3_z_squared_arm)
+                - xy_3 * bias_u3_zx_arm + xz_3 * bias_u3_xy_arm
+                + yz_3 * (w3_y_squared_arm - w3_z_squared_arm)
                 + bias_a3_z_arm * d3_m_4R;
             let minus_w4_y_arm = s4_arm * w3_x_arm + c4_arm * w3_z_arm;
             let bias_wd4_x_arm = c4_arm * bias_wd3_x_arm
                 - joint_velocities[3] * minus_w4_y_arm;
+            let xx_4R = base_parameters[37];
             let w4_z_arm = w3_y_arm + joint_velocities[3];
             let minus_w4_y_w4_z_arm = minus_w4_y_arm * w4_z_arm;
+            let zz_4R = base_parameters[36];
             let w4_x_arm = c4_arm * w3_x_arm - s4_arm * w3_z_arm;
             let w4_x_w4_z_arm = w4_x_arm * w4_z_arm;
             let bias_wd5_z_arm = s4_arm * bias_wd3_x_arm
                 + joint_velocities[3] * w4_x_arm;
             let bias_u4_zx_arm = w4_x_w4_z_arm + bias_wd5_z_arm;
+            let xy_4 = base_parameters[40];
             let minus_w4_x_w4_y_arm = w4_x_arm * minus_w4_y_arm;
             let minus_bias_u4_yx_arm = minus_w4_x_w4_y_arm + minus_bias_wd3_y_arm;
+            let xz_4 = base_parameters[39];
             let w4_y_squared_arm = minus_w4_y_arm * minus_w4_y_arm;
             let w4_z_squared_arm = w4_z_arm * w4_z_arm;
-            let t2_arm = base_parameters[37] * bias_wd4_x_arm
-                - base_parameters[36] * minus_w4_y_w4_z_arm
-                - base_parameters[40] * bias_u4_zx_arm
-                - base_parameters[39] * minus_bias_u4_yx_arm
-                + base_parameters[38] * (w4_y_squared_arm - w4_z_squared_arm);
+            let yz_4 = base_parameters[38];
+            let t2_arm = xx_4R * bias_wd4_x_arm - zz_4R * minus_w4_y_w4_z_arm
+                - xy_4 * bias_u4_zx_arm - xz_4 * minus_bias_u4_yx_arm
+                + yz_4 * (w4_y_squared_arm - w4_z_squared_arm);
             let bias_a2_y_arm = 9.81 * c2_arm;
             let bias_a2_y_plus_d3_bias_u2_xy_arm = bias_a2_y_arm
                 + D3 * bias_u2_xy_arm;
@@ -3966,25 +4186,29 @@ impl Rx90 {
             let w3_x_squared_arm = w3_x_arm * w3_x_arm;
             let minus_bias_u3_yy_arm = w3_x_squared_arm + w3_z_squared_arm;
             let bias_a4_z_arm = bias_a3_y_arm - D3 * minus_bias_u3_yy_arm;
+            let my_4R = base_parameters[44];
             let w5_y_arm = c5_arm * w4_z_arm - s5_arm * w4_x_arm;
             let bias_wd5_x_arm = c5_arm * bias_wd4_x_arm
                 - s5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_y_arm;
+            let xx_5R = base_parameters[43];
             let w5_z_arm = minus_w4_y_arm + joint_velocities[4];
             let w5_y_w5_z_arm = w5_y_arm * w5_z_arm;
+            let zz_5R = base_parameters[42];
             let w5_x_arm = c5_arm * w4_x_arm + s5_arm * w4_z_arm;
             let w5_x_w5_z_arm = w5_x_arm * w5_z_arm;
             let minus_bias_wd5_y_arm = s5_arm * bias_wd4_x_arm
                 + c5_arm * minus_bias_wd3_y_arm + joint_velocities[4] * w5_x_arm;
             let bias_u5_zx_arm = w5_x_w5_z_arm + minus_bias_wd5_y_arm;
+            let xy_5 = base_parameters[45];
             let w5_x_w5_y_arm = w5_x_arm * w5_y_arm;
             let bias_u5_yx_arm = w5_x_w5_y_arm + bias_wd5_z_arm;
+            let xz_5 = base_parameters[46];
             let w5_y_squared_arm = w5_y_arm * w5_y_arm;
             let w5_z_squared_arm = w5_z_arm * w5_z_arm;
-            let t3_arm = base_parameters[43] * bias_wd5_x_arm
-                + base_parameters[42] * w5_y_w5_z_arm
-                - base_parameters[45] * bias_u5_zx_arm
-                + base_parameters[46] * bias_u5_yx_arm
-                + base_parameters[47] * (w5_y_squared_arm - w5_z_squared_arm);
+            let yz_5 = base_parameters[47];
+            let t3_arm = xx_5R * bias_wd5_x_arm + zz_5R * w5_y_w5_z_arm
+                - xy_5 * bias_u5_zx_arm + xz_5 * bias_u5_yx_arm
+                + yz_5 * (w5_y_squared_arm - w5_z_squared_arm);
             let bias_a3_x_arm = c3_arm * bias_a2_x_plus_d3_bias_u2_xx_arm
                 + s3_arm * bias_a2_y_plus_d3_bias_u2_xy_arm;
             let bias_a3_x_plus_d3_bias_u3_xy_arm = bias_a3_x_arm
@@ -3992,279 +4216,252 @@ impl Rx90 {
             let t4_arm = TWICE_D3 * (minus_bias_wd2_y_arm + bias_wd3_x_arm);
             let bias_a5_z_arm = s4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 + c4_arm * t4_arm;
+            let my_5R = base_parameters[50];
             let minus_w6_y_arm = s6_arm * w5_x_arm + c6_arm * w5_z_arm;
             let bias_wd6_x_arm = c6_arm * bias_wd5_x_arm - s6_arm * bias_wd5_z_arm
                 - joint_velocities[5] * minus_w6_y_arm;
+            let xx_6R = base_parameters[49];
             let w6_z_arm = w5_y_arm + joint_velocities[5];
             let minus_w6_y_w6_z_arm = minus_w6_y_arm * w6_z_arm;
+            let zz_6 = base_parameters[48];
             let w6_x_arm = c6_arm * w5_x_arm - s6_arm * w5_z_arm;
             let w6_x_w6_z_arm = w6_x_arm * w6_z_arm;
             let minus_bias_wd6_y_arm = s6_arm * bias_wd5_x_arm
                 + c6_arm * bias_wd5_z_arm + joint_velocities[5] * w6_x_arm;
             let bias_u6_zx_arm = w6_x_w6_z_arm + minus_bias_wd6_y_arm;
+            let xy_6 = base_parameters[54];
             let minus_w6_x_w6_y_arm = w6_x_arm * minus_w6_y_arm;
             let minus_bias_u6_yx_arm = minus_w6_x_w6_y_arm + minus_bias_wd5_y_arm;
+            let xz_6 = base_parameters[52];
             let w6_y_squared_arm = minus_w6_y_arm * minus_w6_y_arm;
             let w6_z_squared_arm = w6_z_arm * w6_z_arm;
-            let t5_arm = base_parameters[49] * bias_wd6_x_arm
-                - base_parameters[48] * minus_w6_y_w6_z_arm
-                - base_parameters[54] * bias_u6_zx_arm
-                - base_parameters[52] * minus_bias_u6_yx_arm
-                + base_parameters[53] * (w6_y_squared_arm - w6_z_squared_arm);
+            let yz_6 = base_parameters[53];
+            let t5_arm = xx_6R * bias_wd6_x_arm - zz_6 * minus_w6_y_w6_z_arm
+                - xy_6 * bias_u6_zx_arm - xz_6 * minus_bias_u6_yx_arm
+                + yz_6 * (w6_y_squared_arm - w6_z_squared_arm);
             let bias_a4_x_arm = c4_arm * bias_a3_x_plus_d3_bias_u3_xy_arm
                 - s4_arm * t4_arm;
             let bias_a5_y_arm = c5_arm * bias_a4_z_arm - s5_arm * bias_a4_x_arm;
-            let moment6_x_arm = t5_arm + base_parameters[57] * bias_a5_y_arm;
+            let my_6 = base_parameters[57];
+            let moment6_x_arm = t5_arm + my_6 * bias_a5_y_arm;
             let bias_u6_zy_arm = bias_wd6_x_arm - minus_w6_y_w6_z_arm;
             let w6_x_squared_arm = w6_x_arm * w6_x_arm;
             let bias_u6_xy_arm = minus_bias_wd5_y_arm - minus_w6_x_w6_y_arm;
-            let moment6_y_arm = w6_x_w6_z_arm
-                * (base_parameters[49] - base_parameters[48])
-                + base_parameters[54] * bias_u6_zy_arm
-                + base_parameters[52] * (w6_z_squared_arm - w6_x_squared_arm)
-                - base_parameters[53] * bias_u6_xy_arm
-                - base_parameters[56] * bias_a5_y_arm;
-            let moment5_x_arm = t3_arm + base_parameters[50] * bias_a5_z_arm
+            let mx_6 = base_parameters[56];
+            let moment6_y_arm = w6_x_w6_z_arm * (xx_6R - zz_6)
+                + xy_6 * bias_u6_zy_arm
+                + xz_6 * (w6_z_squared_arm - w6_x_squared_arm)
+                - yz_6 * bias_u6_xy_arm - mx_6 * bias_a5_y_arm;
+            let moment5_x_arm = t3_arm + my_5R * bias_a5_z_arm
                 + c6_arm * moment6_x_arm - s6_arm * moment6_y_arm;
             let bias_u5_zy_arm = w5_y_w5_z_arm + bias_wd5_x_arm;
             let w5_x_squared_arm = w5_x_arm * w5_x_arm;
             let bias_u5_xy_arm = w5_x_w5_y_arm - bias_wd5_z_arm;
-            let t6_arm = w5_x_w5_z_arm * (base_parameters[43] - base_parameters[42])
-                + base_parameters[45] * bias_u5_zy_arm
-                + base_parameters[46] * (w5_z_squared_arm - w5_x_squared_arm)
-                - base_parameters[47] * bias_u5_xy_arm
-                - base_parameters[55] * bias_a5_z_arm;
+            let mx_5 = base_parameters[55];
+            let t6_arm = w5_x_w5_z_arm * (xx_5R - zz_5R) + xy_5 * bias_u5_zy_arm
+                + xz_5 * (w5_z_squared_arm - w5_x_squared_arm)
+                - yz_5 * bias_u5_xy_arm - mx_5 * bias_a5_z_arm;
             let minus_bias_u6_yz_arm = minus_w6_y_w6_z_arm + bias_wd6_x_arm;
             let bias_u6_xz_arm = w6_x_w6_z_arm - minus_bias_wd6_y_arm;
-            let t7_arm = base_parameters[49] * minus_w6_x_w6_y_arm
-                - base_parameters[48] * minus_bias_wd5_y_arm
-                + base_parameters[54] * (w6_x_squared_arm - w6_y_squared_arm)
-                + base_parameters[52] * minus_bias_u6_yz_arm
-                + base_parameters[53] * bias_u6_xz_arm;
+            let t7_arm = xx_6R * minus_w6_x_w6_y_arm - zz_6 * minus_bias_wd5_y_arm
+                + xy_6 * (w6_x_squared_arm - w6_y_squared_arm)
+                + xz_6 * minus_bias_u6_yz_arm + yz_6 * bias_u6_xz_arm;
             let bias_a5_x_arm = c5_arm * bias_a4_x_arm + s5_arm * bias_a4_z_arm;
             let minus_bias_a6_y_arm = s6_arm * bias_a5_x_arm
                 + c6_arm * bias_a5_z_arm;
             let bias_a6_x_arm = c6_arm * bias_a5_x_arm - s6_arm * bias_a5_z_arm;
             let moment6_z_arm = t7_arm
-                - (base_parameters[56] * minus_bias_a6_y_arm
-                    + base_parameters[57] * bias_a6_x_arm);
+                - (mx_6 * minus_bias_a6_y_arm + my_6 * bias_a6_x_arm);
             let moment5_y_arm = t6_arm + moment6_z_arm;
-            let moment4_x_arm = t2_arm + base_parameters[44] * bias_a4_z_arm
+            let moment4_x_arm = t2_arm + my_4R * bias_a4_z_arm
                 + c5_arm * moment5_x_arm - s5_arm * moment5_y_arm;
             let bias_u4_zy_arm = bias_wd4_x_arm - minus_w4_y_w4_z_arm;
             let w4_x_squared_arm = w4_x_arm * w4_x_arm;
             let bias_u4_xy_arm = minus_bias_wd3_y_arm - minus_w4_x_w4_y_arm;
-            let t8_arm = w4_x_w4_z_arm * (base_parameters[37] - base_parameters[36])
-                + base_parameters[40] * bias_u4_zy_arm
-                + base_parameters[39] * (w4_z_squared_arm - w4_x_squared_arm)
-                - base_parameters[38] * bias_u4_xy_arm
-                - base_parameters[51] * bias_a4_z_arm;
+            let mx_4 = base_parameters[51];
+            let t8_arm = w4_x_w4_z_arm * (xx_4R - zz_4R) + xy_4 * bias_u4_zy_arm
+                + xz_4 * (w4_z_squared_arm - w4_x_squared_arm)
+                - yz_4 * bias_u4_xy_arm - mx_4 * bias_a4_z_arm;
             let bias_u5_yz_arm = w5_y_w5_z_arm - bias_wd5_x_arm;
             let bias_u5_xz_arm = w5_x_w5_z_arm - minus_bias_wd5_y_arm;
-            let t9_arm = base_parameters[42] * bias_wd5_z_arm
-                - base_parameters[43] * w5_x_w5_y_arm
-                + base_parameters[45] * (w5_x_squared_arm - w5_y_squared_arm)
-                - base_parameters[46] * bias_u5_yz_arm
-                + base_parameters[47] * bias_u5_xz_arm;
-            let moment5_z_arm = t9_arm + base_parameters[55] * bias_a5_y_arm
-                - base_parameters[50] * bias_a5_x_arm
+            let t9_arm = zz_5R * bias_wd5_z_arm - xx_5R * w5_x_w5_y_arm
+                + xy_5 * (w5_x_squared_arm - w5_y_squared_arm)
+                - xz_5 * bias_u5_yz_arm + yz_5 * bias_u5_xz_arm;
+            let moment5_z_arm = t9_arm + mx_5 * bias_a5_y_arm - my_5R * bias_a5_x_arm
                 - (s6_arm * moment6_x_arm + c6_arm * moment6_y_arm);
             let moment4_y_arm = t8_arm - moment5_z_arm;
             let minus_bias_u4_xx_arm = w4_y_squared_arm + w4_z_squared_arm;
             let minus_bias_u5_xx_arm = w5_y_squared_arm + w5_z_squared_arm;
             let minus_bias_u6_xx_arm = w6_y_squared_arm + w6_z_squared_arm;
-            let force6_x_arm = base_parameters[57] * bias_u6_xy_arm
-                - base_parameters[56] * minus_bias_u6_xx_arm;
+            let force6_x_arm = my_6 * bias_u6_xy_arm - mx_6 * minus_bias_u6_xx_arm;
             let minus_bias_u6_yy_arm = w6_x_squared_arm + w6_z_squared_arm;
-            let minus_force6_y_arm = base_parameters[56] * minus_bias_u6_yx_arm
-                + base_parameters[57] * minus_bias_u6_yy_arm;
-            let force5_x_arm = base_parameters[50] * bias_u5_xy_arm
-                - base_parameters[55] * minus_bias_u5_xx_arm + c6_arm * force6_x_arm
-                + s6_arm * minus_force6_y_arm;
+            let minus_force6_y_arm = mx_6 * minus_bias_u6_yx_arm
+                + my_6 * minus_bias_u6_yy_arm;
+            let force5_x_arm = my_5R * bias_u5_xy_arm - mx_5 * minus_bias_u5_xx_arm
+                + c6_arm * force6_x_arm + s6_arm * minus_force6_y_arm;
             let minus_bias_u5_yy_arm = w5_x_squared_arm + w5_z_squared_arm;
-            let force6_z_arm = base_parameters[56] * bias_u6_zx_arm
-                + base_parameters[57] * bias_u6_zy_arm;
-            let force5_y_arm = base_parameters[55] * bias_u5_yx_arm
-                - base_parameters[50] * minus_bias_u5_yy_arm + force6_z_arm;
-            let force4_x_arm = base_parameters[44] * bias_u4_xy_arm
-                - base_parameters[51] * minus_bias_u4_xx_arm + c5_arm * force5_x_arm
-                - s5_arm * force5_y_arm;
+            let force6_z_arm = mx_6 * bias_u6_zx_arm + my_6 * bias_u6_zy_arm;
+            let force5_y_arm = mx_5 * bias_u5_yx_arm - my_5R * minus_bias_u5_yy_arm
+                + force6_z_arm;
+            let force4_x_arm = my_4R * bias_u4_xy_arm - mx_4 * minus_bias_u4_xx_arm
+                + c5_arm * force5_x_arm - s5_arm * force5_y_arm;
             let minus_bias_u4_yy_arm = w4_x_squared_arm + w4_z_squared_arm;
-            let force5_z_arm = base_parameters[55] * bias_u5_zx_arm
-                + base_parameters[50] * bias_u5_zy_arm
+            let force5_z_arm = mx_5 * bias_u5_zx_arm + my_5R * bias_u5_zy_arm
                 - (s6_arm * force6_x_arm - c6_arm * minus_force6_y_arm);
-            let minus_force4_y_arm = base_parameters[51] * minus_bias_u4_yx_arm
-                + base_parameters[44] * minus_bias_u4_yy_arm + force5_z_arm;
+            let minus_force4_y_arm = mx_4 * minus_bias_u4_yx_arm
+                + my_4R * minus_bias_u4_yy_arm + force5_z_arm;
             let s4_force4_x_plus_c4_force4_y_arm = s4_arm * force4_x_arm
                 - c4_arm * minus_force4_y_arm;
             let moment3_x_arm = t1_arm + c4_arm * moment4_x_arm
                 - s4_arm * moment4_y_arm - D3 * s4_force4_x_plus_c4_force4_y_arm;
             let bias_u3_zy_arm = 2.0 * bias_wd3_x_arm;
+            let mx_3 = base_parameters[41];
             let t10_arm = minus_bias_wd3_y_arm
                 * (d3_d3_m_4R_minus_yy_3R - zz_3R_plus_d3_d3_m_4R)
-                + base_parameters[32] * bias_u3_zy_arm
-                + base_parameters[33] * (w3_z_squared_arm - w3_x_squared_arm)
-                - base_parameters[34] * bias_u3_xy_arm
-                - base_parameters[41] * bias_a3_z_arm;
+                + xy_3 * bias_u3_zy_arm
+                + xz_3 * (w3_z_squared_arm - w3_x_squared_arm)
+                - yz_3 * bias_u3_xy_arm - mx_3 * bias_a3_z_arm;
             let minus_bias_u4_yz_arm = minus_w4_y_w4_z_arm + bias_wd4_x_arm;
             let bias_u4_xz_arm = w4_x_w4_z_arm - bias_wd5_z_arm;
-            let t11_arm = base_parameters[37] * minus_w4_x_w4_y_arm
-                - base_parameters[36] * minus_bias_wd3_y_arm
-                + base_parameters[40] * (w4_x_squared_arm - w4_y_squared_arm)
-                + base_parameters[39] * minus_bias_u4_yz_arm
-                + base_parameters[38] * bias_u4_xz_arm;
+            let t11_arm = xx_4R * minus_w4_x_w4_y_arm - zz_4R * minus_bias_wd3_y_arm
+                + xy_4 * (w4_x_squared_arm - w4_y_squared_arm)
+                + xz_4 * minus_bias_u4_yz_arm + yz_4 * bias_u4_xz_arm;
             let moment4_z_arm = t11_arm
-                - (base_parameters[51] * bias_a5_z_arm
-                    + base_parameters[44] * bias_a4_x_arm) + s5_arm * moment5_x_arm
-                + c5_arm * moment5_y_arm;
+                - (mx_4 * bias_a5_z_arm + my_4R * bias_a4_x_arm)
+                + s5_arm * moment5_x_arm + c5_arm * moment5_y_arm;
             let moment3_y_arm = t10_arm + moment4_z_arm;
-            let moment2_x_arm = base_parameters[28] * bias_u2_xy_arm
-                - (bias_wd2_x_arm * (base_parameters[27] - base_parameters[4])
-                    + base_parameters[31] * bias_u2_zx_arm)
-                + base_parameters[30] * (w2_y_squared_arm - rate_2_squared_arm)
+            let moment2_x_arm = xz_2R * bias_u2_xy_arm
+                - (bias_wd2_x_arm * (yy_2R - zz_2R) + xy_2 * bias_u2_zx_arm)
+                + yz_2 * (w2_y_squared_arm - rate_2_squared_arm)
                 + c3_arm * moment3_x_arm - s3_arm * moment3_y_arm;
-            let yy_2R_plus_d3_d3_m_4R = base_parameters[27] + d3_d3_m_4R;
+            let yy_2R_plus_d3_d3_m_4R = yy_2R + d3_d3_m_4R;
             let bias_u2_zy_arm = 2.0 * bias_wd2_x_arm;
             let w2_x_squared_arm = w2_x_arm * w2_x_arm;
-            let t12_arm = base_parameters[31] * bias_u2_zy_arm
-                - minus_bias_wd2_y_arm
-                    * (yy_2R_plus_d3_d3_m_4R + base_parameters[4] + d3_d3_m_4R)
-                + base_parameters[28] * (rate_2_squared_arm - w2_x_squared_arm)
-                - base_parameters[30] * bias_u2_xy_arm;
-            let force3_z_arm = base_parameters[41] * bias_u3_zx_arm
-                + bias_u3_zy_arm * d3_m_4R - s4_force4_x_plus_c4_force4_y_arm;
+            let t12_arm = xy_2 * bias_u2_zy_arm
+                - minus_bias_wd2_y_arm * (yy_2R_plus_d3_d3_m_4R + zz_2R + d3_d3_m_4R)
+                + xz_2R * (rate_2_squared_arm - w2_x_squared_arm)
+                - yz_2 * bias_u2_xy_arm;
+            let force3_z_arm = mx_3 * bias_u3_zx_arm + bias_u3_zy_arm * d3_m_4R
+                - s4_force4_x_plus_c4_force4_y_arm;
             let moment2_y_arm = t12_arm + s3_arm * moment3_x_arm
                 + c3_arm * moment3_y_arm - D3 * force3_z_arm;
             let moment1_z_arm = s2_arm * moment2_x_arm + c2_arm * moment2_y_arm;
-            let tau_1_arm = joint_velocities[0] * base_parameters[1]
-                + ::overact::math::wide::signed(
-                    base_parameters[2],
-                    joint_velocities[0],
-                ) + base_parameters[3];
+            let fv_1 = base_parameters[1];
+            let fs_1 = base_parameters[2];
+            let off_1 = base_parameters[3];
+            let tau_1_arm = joint_velocities[0] * fv_1
+                + math::wide::signed(fs_1, joint_velocities[0]) + off_1;
             let force_on_u1_arm = moment1_z_arm + tau_1_arm;
             let tau1_minus_force_on_u1_arm = torques[0] - force_on_u1_arm;
-            let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * base_parameters[49]
-                + c6_arm * (2.0 * base_parameters[54]);
+            let s6_xx_6R_plus_c6_twice_xy_6_arm = s6_arm * xx_6R
+                + c6_arm * (2.0 * xy_6);
             let t13_arm = s6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm;
-            let inertia5_xx_arm = base_parameters[43] + base_parameters[49]
-                - t13_arm;
-            let moment5_x_by_6_arm = c6_arm * base_parameters[52]
-                - s6_arm * base_parameters[53];
-            let inertia5_xy_arm = base_parameters[45] + moment5_x_by_6_arm;
-            let t14_arm = s5_arm * (inertia5_xx_arm - base_parameters[48])
+            let inertia5_xx_arm = xx_5R + xx_6R - t13_arm;
+            let moment5_x_by_6_arm = c6_arm * xz_6 - s6_arm * yz_6;
+            let inertia5_xy_arm = xy_5 + moment5_x_by_6_arm;
+            let t14_arm = s5_arm * (inertia5_xx_arm - zz_6)
                 + c5_arm * (2.0 * inertia5_xy_arm);
             let t15_arm = s5_arm * t14_arm;
-            let inertia4_zz_arm = base_parameters[36] + base_parameters[48]
-                + t15_arm;
-            let inertia3_yy_arm = base_parameters[29] + inertia4_zz_arm;
-            let inertia4_xx_arm = base_parameters[37] + inertia5_xx_arm - t15_arm;
-            let inertia5_zz_arm = base_parameters[42] + t13_arm;
-            let inertia5_xz_arm = base_parameters[46]
-                - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - base_parameters[54]);
-            let minus_moment5_z_by_6_arm = s6_arm * base_parameters[52]
-                + c6_arm * base_parameters[53];
-            let inertia5_yz_arm = base_parameters[47] - minus_moment5_z_by_6_arm;
+            let inertia4_zz_arm = zz_4R + zz_6 + t15_arm;
+            let inertia3_yy_arm = yy_3R + inertia4_zz_arm;
+            let inertia4_xx_arm = xx_4R + inertia5_xx_arm - t15_arm;
+            let inertia5_zz_arm = zz_5R + t13_arm;
+            let inertia5_xz_arm = xz_5
+                - (c6_arm * s6_xx_6R_plus_c6_twice_xy_6_arm - xy_6);
+            let minus_moment5_z_by_6_arm = s6_arm * xz_6 + c6_arm * yz_6;
+            let inertia5_yz_arm = yz_5 - minus_moment5_z_by_6_arm;
             let moment4_x_by_5_arm = c5_arm * inertia5_xz_arm
                 - s5_arm * inertia5_yz_arm;
-            let inertia4_xy_arm = base_parameters[40] - moment4_x_by_5_arm;
+            let inertia4_xy_arm = xy_4 - moment4_x_by_5_arm;
             let t16_arm = s4_arm * (inertia4_xx_arm - inertia5_zz_arm)
                 + c4_arm * (2.0 * inertia4_xy_arm);
             let t17_arm = s4_arm * t16_arm;
-            let minus_force5_z_by_6_arm = c6_arm * base_parameters[56]
-                - s6_arm * base_parameters[57];
-            let first5_x_arm = base_parameters[55] + minus_force5_z_by_6_arm;
-            let first4_z_arm = s5_arm * first5_x_arm + c5_arm * base_parameters[50];
+            let minus_force5_z_by_6_arm = c6_arm * mx_6 - s6_arm * my_6;
+            let first5_x_arm = mx_5 + minus_force5_z_by_6_arm;
+            let first4_z_arm = s5_arm * first5_x_arm + c5_arm * my_5R;
             let first3_y_arm = first4_z_arm + d3_m_4R;
             let t18_arm = D3 * (first4_z_arm + first3_y_arm);
             let inertia3_xx_arm = inertia4_xx_arm - t17_arm + t18_arm;
-            let inertia4_xz_arm = base_parameters[39] + c5_arm * t14_arm
-                - inertia5_xy_arm;
+            let inertia4_xz_arm = xz_4 + c5_arm * t14_arm - inertia5_xy_arm;
             let moment4_z_by_5_arm = s5_arm * inertia5_xz_arm
                 + c5_arm * inertia5_yz_arm;
-            let inertia4_yz_arm = base_parameters[38] - moment4_z_by_5_arm;
-            let force4_z_by_5_arm = c5_arm * first5_x_arm
-                - s5_arm * base_parameters[50];
-            let first4_x_arm = base_parameters[51] + force4_z_by_5_arm;
-            let minus_first5_z_arm = s6_arm * base_parameters[56]
-                + c6_arm * base_parameters[57];
-            let first4_y_arm = base_parameters[44] + minus_first5_z_arm;
+            let inertia4_yz_arm = yz_4 - moment4_z_by_5_arm;
+            let force4_z_by_5_arm = c5_arm * first5_x_arm - s5_arm * my_5R;
+            let first4_x_arm = mx_4 + force4_z_by_5_arm;
+            let minus_first5_z_arm = s6_arm * mx_6 + c6_arm * my_6;
+            let first4_y_arm = my_4R + minus_first5_z_arm;
             let minus_force3_z_by_4_arm = c4_arm * first4_x_arm
                 - s4_arm * first4_y_arm;
             let minus_d3_force3_z_by_4_arm = D3 * minus_force3_z_by_4_arm;
             let moment3_x_by_4_arm = c4_arm * inertia4_xz_arm
                 - s4_arm * inertia4_yz_arm - minus_d3_force3_z_by_4_arm;
-            let inertia3_xy_arm = base_parameters[32] + moment3_x_by_4_arm;
+            let inertia3_xy_arm = xy_3 + moment3_x_by_4_arm;
             let t19_arm = s3_arm * (inertia3_xx_arm - inertia3_yy_arm)
                 + c3_arm * (2.0 * inertia3_xy_arm);
             let t20_arm = s3_arm * t19_arm;
-            let first3_x_arm = base_parameters[41] + minus_force3_z_by_4_arm;
+            let first3_x_arm = mx_3 + minus_force3_z_by_4_arm;
             let force2_y_by_3_arm = c3_arm * first3_x_arm - s3_arm * first3_y_arm;
             let d3_force2_y_by_3_arm = D3 * force2_y_by_3_arm;
             let t21_arm = d3_force2_y_by_3_arm + d3_d3_m_4R + d3_force2_y_by_3_arm;
-            let inertia2_yy_arm = base_parameters[27] + inertia3_yy_arm + t20_arm
-                + t21_arm;
+            let inertia2_yy_arm = yy_2R + inertia3_yy_arm + t20_arm + t21_arm;
             let inertia2_xx_arm = inertia3_xx_arm - t20_arm;
             let minus_force2_x_by_3_arm = s3_arm * first3_x_arm
                 + c3_arm * first3_y_arm;
-            let inertia2_xy_arm = base_parameters[31] + c3_arm * t19_arm
-                - inertia3_xy_arm - D3 * minus_force2_x_by_3_arm;
-            let inertia1_zz_arm = base_parameters[0] + inertia2_yy_arm
+            let inertia2_xy_arm = xy_2 + c3_arm * t19_arm - inertia3_xy_arm
+                - D3 * minus_force2_x_by_3_arm;
+            let zz_1R = base_parameters[0];
+            let inertia1_zz_arm = zz_1R + inertia2_yy_arm
                 + s2_arm
                     * (s2_arm * (inertia2_xx_arm - inertia2_yy_arm)
                         + c2_arm * (2.0 * inertia2_xy_arm));
-            ::overact::guard::mass(inertia1_zz_arm)?;
+            guard::mass(inertia1_zz_arm)?;
             let inv_pivot_1 = 1.0 / inertia1_zz_arm;
-            let inertia3_xz_arm = base_parameters[33]
-                - (c4_arm * t16_arm - inertia4_xy_arm);
+            let inertia3_xz_arm = xz_3 - (c4_arm * t16_arm - inertia4_xy_arm);
             let minus_first3_z_arm = s4_arm * first4_x_arm + c4_arm * first4_y_arm;
             let minus_d3_first3_z_arm = D3 * minus_first3_z_arm;
             let moment3_z_by_4_arm = minus_d3_first3_z_arm
                 - (s4_arm * inertia4_xz_arm + c4_arm * inertia4_yz_arm);
-            let inertia3_yz_arm = base_parameters[34] + moment3_z_by_4_arm;
+            let inertia3_yz_arm = yz_3 + moment3_z_by_4_arm;
             let moment2_x_by_3_arm = c3_arm * inertia3_xz_arm
                 - s3_arm * inertia3_yz_arm;
-            let inertia2_xz_arm = base_parameters[28] + moment2_x_by_3_arm
-                + minus_d3_first3_z_arm;
+            let inertia2_xz_arm = xz_2R + moment2_x_by_3_arm + minus_d3_first3_z_arm;
             let moment2_y_by_3_arm = s3_arm * inertia3_xz_arm
                 + c3_arm * inertia3_yz_arm;
-            let inertia2_yz_arm = base_parameters[30] + moment2_y_by_3_arm;
+            let inertia2_yz_arm = yz_2 + moment2_y_by_3_arm;
             let minus_inertia1_yz_arm = s2_arm * inertia2_xz_arm
                 + c2_arm * inertia2_yz_arm;
             let l_2_1 = minus_inertia1_yz_arm * inv_pivot_1;
-            let inertia3_zz_arm = base_parameters[24] + inertia5_zz_arm + t17_arm
-                + t18_arm;
-            let inertia2_zz_arm = base_parameters[4] + inertia3_zz_arm + t21_arm;
+            let inertia3_zz_arm = zz_3R + inertia5_zz_arm + t17_arm + t18_arm;
+            let inertia2_zz_arm = zz_2R + inertia3_zz_arm + t21_arm;
             let pivot_2 = inertia2_zz_arm - minus_inertia1_yz_arm * l_2_1;
-            ::overact::guard::mass(pivot_2)?;
+            guard::mass(pivot_2)?;
             let inv_pivot_2 = 1.0 / pivot_2;
+            let mx_2R = base_parameters[25];
+            let my_2 = base_parameters[26];
             let minus_bias_u3_xx_arm = w3_y_squared_arm + w3_z_squared_arm;
             let c4_force4_x_minus_s4_force4_y_arm = c4_arm * force4_x_arm
                 + s4_arm * minus_force4_y_arm;
-            let force3_x_arm = bias_u3_xy_arm * d3_m_4R
-                - base_parameters[41] * minus_bias_u3_xx_arm
+            let force3_x_arm = bias_u3_xy_arm * d3_m_4R - mx_3 * minus_bias_u3_xx_arm
                 + c4_force4_x_minus_s4_force4_y_arm;
-            let force4_z_arm = base_parameters[51] * bias_u4_zx_arm
-                + base_parameters[44] * bias_u4_zy_arm + s5_arm * force5_x_arm
-                + c5_arm * force5_y_arm;
-            let force3_y_arm = base_parameters[41] * bias_u3_xy_arm
-                - minus_bias_u3_yy_arm * d3_m_4R + force4_z_arm;
-            let t22_arm = base_parameters[31] * (w2_x_squared_arm - w2_y_squared_arm)
+            let force4_z_arm = mx_4 * bias_u4_zx_arm + my_4R * bias_u4_zy_arm
+                + s5_arm * force5_x_arm + c5_arm * force5_y_arm;
+            let force3_y_arm = mx_3 * bias_u3_xy_arm - minus_bias_u3_yy_arm * d3_m_4R
+                + force4_z_arm;
+            let t22_arm = xy_2 * (w2_x_squared_arm - w2_y_squared_arm)
                 + bias_u2_xy_arm * yy_2R_plus_d3_d3_m_4R
-                + bias_a2_y_arm * (base_parameters[25] + d3_m_4R)
-                - base_parameters[26] * bias_a2_x_arm
+                + bias_a2_y_arm * (mx_2R + d3_m_4R) - my_2 * bias_a2_x_arm
                 + D3 * (s3_arm * force3_x_arm + c3_arm * force3_y_arm);
-            let t23_arm = base_parameters[32] * (w3_x_squared_arm - w3_y_squared_arm)
-                - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R
-                + base_parameters[41] * bias_a3_y_arm - bias_a3_x_arm * d3_m_4R
-                - D3 * c4_force4_x_minus_s4_force4_y_arm;
+            let t23_arm = xy_3 * (w3_x_squared_arm - w3_y_squared_arm)
+                - bias_u3_xy_arm * d3_d3_m_4R_minus_yy_3R + mx_3 * bias_a3_y_arm
+                - bias_a3_x_arm * d3_m_4R - D3 * c4_force4_x_minus_s4_force4_y_arm;
             let moment3_z_arm = t23_arm
                 - (s4_arm * moment4_x_arm + c4_arm * moment4_y_arm);
             let moment2_z_arm = t22_arm + moment3_z_arm;
-            let tau_2_arm = joint_velocities[1] * base_parameters[5]
-                + ::overact::math::wide::signed(
-                    base_parameters[6],
-                    joint_velocities[1],
-                ) + base_parameters[7];
+            let fv_2 = base_parameters[5];
+            let fs_2 = base_parameters[6];
+            let off_2 = base_parameters[7];
+            let tau_2_arm = joint_velocities[1] * fv_2
+                + math::wide::signed(fs_2, joint_velocities[1]) + off_2;
             let force_on_u2_arm = moment2_z_arm + tau_2_arm;
             let t1 = torques[1] - force_on_u2_arm
                 - tau1_minus_force_on_u1_arm * l_2_1;
@@ -4274,16 +4471,17 @@ impl Rx90 {
             let l_3_1 = moment1_z_by_3_arm * inv_pivot_1;
             let schur_2_3 = moment2_z_by_3_arm - minus_inertia1_yz_arm * l_3_1;
             let l_3_2 = schur_2_3 * inv_pivot_2;
-            let masses_arm_3_3 = inertia3_zz_arm + base_parameters[8];
+            let ia_3 = base_parameters[8];
+            let masses_arm_3_3 = inertia3_zz_arm + ia_3;
             let pivot_3 = masses_arm_3_3 - moment1_z_by_3_arm * l_3_1
                 - schur_2_3 * l_3_2;
-            ::overact::guard::mass(pivot_3)?;
+            guard::mass(pivot_3)?;
             let inv_pivot_3 = 1.0 / pivot_3;
-            let tau_3_arm = joint_velocities[2] * base_parameters[9]
-                + ::overact::math::wide::signed(
-                    base_parameters[10],
-                    joint_velocities[2],
-                ) + base_parameters[11];
+            let fv_3 = base_parameters[9];
+            let fs_3 = base_parameters[10];
+            let off_3 = base_parameters[11];
+            let tau_3_arm = joint_velocities[2] * fv_3
+                + math::wide::signed(fs_3, joint_velocities[2]) + off_3;
             let force_on_u3_arm = moment3_z_arm + tau_3_arm;
             let t2 = torques[2] - force_on_u3_arm
                 - tau1_minus_force_on_u1_arm * l_3_1 - l_3_2 * t1;
@@ -4301,18 +4499,19 @@ impl Rx90 {
             let schur_3_4 = moment3_z_by_4_arm - moment1_z_by_3_arm * l_4_1
                 - schur_2_3 * l_4_2;
             let l_4_3 = schur_3_4 * inv_pivot_3;
-            let tau_4_arm = joint_velocities[3] * base_parameters[13]
-                + ::overact::math::wide::signed(
-                    base_parameters[14],
-                    joint_velocities[3],
-                ) + base_parameters[15];
+            let fv_4 = base_parameters[13];
+            let fs_4 = base_parameters[14];
+            let off_4 = base_parameters[15];
+            let tau_4_arm = joint_velocities[3] * fv_4
+                + math::wide::signed(fs_4, joint_velocities[3]) + off_4;
             let force_on_u4_arm = moment4_z_arm + tau_4_arm;
             let t3 = torques[3] - force_on_u4_arm
                 - tau1_minus_force_on_u1_arm * l_4_1 - l_4_2 * t1 - l_4_3 * t2;
-            let masses_arm_4_4 = inertia4_zz_arm + base_parameters[12];
+            let ia_4 = base_parameters[12];
+            let masses_arm_4_4 = inertia4_zz_arm + ia_4;
             let pivot_4 = masses_arm_4_4 - moment1_z_by_4_arm * l_4_1
                 - schur_2_4 * l_4_2 - schur_3_4 * l_4_3;
-            ::overact::guard::mass(pivot_4)?;
+            guard::mass(pivot_4)?;
             let force3_z_by_5_arm = s4_arm * first4_z_arm;
             let d3_force3_z_by_5_arm = D3 * force3_z_by_5_arm;
             let moment3_x_by_5_arm = c4_arm * moment4_x_by_5_arm
@@ -4338,29 +4537,28 @@ impl Rx90 {
             let schur_4_5 = moment4_z_by_5_arm - moment1_z_by_4_arm * l_5_1
                 - schur_2_4 * l_5_2 - schur_3_4 * l_5_3;
             let l_5_4 = schur_4_5 / pivot_4;
-            let tau_5_arm = joint_velocities[4] * base_parameters[17]
-                + ::overact::math::wide::signed(
-                    base_parameters[18],
-                    joint_velocities[4],
-                ) + base_parameters[19];
+            let fv_5 = base_parameters[17];
+            let fs_5 = base_parameters[18];
+            let off_5 = base_parameters[19];
+            let tau_5_arm = joint_velocities[4] * fv_5
+                + math::wide::signed(fs_5, joint_velocities[4]) + off_5;
             let force_on_u5_arm = moment5_z_arm + tau_5_arm;
             let t4 = torques[4] - force_on_u5_arm
                 - tau1_minus_force_on_u1_arm * l_5_1 - l_5_2 * t1 - l_5_3 * t2
                 - l_5_4 * t3;
-            let masses_arm_5_5 = inertia5_zz_arm + base_parameters[16];
+            let ia_5 = base_parameters[16];
+            let masses_arm_5_5 = inertia5_zz_arm + ia_5;
             let pivot_5 = masses_arm_5_5 - moment1_z_by_5_arm * l_5_1
                 - schur_2_5 * l_5_2 - schur_3_5 * l_5_3 - schur_4_5 * l_5_4;
-            ::overact::guard::mass(pivot_5)?;
-            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm
-                - s5_arm * base_parameters[48];
+            guard::mass(pivot_5)?;
+            let moment4_x_by_6_arm = c5_arm * moment5_x_by_6_arm - s5_arm * zz_6;
             let minus_force4_x_by_6_arm = c5_arm * minus_first5_z_arm;
             let minus_force3_z_by_6_arm = c4_arm * minus_force5_z_by_6_arm
                 - s4_arm * minus_force4_x_by_6_arm;
             let minus_d3_force3_z_by_6_arm = D3 * minus_force3_z_by_6_arm;
             let moment3_x_by_6_arm = c4_arm * moment4_x_by_6_arm
                 - s4_arm * minus_moment5_z_by_6_arm - minus_d3_force3_z_by_6_arm;
-            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm
-                + c5_arm * base_parameters[48];
+            let moment4_z_by_6_arm = s5_arm * moment5_x_by_6_arm + c5_arm * zz_6;
             let moment2_x_by_6_arm = c3_arm * moment3_x_by_6_arm
                 - s3_arm * moment4_z_by_6_arm;
             let moment2_y_by_6_arm = s3_arm * moment3_x_by_6_arm
@@ -4389,40 +4587,41 @@ impl Rx90 {
                 + moment1_z_by_5_arm * l_6_1 + schur_2_5 * l_6_2 + schur_3_5 * l_6_3
                 + schur_4_5 * l_6_4;
             let minus_l_6_5 = minus_schur_5_6 / pivot_5;
-            let tau_6_arm = joint_velocities[5] * base_parameters[21]
-                + ::overact::math::wide::signed(
-                    base_parameters[22],
-                    joint_velocities[5],
-                ) + base_parameters[23];
+            let fv_6 = base_parameters[21];
+            let fs_6 = base_parameters[22];
+            let off_6 = base_parameters[23];
+            let tau_6_arm = joint_velocities[5] * fv_6
+                + math::wide::signed(fs_6, joint_velocities[5]) + off_6;
             let force_on_u6_arm = moment6_z_arm + tau_6_arm;
             let t5 = torques[5] - force_on_u6_arm
                 - tau1_minus_force_on_u1_arm * l_6_1 - l_6_2 * t1 - l_6_3 * t2
                 - l_6_4 * t3 + minus_l_6_5 * t4;
-            let masses_arm_6_6 = base_parameters[48] + base_parameters[20];
+            let ia_6 = base_parameters[20];
+            let masses_arm_6_6 = zz_6 + ia_6;
             let pivot_6 = masses_arm_6_6 - moment1_z_by_6_arm * l_6_1
                 - schur_2_6 * l_6_2 - schur_3_6 * l_6_3 - schur_4_6 * l_6_4
                 - minus_schur_5_6 * minus_l_6_5;
-            ::overact::guard::mass(pivot_6)?;
-            ::overact::guard::size(inv_pivot_1, 1e60)?;
-            ::overact::guard::size(inv_pivot_2, 1e60)?;
-            ::overact::guard::size(inv_pivot_3, 1e60)?;
-            ::overact::guard::size(pivot_4, 1e60)?;
-            ::overact::guard::size(pivot_5, 1e60)?;
-            ::overact::guard::size(pivot_6, 1e60)?;
+            guard::mass(pivot_6)?;
+            guard::size(inv_pivot_1, 1e60)?;
+            guard::size(inv_pivot_2, 1e60)?;
+            guard::size(inv_pivot_3, 1e60)?;
+            guard::size(pivot_4, 1e60)?;
+            guard::size(pivot_5, 1e60)?;
+            guard::size(pivot_6, 1e60)?;
             let t6 = t5 / pivot_6;
-            ::overact::guard::size(t6, 1e60)?;
+            guard::size(t6, 1e60)?;
             let t7 = t4 / pivot_5 + minus_l_6_5 * t6;
-            ::overact::guard::size(t7, 1e60)?;
+            guard::size(t7, 1e60)?;
             let t8 = t3 / pivot_4 - l_5_4 * t7 - l_6_4 * t6;
-            ::overact::guard::size(t8, 1e60)?;
+            guard::size(t8, 1e60)?;
             let t9 = inv_pivot_3 * t2 - l_4_3 * t8 - l_5_3 * t7 - l_6_3 * t6;
-            ::overact::guard::size(t9, 1e60)?;
+            guard::size(t9, 1e60)?;
             let t10 = inv_pivot_2 * t1 - l_3_2 * t9 - l_4_2 * t8 - l_5_2 * t7
                 - l_6_2 * t6;
-            ::overact::guard::size(t10, 1e60)?;
+            guard::size(t10, 1e60)?;
             let t11 = tau1_minus_force_on_u1_arm * inv_pivot_1 - l_2_1 * t10
                 - l_3_1 * t9 - l_4_1 * t8 - l_5_1 * t7 - l_6_1 * t6;
-            ::core::result::Result::Ok([t11, t10, t9, t8, t7, t6])
+            Ok([t11, t10, t9, t8, t7, t6])
         })
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50); τ itself where there is no redundancy.
@@ -4436,30 +4635,24 @@ impl Rx90 {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn project_torques(
-        joints: &[::core::primitive::f64; 6],
-        torques: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
-            &[("joints", joints, 1e12), ("torques", torques, 1e12)],
-        )?;
-        ::core::result::Result::Ok([
-            torques[0], torques[1], torques[2], torques[3], torques[4], torques[5],
-        ])
+        joints: &[f64; 6],
+        torques: &[f64; 6],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(&[("joints", joints, 1e12), ("torques", torques, 1e12)])?;
+        Ok([torques[0], torques[1], torques[2], torques[3], torques[4], torques[5]])
     }
     /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`.
     ///
     /// # Errors
-    /// An input is not finite or too large. The pose of a robot without loops is its joint positions.
+    /// An input is infinite, NaN or too large. The pose of a robot without loops is its joint positions.
     pub fn pose_from_actuators(
-        actuators: &[::core::primitive::f64; Self::ACTUATORS],
-        start: &[::core::primitive::f64; Self::POSE],
-    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::within(
-            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
-        )?;
-        ::core::result::Result::Ok(*actuators)
+        actuators: &[f64; Self::ACTUATORS],
+        start: &[f64; Self::POSE],
+    ) -> Result<[f64; Self::POSE], Error> {
+        guard::within(&[("actuators", actuators, 1e12), ("start", start, 1e6)])?;
+        Ok(*actuators)
     }
 }
 impl Rx90 {
@@ -4493,9 +4686,9 @@ impl ::overact::Model for Rx90 {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[::core::primitive::f64]],
-        output: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::SampleError> {
+        inputs: &[&[f64]],
+        output: &mut [f64],
+    ) -> Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
@@ -4612,9 +4805,9 @@ impl ::overact::Model for Rx90 {
                     .each(|row| Self::project_torques(row.row(0)?, row.row(1)?))
             }
             other => {
-                ::core::result::Result::Err(::overact::SampleError {
+                Err(::overact::SampleError {
                     sample: 0,
-                    error: ::overact::Error::NotOffered {
+                    error: Error::NotOffered {
                         function: other.name(),
                     },
                 })
@@ -4623,14 +4816,15 @@ impl ::overact::Model for Rx90 {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[::core::primitive::f64],
-        pose: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::Error> {
+        actuators: &[f64],
+        pose: &mut [f64],
+    ) -> Result<(), Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        ::core::result::Result::Ok(())
+        Ok(())
     }
 }
+};

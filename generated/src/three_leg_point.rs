@@ -73,7 +73,7 @@
 /// | `l1_x_leg1` | l₁ e₁ | vector along the proximal link, in the leg's plane, m |
 /// | `l2_x_leg1` | l₂ e₂ | vector along the distal link, in the leg's plane, m |
 /// | `det_leg1` | det J_k | determinant or pivot of the leg's Jacobian J_k, eq. (13), up to a constant factor |
-/// | `k_leg1` | k | common factor of the leg's wrenches, up to sign: a constant by the determinant |
+/// | `k_leg1` | k | common factor of the leg's wrenches, up to sign: a constant divided by the determinant |
 /// | `k1_leg1` | k_i | common factor of one of the leg's wrenches |
 /// | `fk1_x_leg3` | f_i/k | this force without the factor k, in the leg's axes |
 /// | `rate_2_leg1` | u_i | rate of joint i; along parallel axes the absolute rate, q̇_1 + … + q̇_i, eq. (9) |
@@ -86,7 +86,7 @@
 /// | `qdd_2_leg1` | q̈_i | joint acceleration, eq. (10) |
 /// | `a_on_f1_leg1` | (f_i/k) · (P̈ - b) | acceleration of the leg's end along a wrench, minus the bias terms b that do not depend on the pose |
 /// | `bias_a_on_f1_leg1` | (f_i/k) · (P̈ - b) at v̇ = 0 | the same for zero platform acceleration |
-/// | `atip_x_leg2` | a_j - g | acceleration of the origin of body j minus gravity, in its own axes |
+/// | `a_tip_x_leg2` | a_j - g | acceleration of the origin of body j minus gravity, in its own axes |
 /// | `v2_by_1_x_leg1` | ∂V_j/∂u_i | partial velocity of the origin of body j |
 /// | `force2_x_leg1` | f | inertial force of a body, in its own axes (platform: base axes) |
 /// | `moment1_z_leg1` | m | inertial moment of a body about its origin |
@@ -109,6 +109,7 @@
 /// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
 /// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
 /// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
+/// Parameters have the names in `PARAMETERS` and `BASE_PARAMETERS`; those of any leg end in `_leg`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -121,48 +122,52 @@ pub struct ThreeLegPoint;
 #[allow(
     clippy::all,
     clippy::pedantic,
+    non_local_definitions,
     nonstandard_style,
     unused,
     unused_qualifications,
     reason = "straight-line code with the names of the derivation, in any scope"
 )]
+const _: () = {
+use ::core::primitive::{bool, f64, str, usize};
+use ::core::result::Result::{Err, Ok};
+use ::core::result::Result;
+use ::overact::{
+    ActuatorGroup, Error, guard, math, simd, with_avx2, with_avx512, zeroed_then_fill,
+};
 impl ThreeLegPoint {
     /// The robot's name.
-    pub const NAME: &'static ::core::primitive::str = "ThreeLegPoint";
+    pub const NAME: &'static str = "ThreeLegPoint";
     /// Numbers in a pose.
-    pub const POSE: ::core::primitive::usize = 2;
+    pub const POSE: usize = 2;
     /// r, independent platform coordinates.
-    pub const DOF: ::core::primitive::usize = 2;
+    pub const DOF: usize = 2;
     /// n, actuated joints.
-    pub const ACTUATORS: ::core::primitive::usize = 3;
+    pub const ACTUATORS: usize = 3;
     /// n_t, joints of all legs.
-    pub const JOINTS: ::core::primitive::usize = 6;
+    pub const JOINTS: usize = 6;
     /// Names of the legs.
-    pub const LEGS: [&'static ::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
+    pub const LEGS: [&'static str; 3] = ["leg1", "leg2", "leg3"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 3] = [
-        "leg1", "leg2", "leg3",
-    ];
+    pub const ACTUATOR_NAMES: [&'static str; 3] = ["leg1", "leg2", "leg3"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static ::core::primitive::str; 6] = [
+    pub const JOINT_NAMES: [&'static str; 6] = [
         "leg1.1", "leg1.2", "leg2.1", "leg2.2", "leg3.1", "leg3.2",
     ];
     /// Names of the independent coordinates, in the order of the twist.
-    pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
+    pub const COORDINATES: [&'static str; 2] = ["x", "y"];
     /// Names of the pose coordinates.
-    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
+    pub const POSE_COORDINATES: [&'static str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2, 4];
+    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 2, 4];
     /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
-        true, true, true,
-    ];
+    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true];
     /// Kept actuators of the actuator projection (case 2).
-    pub const KEPT_ACTUATORS: [::core::primitive::usize; 2] = [0, 1];
+    pub const KEPT_ACTUATORS: [usize; 2] = [0, 1];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0];
+    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0];
     /// Joint positions of the home configuration, which defines the working mode (m, rad).
-    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
         2.387899760924694, 1.5073857853212624, 2.387899760924693, 1.5073857853212629,
         2.3878997609246957, 1.5073857853212607,
     ];
@@ -262,21 +267,19 @@ impl ThreeLegPoint {
     /// 29 operations (13 additions, 15 multiplications, 1 division), 1 square root, 2 trigonometric pairs, 2 guards, 32 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn pose_in_closed_form(
-        actuators: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("actuators", actuators, 1e12)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn pose_in_closed_form(actuators: &[f64; 3]) -> Result<[f64; 2], Error> {
+        guard::within(&[("actuators", actuators, 1e12)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- sines and cosines
-        let [(s1_leg2, c1_leg2), (s1_leg1, c1_leg1)] = ::overact::math::sin_cos_all([
+        let [(s1_leg2, c1_leg2), (s1_leg1, c1_leg1)] = math::sin_cos_all([
             actuators[1], actuators[0],
         ]);
         let l_1_s1_leg1 = L_1 * s1_leg1;
@@ -286,11 +289,11 @@ impl ThreeLegPoint {
         let t2 = HALF_RADIUS + L_1 * (0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2)
             + radius_plus_l_1_c1_leg1;
         let t3 = t1 * t1 + t2 * t2;
-        ::overact::guard::platform(t3, 0.1728, ::overact::ActuatorGroup::All)?;
+        guard::platform(t3, 0.1728, ActuatorGroup::All)?;
         let t4 = (L_1_SQUARED - 0.25 * t3) / t3;
-        ::overact::guard::reach(t4, 0.08333, "leg1")?;
-        let t5 = ::overact::math::sqrt(t4);
-        ::core::result::Result::Ok([
+        guard::reach(t4, 0.08333, "leg1")?;
+        let t5 = math::sqrt(t4);
+        Ok([
             0.5 * t1 - l_1_s1_leg1 + t2 * t5, radius_plus_l_1_c1_leg1 - 0.5 * t2 + t1 * t5,
         ])
     }
@@ -304,26 +307,24 @@ impl ThreeLegPoint {
     /// 94 operations (41 additions, 50 multiplications, 3 divisions), 3 square roots, 6 arc tangents, 6 guards, 3 negations, 100 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn joints(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn joints(pose: &[f64; 2]) -> Result<[f64; 6], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        const TWICE_L_1_SQUARED: f64 = 0.1152;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
@@ -337,10 +338,10 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
@@ -348,36 +349,36 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
         let t2_leg3 = rho_squared_leg3 - TWICE_L_1_SQUARED;
-        ::core::result::Result::Ok([
-            ::overact::math::atan2(
+        Ok([
+            math::atan2(
                 3.0381944443178988 * minus_l1_y_leg1 - 2.8514006434780375 * l1_x_leg1,
                 -(3.0381944443178988 * l1_x_leg1 + 2.8514006434780375 * minus_l1_y_leg1),
             ) + 2.387899760924694,
-            ::overact::math::atan2(
+            math::atan2(
                 1.1001398520120134 * det_leg1 - 8.66310959353454 * t1_leg1,
                 0.5500699260060067 * t1_leg1 + 17.32621918706908 * det_leg1,
             ) + 1.5073857853212624,
-            ::overact::math::atan2(
+            math::atan2(
                 -(3.0381944443178965 * l1_y_leg2 + 2.8514006434780397 * l1_x_leg2),
                 2.8514006434780397 * l1_y_leg2 - 3.0381944443178965 * l1_x_leg2,
             ) + 2.387899760924693,
-            ::overact::math::atan2(
+            math::atan2(
                 1.1001398520120056 * det_leg2 - 8.66310959353454 * t2_leg2,
                 0.5500699260060028 * t2_leg2 + 17.32621918706908 * det_leg2,
             ) + 1.5073857853212629,
-            ::overact::math::atan2(
+            math::atan2(
                 -(3.038194444317904 * l1_y_leg3 + 2.851400643478032 * l1_x_leg3),
                 2.851400643478032 * l1_y_leg3 - 3.038194444317904 * l1_x_leg3,
             ) + 2.3878997609246957,
-            ::overact::math::atan2(
+            math::atan2(
                 1.1001398520120442 * det_leg3 - 8.663109593534537 * t2_leg3,
                 0.5500699260060221 * t2_leg3 + 17.326219187069075 * det_leg3,
             ) + 1.5073857853212607,
@@ -393,24 +394,22 @@ impl ThreeLegPoint {
     /// 67 operations (29 additions, 35 multiplications, 3 divisions), 3 square roots, 3 arc tangents, 6 guards, 3 negations, 73 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn actuator_positions(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn actuator_positions(pose: &[f64; 2]) -> Result<[f64; 3], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -422,31 +421,31 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
-        ::core::result::Result::Ok([
-            ::overact::math::atan2(
+        Ok([
+            math::atan2(
                 3.0381944443178988 * minus_l1_y_leg1 - 2.8514006434780375 * l1_x_leg1,
                 -(3.0381944443178988 * l1_x_leg1 + 2.8514006434780375 * minus_l1_y_leg1),
             ) + 2.387899760924694,
-            ::overact::math::atan2(
+            math::atan2(
                 -(3.0381944443178965 * l1_y_leg2 + 2.8514006434780397 * l1_x_leg2),
                 2.8514006434780397 * l1_y_leg2 - 3.0381944443178965 * l1_x_leg2,
             ) + 2.387899760924693,
-            ::overact::math::atan2(
+            math::atan2(
                 -(3.038194444317904 * l1_y_leg3 + 2.851400643478032 * l1_x_leg3),
                 2.851400643478032 * l1_y_leg3 - 3.038194444317904 * l1_x_leg3,
             ) + 2.3878997609246957,
@@ -463,40 +462,35 @@ impl ThreeLegPoint {
     /// 129 operations (49 additions, 72 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn pose_step(
-        pose: &[::core::primitive::f64; 2],
-        actuators: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
-            &[("pose", pose, 1e6), ("actuators", actuators, 1e12)],
-        )?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn pose_step(pose: &[f64; 2], actuators: &[f64; 3]) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("actuators", actuators, 1e12)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- sines and cosines
         let [(s_actuator_2, c_actuator_2), (s_actuator_1, c_actuator_1),
-        (s_actuator_3, c_actuator_3)] = ::overact::math::sin_cos_all([
+        (s_actuator_3, c_actuator_3)] = math::sin_cos_all([
             actuators[1], actuators[0], actuators[2],
         ]);
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -508,10 +502,10 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -519,39 +513,39 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let l2_y_leg3 = d_y_leg3 - l1_y_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
-        let missed_2 = ::overact::math::atan2(
+        let missed_2 = math::atan2(
             l1_x_leg2 * s_actuator_2 - l1_y_leg2 * c_actuator_2,
             l1_x_leg2 * c_actuator_2 + l1_y_leg2 * s_actuator_2,
         );
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
-        let missed_1 = ::overact::math::atan2(
+        let missed_1 = math::atan2(
             l1_x_leg1 * s_actuator_1 + minus_l1_y_leg1 * c_actuator_1,
             l1_x_leg1 * c_actuator_1 - minus_l1_y_leg1 * s_actuator_1,
         );
-        let missed_3 = ::overact::math::atan2(
+        let missed_3 = math::atan2(
             l1_x_leg3 * s_actuator_3 - l1_y_leg3 * c_actuator_3,
             l1_x_leg3 * c_actuator_3 + l1_y_leg3 * s_actuator_3,
         );
@@ -569,10 +563,10 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
         let t2 = (g1_vy_leg1 * missed_1 - minus_g1_vy_leg2 * missed_2
             - minus_g1_vy_leg3 * missed_3 + minus_l_2_1 * t1) / pivot_2;
-        ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
+        Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -584,31 +578,29 @@ impl ThreeLegPoint {
     /// 70 operations (24 additions, 40 multiplications, 6 divisions), 3 square roots, 9 guards, 3 negations, 67 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn inverse_jacobian(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn inverse_jacobian(pose: &[f64; 2]) -> Result<[[f64; 2]; 3], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -620,30 +612,30 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
@@ -652,7 +644,7 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        ::core::result::Result::Ok([
+        Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3],
         ])
@@ -668,25 +660,25 @@ impl ThreeLegPoint {
     /// 24 operations (7 additions, 14 multiplications, 3 divisions), 6 trigonometric pairs, 3 guards, 3 negations, 27 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+    ) -> Result<[[f64; 2]; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// 1 / l_1
-        const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+        const INV_L_1: f64 = 4.166666666666667;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
         let q1_plus_q2_leg2 = joints[2] + joints[3];
         let q1_plus_q2_leg3 = joints[4] + joints[5];
         // --- sines and cosines
         let [(s12_leg1, c12_leg1), (s2_leg1, _), (s12_leg2, c12_leg2), (s2_leg2, _),
-        (s12_leg3, c12_leg3), (s2_leg3, _)] = ::overact::math::sin_cos_all([
+        (s12_leg3, c12_leg3), (s2_leg3, _)] = math::sin_cos_all([
             q1_plus_q2_leg1, joints[1], q1_plus_q2_leg2, joints[3], q1_plus_q2_leg3, joints[5],
         ]);
-        ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
-        ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
-        ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
+        guard::leg(s2_leg1, 0.998, "leg1")?;
+        guard::leg(s2_leg2, 0.998, "leg2")?;
+        guard::leg(s2_leg3, 0.998, "leg3")?;
         let k_leg1 = INV_L_1 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
         let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -700,7 +692,7 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        ::core::result::Result::Ok([
+        Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3],
         ])
@@ -715,31 +707,29 @@ impl ThreeLegPoint {
     /// 108 operations (37 additions, 63 multiplications, 8 divisions), 3 square roots, 11 guards, 105 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn jacobian(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn jacobian(pose: &[f64; 2]) -> Result<[[f64; 3]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
@@ -753,16 +743,16 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
@@ -770,15 +760,15 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
@@ -787,18 +777,18 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
         let inv_pivot_2 = 1.0 / pivot_2;
         let t1 = inv_pivot_2 * (g1_vy_leg1 - minus_g1_vx_leg1 * minus_l_2_1);
         let t2 = inv_pivot_2 * (g1_vx_leg2 * minus_l_2_1 - minus_g1_vy_leg2);
         let t3 = inv_pivot_2 * (g1_vx_leg3 * minus_l_2_1 - minus_g1_vy_leg3);
-        ::core::result::Result::Ok([
+        Ok([
             [
                 minus_l_2_1 * t1 - minus_g1_vx_leg1 * inv_pivot_1,
                 g1_vx_leg2 * inv_pivot_1 + minus_l_2_1 * t2,
@@ -818,20 +808,20 @@ impl ThreeLegPoint {
     /// 45 operations (17 additions, 28 multiplications, 0 divisions), 6 trigonometric pairs, 4 negations, 45 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn legs_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+    ) -> Result<[[f64; 6]; 6], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
         let q1_plus_q2_leg2 = joints[2] + joints[3];
         let q1_plus_q2_leg3 = joints[4] + joints[5];
         // --- sines and cosines
         let [(s1_leg1, c1_leg1), (s12_leg1, c12_leg1), (s1_leg2, c1_leg2),
-        (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3)] = ::overact::math::sin_cos_all([
+        (s12_leg2, c12_leg2), (s1_leg3, c1_leg3), (s12_leg3, c12_leg3)] = math::sin_cos_all([
             joints[0], q1_plus_q2_leg1, joints[2], q1_plus_q2_leg2, joints[4], q1_plus_q2_leg3,
         ]);
         // --- leg2
@@ -844,7 +834,7 @@ impl ThreeLegPoint {
         let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
         let minus_fk2_x_leg3 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
         let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        ::core::result::Result::Ok([
+        Ok([
             [-(L_1 * (c1_leg1 + c12_leg1)), -(L_1 * c12_leg1), 0.0, 0.0, 0.0, 0.0],
             [-(L_1 * (s1_leg1 + s12_leg1)), -(L_1 * s12_leg1), 0.0, 0.0, 0.0, 0.0],
             [
@@ -870,15 +860,13 @@ impl ThreeLegPoint {
     /// 0 operations.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 6], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
-        ::core::result::Result::Ok([
-            [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0],
-        ])
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+    ) -> Result<[[f64; 2]; 6], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        Ok([[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]])
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
     ///
@@ -891,26 +879,26 @@ impl ThreeLegPoint {
     /// 21 operations (7 additions, 14 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 21 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+    ) -> Result<[[f64; 2]; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         let q1_plus_q2_leg1 = joints[0] + joints[1];
         let q1_plus_q2_leg2 = joints[2] + joints[3];
         let q1_plus_q2_leg3 = joints[4] + joints[5];
         // --- sines and cosines
-        let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3)] = ::overact::math::sin_cos_all([
+        let [(s12_leg1, c12_leg1), (s12_leg2, c12_leg2), (s12_leg3, c12_leg3)] = math::sin_cos_all([
             q1_plus_q2_leg1, q1_plus_q2_leg2, q1_plus_q2_leg3,
         ]);
         let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
         let fk1_x_leg3 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
         let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
         let minus_fk1_y_leg3 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        ::core::result::Result::Ok([
+        Ok([
             [-(L_1 * s12_leg1), L_1 * c12_leg1], [L_1 * minus_fk1_x_leg2, -(L_1 * fk1_y_leg2)],
             [L_1 * fk1_x_leg3, -(L_1 * minus_fk1_y_leg3)],
         ])
@@ -926,19 +914,19 @@ impl ThreeLegPoint {
     /// 3 operations (0 additions, 3 multiplications, 0 divisions), 3 trigonometric pairs, 3 negations, 3 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large.
+    /// An input is infinite, NaN or too large.
     pub fn closure_actuator_jacobian_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+    ) -> Result<[[f64; 3]; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("joints", joints, 1e12)])?;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         // --- sines and cosines
-        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
+        let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = math::sin_cos_all([
             joints[1], joints[3], joints[5],
         ]);
-        ::core::result::Result::Ok([
+        Ok([
             [-(L_1_SQUARED * s2_leg1), 0.0, 0.0], [0.0, -(L_1_SQUARED * s2_leg2), 0.0],
             [0.0, 0.0, -(L_1_SQUARED * s2_leg3)],
         ])
@@ -954,27 +942,27 @@ impl ThreeLegPoint {
     /// 93 operations (39 additions, 48 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_velocities(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(&[("pose", pose, 1e6), ("twist", twist, 1e9)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
         let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -993,12 +981,12 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = 1.0 / det_leg2;
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -1016,12 +1004,12 @@ impl ThreeLegPoint {
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = 1.0 / det_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1032,7 +1020,7 @@ impl ThreeLegPoint {
         let rate_1_leg3 = k_leg3 * (l2_x_leg3 * t2_leg3 + l2_y_leg3 * t3_leg3);
         let minus_rate_2_leg3 = k_leg3 * (l1_x_leg3 * t2_leg3 + l1_y_leg3 * t3_leg3);
         let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
-        ::core::result::Result::Ok([
+        Ok([
             rate_1_leg1, -minus_qd_2_leg1, rate_1_leg2, qd_2_leg2, rate_1_leg3, -minus_qd_2_leg3,
         ])
     }
@@ -1048,35 +1036,35 @@ impl ThreeLegPoint {
     /// 161 operations (64 additions, 91 multiplications, 6 divisions), 3 square roots, 9 guards, 2 negations, 158 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn joint_accelerations(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[f64; 6], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
@@ -1108,12 +1096,12 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = 1.0 / det_leg2;
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -1149,12 +1137,12 @@ impl ThreeLegPoint {
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = 1.0 / det_leg3;
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -1179,7 +1167,7 @@ impl ThreeLegPoint {
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * t6_leg3);
             let minus_qdd_2_leg3 = rate_dot_1_leg3 + minus_rate_dot_2_leg3;
-            ::core::result::Result::Ok([
+            Ok([
                 rate_dot_1_leg1, -minus_qdd_2_leg1, rate_dot_1_leg2, qdd_2_leg2, rate_dot_1_leg3,
                 -minus_qdd_2_leg3,
             ])
@@ -1196,34 +1184,34 @@ impl ThreeLegPoint {
     /// 105 operations (37 additions, 60 multiplications, 8 divisions), 3 square roots, 11 guards, 106 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn twist_from_actuators(
-        pose: &[::core::primitive::f64; 2],
-        actuator_velocities: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        actuator_velocities: &[f64; 3],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[("pose", pose, 1e6), ("actuator_velocities", actuator_velocities, 1e9)],
         )?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -1235,35 +1223,35 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let t1 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -1280,11 +1268,11 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
         let t2 = (g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1) / pivot_2;
-        ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
+        Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
     }
     /// The acceleration v̇ from the actuator accelerations, by least squares, eq. (24) with J_p^inv.
     ///
@@ -1298,43 +1286,43 @@ impl ThreeLegPoint {
     /// 162 operations (57 additions, 97 multiplications, 8 divisions), 3 square roots, 11 guards, 163 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn acceleration_from_actuators(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        actuator_accelerations: &[f64; 3],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let inv_det_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * inv_det_leg1;
             let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -1347,36 +1335,36 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
             let t2_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k1_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = t2_leg2 * k1_leg2;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let t2_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k1_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = t2_leg3 * k1_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             // --- leg2
             let t3_leg2 = 3.608439182435161 * l2_y_leg2
@@ -1435,16 +1423,12 @@ impl ThreeLegPoint {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let t2 = (g1_vy_leg1 * qdd1_minus_bias_rate_dot_1_leg1
                 - minus_g1_vy_leg2 * qdd1_minus_bias_rate_dot_1_leg2
                 - minus_g1_vy_leg3 * qdd1_minus_bias_rate_dot_1_leg3
                 + minus_l_2_1 * t1) / pivot_2;
-            ::core::result::Result::Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
+            Ok([inv_pivot_1 * t1 + minus_l_2_1 * t2, t2])
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -1460,13 +1444,13 @@ impl ThreeLegPoint {
     /// 244 operations (78 additions, 160 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 26 negations, 195 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 31]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_into(
             pose,
             twist,
             acceleration,
@@ -1478,43 +1462,43 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_platform`]; `output` is then only partly written.
     pub fn idm_red_platform_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 31]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 31]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             output[0][30] = acceleration[0]; // m_platform
             output[1][30] = acceleration[1]; // m_platform
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let half_x = 0.5 * pose[0];
             let t1_leg3 = pose[1] * 0.8660254037844386;
             // --- leg2
@@ -1525,23 +1509,23 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
@@ -1557,11 +1541,8 @@ impl ThreeLegPoint {
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][13] = -::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                rate_1_leg2,
-            ); // fs_1_leg2
+            output[0][13] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = -math::wide::signed(minus_g1_vy_leg2, rate_1_leg2); // fs_1_leg2
             // --- leg3
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -1577,11 +1558,8 @@ impl ThreeLegPoint {
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
-            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            ); // fs_1_leg3
+            output[0][23] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = -math::wide::signed(minus_g1_vy_leg3, rate_1_leg3); // fs_1_leg3
             // --- leg1
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -1595,17 +1573,14 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][3] = -::overact::math::wide::signed(
-                minus_g1_vx_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[0][3] = -math::wide::signed(minus_g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][3] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t1_leg1 = ::overact::math::wide::signed(k_leg1, minus_qd_2_leg1);
+            let t1_leg1 = math::wide::signed(k_leg1, minus_qd_2_leg1);
             output[1][9] = d_x_leg1 * t1_leg1; // fs_2_leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
@@ -1642,7 +1617,7 @@ impl ThreeLegPoint {
             output[1][6] = inv_l_1_dvy
                 - L_1 * (zz_2_leg1_on_vy - minus_zz_1_leg1_on_vy); // mx_2_leg1
             output[1][8] = -(L_1_SQUARED * minus_zz_1_leg1_on_vy); // m_2_leg1
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let t3_leg3 = INV_L_1 * y_plus_half_radius;
             // --- leg2
@@ -1654,14 +1629,14 @@ impl ThreeLegPoint {
             let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
                 + minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             output[0][17] = g1_vx_leg2 * a_on_f2_leg2
                 - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
+            let t4_leg2 = math::wide::signed(k_leg2, -minus_qd_2_leg2);
             output[0][19] = -(t3_leg2 * t4_leg2); // fs_2_leg2
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
@@ -1688,7 +1663,7 @@ impl ThreeLegPoint {
             output[0][18] = -(L_1_SQUARED * minus_zz_1_leg2_on_vx); // m_2_leg2
             output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             // --- leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
@@ -1698,7 +1673,7 @@ impl ThreeLegPoint {
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
                 + minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
@@ -1715,7 +1690,7 @@ impl ThreeLegPoint {
             output[0][25] = zz_2_leg3_on_vx;
             output[0][26] = inv_l_1_dvx - L_1 * (zz_1_leg3_on_vx + zz_2_leg3_on_vx); // mx_2_leg3
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            let t5_leg3 = math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][29] = -(t4_leg3 * t5_leg3); // fs_2_leg3
             output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
                 + g1_vx_leg3 * minus_a_on_f2_leg3; // my_2_leg3
@@ -1731,7 +1706,7 @@ impl ThreeLegPoint {
             output[1][29] = -(t3_leg3 * t5_leg3); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
             output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy); // m_2_leg3
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -1748,14 +1723,14 @@ impl ThreeLegPoint {
     /// 212 operations (65 additions, 144 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 24 negations, 170 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 31]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_from_joints_into(
             pose,
             joints,
             twist,
@@ -1768,36 +1743,36 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_platform_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 31]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 31]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             output[0][30] = acceleration[0]; // m_platform
             output[1][30] = acceleration[1]; // m_platform
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
-            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
+            guard::leg(s2_leg1, 0.998, "leg1")?;
+            guard::leg(s2_leg2, 0.998, "leg2")?;
+            guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
@@ -1809,19 +1784,16 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][3] = -::overact::math::wide::signed(
-                minus_g1_vx_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+            output[0][3] = -math::wide::signed(minus_g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][3] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            let minus_a_tip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
             let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
             let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
             let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_a_tip_x_leg1 - l_1_rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
@@ -1830,7 +1802,7 @@ impl ThreeLegPoint {
                 - minus_g1_vx_leg1 * a_on_f2_leg1; // my_2_leg1
             let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[0][9] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
+            output[0][9] = math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
             let zz_1_leg1_on_vx = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
@@ -1846,10 +1818,7 @@ impl ThreeLegPoint {
             output[1][7] = g1_vy_leg1 * a_on_f2_leg1
                 - minus_g2_vy_leg1 * a_on_f1_leg1; // my_2_leg1
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][9] = -::overact::math::wide::signed(
-                minus_gq2_vy_leg1,
-                qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][9] = -math::wide::signed(minus_gq2_vy_leg1, qd_2_leg1); // fs_2_leg1
             let minus_zz_1_leg1_on_vy = g1_vy_leg1 * minus_rate_dot_1_leg1;
             output[1][0] = -minus_zz_1_leg1_on_vy; // zz_1_leg1
             output[1][1] = -minus_zz_1_leg1_on_vy; // ia_1_leg1
@@ -1873,12 +1842,9 @@ impl ThreeLegPoint {
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][12] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][13] = -::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                rate_1_leg2,
-            ); // fs_1_leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            output[0][13] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = -math::wide::signed(minus_g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
@@ -1887,7 +1853,7 @@ impl ThreeLegPoint {
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - l_1_rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let l_1_rate_1_squared_leg2 = L_1 * rate_1_squared_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
@@ -1905,16 +1871,13 @@ impl ThreeLegPoint {
                 - L_1 * (zz_2_leg2_on_vx - minus_zz_1_leg2_on_vx); // mx_2_leg2
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][19] = -::overact::math::wide::signed(
-                minus_gq2_vx_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][19] = -math::wide::signed(minus_gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
             output[0][17] = g1_vx_leg2 * a_on_f2_leg2
                 - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
             output[1][17] = g2_vy_leg2 * a_on_f1_leg2
                 - minus_g1_vy_leg2 * a_on_f2_leg2; // my_2_leg2
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][19] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][19] = math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             let zz_1_leg2_on_vy = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
             output[1][10] = zz_1_leg2_on_vy;
             output[1][11] = zz_1_leg2_on_vy; // ia_1_leg2
@@ -1937,12 +1900,9 @@ impl ThreeLegPoint {
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
-            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            ); // fs_1_leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            output[0][23] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = -math::wide::signed(minus_g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
             let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
@@ -1951,7 +1911,7 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + l_1_rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
             let rate_dot_1_leg3 = k_leg3
@@ -1976,19 +1936,16 @@ impl ThreeLegPoint {
                 - L_1 * (zz_2_leg3_on_vy - minus_zz_1_leg3_on_vy); // mx_2_leg3
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = -::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][29] = -math::wide::signed(minus_gq2_vx_leg3, qd_2_leg3); // fs_2_leg3
             output[0][27] = minus_g2_vx_leg3 * a_on_f1_leg3
                 - g1_vx_leg3 * a_on_f2_leg3; // my_2_leg3
             output[1][27] = minus_g1_vy_leg3 * a_on_f2_leg3
                 - g2_vy_leg3 * a_on_f1_leg3; // my_2_leg3
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-            output[1][29] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
+            output[1][29] = math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
             output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy); // m_2_leg3
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -2006,14 +1963,14 @@ impl ThreeLegPoint {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 31]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2026,48 +1983,48 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_platform_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_from_actuators_into(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 31]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+        output: &mut [[f64; 31]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let half_x = 0.5 * pose[0];
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
@@ -2077,23 +2034,23 @@ impl ThreeLegPoint {
             let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
             let d_y_leg3 = pose[0] - d_y_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg1
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -2120,7 +2077,7 @@ impl ThreeLegPoint {
             output[0][24] = g1_vx_leg3; // off_1_leg3
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -2141,11 +2098,7 @@ impl ThreeLegPoint {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
                 - minus_g1_vx_leg1 * actuator_velocities[0]
                 + g1_vx_leg3 * actuator_velocities[2];
@@ -2157,30 +2110,24 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             output[0][2] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][2] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][3] = -::overact::math::wide::signed(
-                minus_g1_vx_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
-            output[1][3] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[0][3] = -math::wide::signed(minus_g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][3] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
             output[0][12] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][12] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
-            output[0][13] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][13] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            output[0][13] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][13] = math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             output[0][22] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][22] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
-            output[0][23] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            ); // fs_1_leg3
+            output[0][23] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = -math::wide::signed(minus_g1_vy_leg3, rate_1_leg3); // fs_1_leg3
             // --- leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            let t1_leg1 = math::wide::sign(minus_qd_2_leg1) / det_leg1;
             output[1][9] = d_x_leg1 * t1_leg1; // fs_2_leg1
             output[0][9] = pose[0] * t1_leg1; // fs_2_leg1
             // --- leg2
@@ -2190,7 +2137,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
+            let t4_leg2 = math::wide::signed(k_leg2, qd_2_leg2);
             output[0][19] = -(t3_leg2 * t4_leg2); // fs_2_leg2
             output[1][19] = -(t2_leg3 * t4_leg2); // fs_2_leg2
             // --- leg3
@@ -2201,15 +2148,15 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t4_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            let t4_leg3 = math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][29] = -(t3_leg3 * t4_leg3); // fs_2_leg3
             output[1][29] = -(t2_leg3 * t4_leg3); // fs_2_leg3
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
+            guard::size(rate_2_squared_leg2, 1e100)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
+            guard::size(rate_1_squared_leg2, 1e100)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -2219,10 +2166,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
+            guard::size(rate_2_squared_leg1, 1e100)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
+            guard::size(rate_1_squared_leg1, 1e100)?;
             let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
@@ -2230,10 +2177,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg1;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
+            guard::size(rate_2_squared_leg3, 1e100)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
+            guard::size(rate_1_squared_leg3, 1e100)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -2252,16 +2199,16 @@ impl ThreeLegPoint {
             let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
             output[0][30] = dvx; // m_platform
             // --- leg2
-            let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
-            let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
+            let a_tip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
+            let minus_a_on_f1_leg2 = a_tip_x_leg2 + minus_bias_a_on_f1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
             output[0][17] = g1_vx_leg2 * a_on_f2_leg2
                 + minus_g2_vx_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             // --- leg3
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let a_tip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = a_tip_x_leg3 + bias_a_on_f1_leg3;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
                 + minus_bias_a_on_f2_leg3;
@@ -2343,7 +2290,7 @@ impl ThreeLegPoint {
             output[1][18] = L_1_SQUARED * zz_1_leg2_on_vy; // m_2_leg2
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_vx; // m_2_leg3
             output[1][28] = -(L_1_SQUARED * minus_zz_1_leg3_on_vy); // m_2_leg3
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -2359,13 +2306,13 @@ impl ThreeLegPoint {
     /// 267 operations (91 additions, 168 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 20 negations, 228 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 31]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_into(
             pose,
             twist,
             acceleration,
@@ -2377,32 +2324,32 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 31]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 31]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             output[0][4] = 1.0; // off_1_leg1
             output[0][10..15].fill(0.0);
             output[0][18] = 0.0; // m_2_leg2
@@ -2412,12 +2359,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -2428,21 +2375,21 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg1
             let k_leg1 = 1.0 / det_leg1;
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
@@ -2465,17 +2412,13 @@ impl ThreeLegPoint {
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.1,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][2] = rate_1_leg1; // fv_1_leg1
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[0][3] = math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[1][12] = rate_1_leg2; // fv_1_leg2
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
+            output[1][13] = math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
@@ -2488,7 +2431,7 @@ impl ThreeLegPoint {
                 + minus_vy_by_a2 * acceleration[1];
             output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
             let t1_platform = INV_L_1 * minus_m_platform_on_q1_leg2;
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -2498,7 +2441,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
@@ -2518,16 +2461,10 @@ impl ThreeLegPoint {
                 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t1_platform; // mx_2_leg2
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][19] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][19] = math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2); // fs_2_leg2
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][19] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][19] = -math::wide::signed(minus_g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_q1_leg1;
             let t2_platform = INV_L_1 * minus_m_platform_on_q1_leg1;
@@ -2559,16 +2496,10 @@ impl ThreeLegPoint {
                 - t2_platform; // mx_2_leg1
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[1][9] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][9] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
             output[0][7] = INV_L_1 * a_on_f2_leg1 + g2_a1_leg1 * minus_a2_x_leg1; // my_2_leg1
-            output[0][9] = -::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][9] = -math::wide::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1); // fs_2_leg1
             output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
@@ -2595,9 +2526,9 @@ impl ThreeLegPoint {
             output[1][24] = g1_a2_leg3; // off_1_leg3
             output[1][22] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
             output[0][22] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            output[0][23] = math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
                 - 3.608439182435161 * l1_y_leg3;
@@ -2607,7 +2538,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
@@ -2636,19 +2567,13 @@ impl ThreeLegPoint {
             output[1][26] = -(t1_platform
                 + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][29] = math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3); // fs_2_leg3
             output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[1][29] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][29] = math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
             output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -2665,14 +2590,14 @@ impl ThreeLegPoint {
     /// 229 operations (70 additions, 155 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 16 negations, 199 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 31]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_from_joints_into(
             pose,
             joints,
             twist,
@@ -2685,26 +2610,26 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 31]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 31]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             output[0][4] = 1.0; // off_1_leg1
             output[0][10..15].fill(0.0);
             output[0][18] = 0.0; // m_2_leg2
@@ -2713,12 +2638,12 @@ impl ThreeLegPoint {
             output[1][14] = 1.0; // off_1_leg2
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
-            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
+            guard::leg(s2_leg1, 0.998, "leg1")?;
+            guard::leg(s2_leg2, 0.998, "leg2")?;
+            guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let k_leg1 = INV_L_1 / s2_leg1;
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
@@ -2735,17 +2660,13 @@ impl ThreeLegPoint {
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.1,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][2] = rate_1_leg1; // fv_1_leg1
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[0][3] = math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[1][12] = rate_1_leg2; // fv_1_leg2
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
+            output[1][13] = math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
@@ -2758,13 +2679,13 @@ impl ThreeLegPoint {
                 + minus_vy_by_a2 * acceleration[1];
             output[1][30] = -minus_m_platform_on_q1_leg2; // m_platform
             // --- leg1
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+            let minus_a_tip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
             let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
             let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_a_tip_x_leg1 - L_1 * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let v2_by_1_y_leg1 = L_1 * c2_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
@@ -2785,12 +2706,9 @@ impl ThreeLegPoint {
             let g2_a2_leg1 = minus_g2_vy_leg1 * minus_vy_by_a2
                 - g2_vx_leg1 * minus_vx_by_a2;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[1][9] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
+            output[1][9] = math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
             output[0][7] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1; // my_2_leg1
-            output[0][9] = ::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][9] = math::wide::signed(g2_a1_leg1 - 1.0, qd_2_leg1); // fs_2_leg1
             output[1][7] = g2_a2_leg1 * a_on_f1_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
@@ -2798,7 +2716,7 @@ impl ThreeLegPoint {
             output[1][6] = L_1 * minus_zz_2_leg1_on_q1_leg2 - t2_platform; // mx_2_leg1
             output[0][8] = -(L_1_SQUARED * minus_rate_dot_1_leg1); // m_2_leg1
             // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
@@ -2806,7 +2724,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
@@ -2826,12 +2744,9 @@ impl ThreeLegPoint {
             let g2_a1_leg2 = minus_g2_vx_leg2 * minus_vx_by_a1
                 - g2_vy_leg2 * minus_vy_by_a1;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][19] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][19] = math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
-            output[1][19] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][19] = math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2); // fs_2_leg2
             output[0][17] = g2_a1_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_zz_2_leg2_on_q1_leg1 = g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = -minus_zz_2_leg2_on_q1_leg1; // zz_2_leg2
@@ -2854,9 +2769,9 @@ impl ThreeLegPoint {
             output[1][24] = g1_a2_leg3; // off_1_leg3
             output[1][22] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
             output[0][22] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            output[0][23] = math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
             let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
@@ -2864,7 +2779,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = L_1 * c2_leg3;
             let rate_dot_1_leg3 = k_leg3
@@ -2892,19 +2807,13 @@ impl ThreeLegPoint {
             output[1][26] = -(t2_platform
                 + L_1 * (zz_1_leg3_on_q1_leg2 + zz_2_leg3_on_q1_leg2)); // mx_2_leg3
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][29] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][29] = math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3); // fs_2_leg3
             output[0][27] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][27] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[1][29] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][29] = math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3); // fs_2_leg3
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
             output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -2922,14 +2831,14 @@ impl ThreeLegPoint {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 31]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -2942,39 +2851,39 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_from_actuators_into(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 31]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+        output: &mut [[f64; 31]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             output[0][4] = 1.0; // off_1_leg1
             output[0][10..15].fill(0.0);
             output[0][18] = 0.0; // m_2_leg2
@@ -2984,12 +2893,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let t1_leg2 = 0.5 * y_plus_half_radius;
             let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
@@ -3000,21 +2909,21 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg1
             let k_leg1 = 1.0 / det_leg1;
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
@@ -3037,11 +2946,7 @@ impl ThreeLegPoint {
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.1,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
             // --- leg3
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -3053,7 +2958,7 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
@@ -3064,11 +2969,7 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
                 - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -3080,10 +2981,10 @@ impl ThreeLegPoint {
             let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             output[0][2] = rate_1_leg1; // fv_1_leg1
-            output[0][3] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[0][3] = math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
             output[1][12] = rate_1_leg2; // fv_1_leg2
-            output[1][13] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
+            output[1][13] = math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
@@ -3092,29 +2993,23 @@ impl ThreeLegPoint {
             output[0][24] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             output[0][22] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][23] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[0][23] = math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
                 + minus_g2_vy_leg1 * minus_vy_by_a1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][9] = -::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][9] = -math::wide::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1); // fs_2_leg1
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][9] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][9] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
             output[1][24] = g1_a2_leg3; // off_1_leg3
             output[1][22] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
-            output[1][23] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][23] = math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             // --- leg2
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -3124,10 +3019,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
+            guard::size(rate_2_squared_leg2, 1e60)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
+            guard::size(rate_1_squared_leg2, 1e60)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -3137,10 +3032,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
+            guard::size(rate_2_squared_leg1, 1e60)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
+            guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
@@ -3155,10 +3050,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
+            guard::size(rate_2_squared_leg3, 1e60)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
+            guard::size(rate_1_squared_leg3, 1e60)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -3176,8 +3071,8 @@ impl ThreeLegPoint {
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
             // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - minus_bias_a_on_f1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
@@ -3191,12 +3086,9 @@ impl ThreeLegPoint {
             output[0][1] = -minus_rate_dot_1_leg1; // ia_1_leg1
             let minus_g2_a1_leg2 = inv_det_ja / det_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][19] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            output[0][19] = -math::wide::signed(minus_g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            let a_tip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = a_tip_x_leg3 + bias_a_on_f1_leg3;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
@@ -3206,10 +3098,7 @@ impl ThreeLegPoint {
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][29] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][29] = math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3); // fs_2_leg3
             // --- leg1
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
@@ -3241,10 +3130,7 @@ impl ThreeLegPoint {
             output[1][15] = -minus_zz_2_leg2_on_q1_leg2; // zz_2_leg2
             output[1][16] = L_1
                 * (minus_rate_dot_1_leg2 + minus_zz_2_leg2_on_q1_leg2) - t2_platform; // mx_2_leg2
-            output[1][19] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][19] = math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2); // fs_2_leg2
             output[1][7] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
             let minus_zz_2_leg1_on_q1_leg2 = g2_a2_leg1 * minus_rate_dot_2_leg1;
             output[1][5] = -minus_zz_2_leg1_on_q1_leg2; // zz_2_leg1
@@ -3253,10 +3139,7 @@ impl ThreeLegPoint {
             let zz_2_leg2_on_q1_leg1 = minus_g2_a1_leg2 * minus_rate_dot_2_leg2;
             output[0][15] = zz_2_leg2_on_q1_leg1;
             output[0][16] = -(L_1 * zz_2_leg2_on_q1_leg1 + t1_platform); // mx_2_leg2
-            output[0][29] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][29] = math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3); // fs_2_leg3
             // --- leg3
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
@@ -3281,7 +3164,7 @@ impl ThreeLegPoint {
             output[1][18] = -(L_1_SQUARED * minus_rate_dot_1_leg2); // m_2_leg2
             output[0][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg1; // m_2_leg3
             output[1][28] = L_1_SQUARED * zz_1_leg3_on_q1_leg2; // m_2_leg3
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -3297,13 +3180,13 @@ impl ThreeLegPoint {
     /// 218 operations (66 additions, 145 multiplications, 7 divisions), 3 square roots, 6 signs, 9 guards, 20 negations, 182 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 22]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_into(
             pose,
             twist,
             acceleration,
@@ -3315,43 +3198,43 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base`]; `output` is then only partly written.
     pub fn idm_red_platform_base_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 22]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 22]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             output[0][0] = acceleration[0]; // m_platformR
             output[1][0] = acceleration[1]; // m_platformR
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let half_x = 0.5 * pose[0];
             let t1_leg3 = pose[1] * 0.8660254037844386;
             // --- leg2
@@ -3362,23 +3245,23 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
@@ -3394,11 +3277,8 @@ impl ThreeLegPoint {
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
-            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][8] = -::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                rate_1_leg2,
-            ); // fs_1_leg2
+            output[0][8] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][8] = -math::wide::signed(minus_g1_vy_leg2, rate_1_leg2); // fs_1_leg2
             // --- leg3
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
@@ -3414,11 +3294,8 @@ impl ThreeLegPoint {
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
-            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            ); // fs_1_leg3
+            output[0][9] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = -math::wide::signed(minus_g1_vy_leg3, rate_1_leg3); // fs_1_leg3
             // --- leg1
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
@@ -3432,17 +3309,14 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][7] = -::overact::math::wide::signed(
-                minus_g1_vx_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
-            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[0][7] = -math::wide::signed(minus_g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][7] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            let t1_leg1 = math::wide::sign(minus_qd_2_leg1) / det_leg1;
             output[1][19] = d_x_leg1 * t1_leg1; // fs_2_leg1
             output[0][19] = pose[0] * t1_leg1; // fs_2_leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
@@ -3466,7 +3340,7 @@ impl ThreeLegPoint {
                 - minus_g2_vy_leg1 * minus_a2_x_leg1; // my_2_leg1
             output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
             output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let t3_leg3 = y_plus_half_radius * INV_L_1;
             // --- leg2
@@ -3478,14 +3352,14 @@ impl ThreeLegPoint {
             let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
                 + minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 + fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
             output[0][17] = g1_vx_leg2 * a_on_f2_leg2
                 - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, -minus_qd_2_leg2);
+            let t4_leg2 = math::wide::signed(k_leg2, -minus_qd_2_leg2);
             output[0][20] = -(t3_leg2 * t4_leg2); // fs_2_leg2
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
@@ -3501,7 +3375,7 @@ impl ThreeLegPoint {
             output[1][14] = minus_g2_vy_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             output[1][20] = -(t3_leg3 * t4_leg2); // fs_2_leg2
             // --- leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t3_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
@@ -3511,14 +3385,14 @@ impl ThreeLegPoint {
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
                 + minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * acceleration[1]
                 + minus_fk2_x_leg3 * acceleration[0] + L_1 * rate_1_squared_leg3;
             output[0][18] = minus_g2_vx_leg3 * a_on_f1_leg3
                 + g1_vx_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            let t5_leg3 = math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][21] = -(t4_leg3 * t5_leg3); // fs_2_leg3
             output[1][21] = -(t3_leg3 * t5_leg3); // fs_2_leg3
             let v2_by_1_y_leg3 = INV_TWICE_L_1
@@ -3533,7 +3407,7 @@ impl ThreeLegPoint {
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
             output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -3550,14 +3424,14 @@ impl ThreeLegPoint {
     /// 187 operations (53 additions, 131 multiplications, 3 divisions), 6 trigonometric pairs, 6 signs, 3 guards, 18 negations, 157 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 22]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -3570,34 +3444,34 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 22]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 22]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             output[0][0] = acceleration[0]; // m_platformR
             output[1][0] = acceleration[1]; // m_platformR
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
-            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3)] = math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[0], joints[2], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
+            guard::leg(s2_leg1, 0.998, "leg1")?;
+            guard::leg(s2_leg2, 0.998, "leg2")?;
+            guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
@@ -3609,19 +3483,16 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][7] = -::overact::math::wide::signed(
-                minus_g1_vx_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
-            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+            output[0][7] = -math::wide::signed(minus_g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][7] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            let minus_a_tip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
             let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
             let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
             let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_a_tip_x_leg1 - l_1_rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
@@ -3630,7 +3501,7 @@ impl ThreeLegPoint {
                 - minus_g1_vx_leg1 * a_on_f2_leg1; // my_2_leg1
             let gq2_vx_leg1 = minus_g1_vx_leg1 + g2_vx_leg1;
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[0][19] = ::overact::math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
+            output[0][19] = math::wide::signed(gq2_vx_leg1, qd_2_leg1); // fs_2_leg1
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
             output[0][1] = minus_g1_vx_leg1 * minus_rate_dot_1_leg1; // zz_1_leg1R
@@ -3641,10 +3512,7 @@ impl ThreeLegPoint {
                 - minus_g2_vy_leg1 * a_on_f1_leg1; // my_2_leg1
             output[1][1] = -(g1_vy_leg1 * minus_rate_dot_1_leg1); // zz_1_leg1R
             let minus_gq2_vy_leg1 = g1_vy_leg1 + minus_g2_vy_leg1;
-            output[1][19] = -::overact::math::wide::signed(
-                minus_gq2_vy_leg1,
-                qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][19] = -math::wide::signed(minus_gq2_vy_leg1, qd_2_leg1); // fs_2_leg1
             output[1][13] = minus_g2_vy_leg1 * minus_rate_dot_2_leg1; // zz_2_leg1R
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -3659,12 +3527,9 @@ impl ThreeLegPoint {
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][5] = -(minus_g1_vy_leg2 * rate_1_leg2); // fv_1_leg2
-            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][8] = -::overact::math::wide::signed(
-                minus_g1_vy_leg2,
-                rate_1_leg2,
-            ); // fs_1_leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            output[0][8] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][8] = -math::wide::signed(minus_g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
@@ -3672,7 +3537,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
@@ -3680,10 +3545,7 @@ impl ThreeLegPoint {
                 - minus_g2_vx_leg2 * a_on_f1_leg2; // my_2_leg2
             let minus_gq2_vx_leg2 = g1_vx_leg2 + minus_g2_vx_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[0][20] = -::overact::math::wide::signed(
-                minus_gq2_vx_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][20] = -math::wide::signed(minus_gq2_vx_leg2, qd_2_leg2); // fs_2_leg2
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
@@ -3695,7 +3557,7 @@ impl ThreeLegPoint {
                 - minus_g1_vy_leg2 * a_on_f2_leg2; // my_2_leg2
             output[1][2] = minus_g1_vy_leg2 * minus_rate_dot_1_leg2; // zz_1_leg2R
             let gq2_vy_leg2 = minus_g1_vy_leg2 + g2_vy_leg2;
-            output[1][20] = ::overact::math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
+            output[1][20] = math::wide::signed(gq2_vy_leg2, qd_2_leg2); // fs_2_leg2
             output[1][14] = -(g2_vy_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
@@ -3710,12 +3572,9 @@ impl ThreeLegPoint {
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
-            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            ); // fs_1_leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            output[0][9] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = -math::wide::signed(minus_g1_vy_leg3, rate_1_leg3); // fs_1_leg3
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
             let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
@@ -3724,7 +3583,7 @@ impl ThreeLegPoint {
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
             let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + l_1_rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let l_1_rate_1_squared_leg3 = L_1 * rate_1_squared_leg3;
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
@@ -3733,10 +3592,7 @@ impl ThreeLegPoint {
                 - g1_vx_leg3 * a_on_f2_leg3; // my_2_leg3
             let minus_gq2_vx_leg3 = g1_vx_leg3 + minus_g2_vx_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][21] = -::overact::math::wide::signed(
-                minus_gq2_vx_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][21] = -math::wide::signed(minus_gq2_vx_leg3, qd_2_leg3); // fs_2_leg3
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + c2_leg3 * l_1_rate_1_squared_leg3);
             output[0][3] = g1_vx_leg3 * rate_dot_1_leg3; // zz_1_leg3R
@@ -3747,9 +3603,9 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * a_on_f1_leg3; // my_2_leg3
             output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
             let gq2_vy_leg3 = minus_g1_vy_leg3 + g2_vy_leg3;
-            output[1][21] = ::overact::math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
+            output[1][21] = math::wide::signed(gq2_vy_leg3, qd_2_leg3); // fs_2_leg3
             output[1][15] = g2_vy_leg3 * rate_dot_2_leg3; // zz_2_leg3R
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the platform projection (case 1): Γ¹ = IDM_red χ, eq. (30).
@@ -3767,14 +3623,14 @@ impl ThreeLegPoint {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 22]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_platform_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -3787,48 +3643,48 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_platform_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_platform_base_from_actuators_into(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 22]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+        output: &mut [[f64; 22]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -3839,23 +3695,23 @@ impl ThreeLegPoint {
             let d_y_leg2 = half_x - t1_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
@@ -3880,7 +3736,7 @@ impl ThreeLegPoint {
             output[0][12] = g1_vx_leg3; // off_1_leg3
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -3901,11 +3757,7 @@ impl ThreeLegPoint {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
                 - minus_g1_vx_leg1 * actuator_velocities[0]
                 + g1_vx_leg3 * actuator_velocities[2];
@@ -3917,30 +3769,24 @@ impl ThreeLegPoint {
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             output[0][4] = -(minus_g1_vx_leg1 * rate_1_leg1); // fv_1_leg1
             output[1][4] = g1_vy_leg1 * rate_1_leg1; // fv_1_leg1
-            output[0][7] = -::overact::math::wide::signed(
-                minus_g1_vx_leg1,
-                rate_1_leg1,
-            ); // fs_1_leg1
-            output[1][7] = ::overact::math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
+            output[0][7] = -math::wide::signed(minus_g1_vx_leg1, rate_1_leg1); // fs_1_leg1
+            output[1][7] = math::wide::signed(g1_vy_leg1, rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx + g1_vy_leg2 * vy;
             output[0][5] = g1_vx_leg2 * rate_1_leg2; // fv_1_leg2
             output[1][5] = g1_vy_leg2 * rate_1_leg2; // fv_1_leg2
-            output[0][8] = ::overact::math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
-            output[1][8] = ::overact::math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
+            output[0][8] = math::wide::signed(g1_vx_leg2, rate_1_leg2); // fs_1_leg2
+            output[1][8] = math::wide::signed(g1_vy_leg2, rate_1_leg2); // fs_1_leg2
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             output[0][6] = g1_vx_leg3 * rate_1_leg3; // fv_1_leg3
             output[1][6] = -(minus_g1_vy_leg3 * rate_1_leg3); // fv_1_leg3
-            output[0][9] = ::overact::math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = -::overact::math::wide::signed(
-                minus_g1_vy_leg3,
-                rate_1_leg3,
-            ); // fs_1_leg3
+            output[0][9] = math::wide::signed(g1_vx_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = -math::wide::signed(minus_g1_vy_leg3, rate_1_leg3); // fs_1_leg3
             // --- leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let t1_leg1 = ::overact::math::wide::sign(minus_qd_2_leg1) / det_leg1;
+            let t1_leg1 = math::wide::sign(minus_qd_2_leg1) / det_leg1;
             output[1][19] = d_x_leg1 * t1_leg1; // fs_2_leg1
             output[0][19] = pose[0] * t1_leg1; // fs_2_leg1
             // --- leg2
@@ -3950,7 +3796,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let t4_leg2 = ::overact::math::wide::signed(k_leg2, qd_2_leg2);
+            let t4_leg2 = math::wide::signed(k_leg2, qd_2_leg2);
             output[0][20] = -(t3_leg2 * t4_leg2); // fs_2_leg2
             output[1][20] = -(t3_leg3 * t4_leg2); // fs_2_leg2
             // --- leg3
@@ -3961,15 +3807,15 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let minus_rate_2_leg3 = minus_g2_vy_leg3 * vy + minus_g2_vx_leg3 * vx;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let t5_leg3 = ::overact::math::wide::signed(k_leg3, -minus_qd_2_leg3);
+            let t5_leg3 = math::wide::signed(k_leg3, -minus_qd_2_leg3);
             output[0][21] = -(t4_leg3 * t5_leg3); // fs_2_leg3
             output[1][21] = -(t3_leg3 * t5_leg3); // fs_2_leg3
             // --- leg2
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e100)?;
+            guard::size(rate_2_squared_leg2, 1e100)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e100)?;
+            guard::size(rate_1_squared_leg2, 1e100)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -3979,10 +3825,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e100)?;
+            guard::size(rate_2_squared_leg1, 1e100)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e100)?;
+            guard::size(rate_1_squared_leg1, 1e100)?;
             let t2_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t3_leg1 = rate_1_squared_leg1 * t2_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t3_leg1);
@@ -3990,10 +3836,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg1;
             // --- leg3
             let rate_2_squared_leg3 = minus_rate_2_leg3 * minus_rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e100)?;
+            guard::size(rate_2_squared_leg3, 1e100)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e100)?;
+            guard::size(rate_1_squared_leg3, 1e100)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -4012,16 +3858,16 @@ impl ThreeLegPoint {
             let dvx = t2 / s_1_1 + minus_l_2_1 * dvy;
             output[0][0] = dvx; // m_platformR
             // --- leg2
-            let atip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
-            let minus_a_on_f1_leg2 = atip_x_leg2 + minus_bias_a_on_f1_leg2;
+            let a_tip_x_leg2 = minus_fk1_y_leg2 * dvy + minus_fk1_x_leg2 * dvx;
+            let minus_a_on_f1_leg2 = a_tip_x_leg2 + minus_bias_a_on_f1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
             output[0][17] = g1_vx_leg2 * a_on_f2_leg2
                 + minus_g2_vx_leg2 * minus_a_on_f1_leg2; // my_2_leg2
             // --- leg3
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let a_tip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = a_tip_x_leg3 + bias_a_on_f1_leg3;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
                 + minus_bias_a_on_f2_leg3;
@@ -4066,7 +3912,7 @@ impl ThreeLegPoint {
                 - minus_g1_vy_leg3 * minus_a_on_f2_leg3; // my_2_leg3
             output[1][3] = -(minus_g1_vy_leg3 * rate_dot_1_leg3); // zz_1_leg3R
             output[1][15] = minus_g2_vy_leg3 * minus_rate_dot_2_leg3; // zz_2_leg3R
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -4082,13 +3928,13 @@ impl ThreeLegPoint {
     /// 245 operations (81 additions, 156 multiplications, 8 divisions), 3 square roots, 6 signs, 10 guards, 13 negations, 216 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 22]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_into(
             pose,
             twist,
             acceleration,
@@ -4100,32 +3946,32 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_into(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 22]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 22]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, twist, acceleration) = (*pose, *twist, *acceleration);
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             output[0][2] = 0.0; // zz_1_leg2R
             output[0][5] = 0.0; // fv_1_leg2
             output[0][8] = 0.0; // fs_1_leg2
@@ -4139,12 +3985,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -4155,21 +4001,21 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
@@ -4192,11 +4038,7 @@ impl ThreeLegPoint {
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.1,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = rate_1_leg1; // fv_1_leg1
             let inv_det_ja = 1.0 / det_ja;
@@ -4204,16 +4046,16 @@ impl ThreeLegPoint {
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             output[1][0] = -(minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1]); // m_platformR
-            output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[0][7] = math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[1][5] = rate_1_leg2; // fv_1_leg2
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             output[0][0] = -(minus_vx_by_a1 * acceleration[0]
                 + minus_vy_by_a1 * acceleration[1]); // m_platformR
-            output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
+            output[1][8] = math::wide::sign(rate_1_leg2); // fs_1_leg2
             // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -4223,7 +4065,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
@@ -4241,15 +4083,9 @@ impl ThreeLegPoint {
             output[0][14] = minus_g2_a1_leg2 * minus_rate_dot_2_leg2; // zz_2_leg2R
             output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][20] = math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2); // fs_2_leg2
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][20] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][20] = -math::wide::signed(minus_g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             // --- leg1
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
@@ -4275,15 +4111,9 @@ impl ThreeLegPoint {
             output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[0][13] = -(g2_a1_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][19] = -::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][19] = -math::wide::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1); // fs_2_leg1
             output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
-            output[1][19] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][19] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             // --- leg3
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -4305,9 +4135,9 @@ impl ThreeLegPoint {
             output[1][12] = g1_a2_leg3; // off_1_leg3
             output[1][6] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
             output[0][6] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            output[0][9] = math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
                 - 3.608439182435161 * l1_y_leg3;
@@ -4317,7 +4147,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
@@ -4327,14 +4157,8 @@ impl ThreeLegPoint {
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][21] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
-            output[0][21] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][21] = math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3); // fs_2_leg3
+            output[0][21] = math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3); // fs_2_leg3
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
@@ -4346,7 +4170,7 @@ impl ThreeLegPoint {
             output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -4363,14 +4187,14 @@ impl ThreeLegPoint {
     /// 207 operations (60 additions, 143 multiplications, 4 divisions), 6 trigonometric pairs, 6 signs, 4 guards, 10 negations, 187 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+    ) -> Result<[[f64; 22]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_from_joints_into(
             pose,
             joints,
             twist,
@@ -4383,24 +4207,24 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base_from_joints`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_joints_into(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 22]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        output: &mut [[f64; 22]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (joints, twist, acceleration) = (*joints, *twist, *acceleration);
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             output[0][2] = 0.0; // zz_1_leg2R
             output[0][5] = 0.0; // fv_1_leg2
             output[0][8] = 0.0; // fs_1_leg2
@@ -4413,12 +4237,12 @@ impl ThreeLegPoint {
             output[1][11] = 1.0; // off_1_leg2
             // --- sines and cosines
             let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
-            (s1_leg2, c1_leg2), (s1_leg1, c1_leg1), (s1_leg3, c1_leg3)] = ::overact::math::wide::sin_cos_all([
+            (s1_leg2, c1_leg2), (s1_leg1, c1_leg1), (s1_leg3, c1_leg3)] = math::wide::sin_cos_all([
                 joints[1], joints[3], joints[5], joints[2], joints[0], joints[4],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
+            guard::leg(s2_leg1, 0.998, "leg1")?;
+            guard::leg(s2_leg2, 0.998, "leg2")?;
+            guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg2
             let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -4435,11 +4259,7 @@ impl ThreeLegPoint {
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.1,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             output[0][4] = rate_1_leg1; // fv_1_leg1
             let inv_det_ja = 1.0 / det_ja;
@@ -4447,21 +4267,21 @@ impl ThreeLegPoint {
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             output[1][0] = -(minus_vx_by_a2 * acceleration[0]
                 + minus_vy_by_a2 * acceleration[1]); // m_platformR
-            output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[0][7] = math::wide::sign(rate_1_leg1); // fs_1_leg1
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
             output[0][0] = -(minus_vx_by_a1 * acceleration[0]
                 + minus_vy_by_a1 * acceleration[1]); // m_platformR
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
             output[1][5] = rate_1_leg2; // fv_1_leg2
-            output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+            output[1][8] = math::wide::sign(rate_1_leg2); // fs_1_leg2
+            let minus_a_tip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
             let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
             let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - L_1 * rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_a_tip_x_leg1 - L_1 * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let v2_by_1_y_leg1 = L_1 * c2_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
@@ -4479,14 +4299,11 @@ impl ThreeLegPoint {
             output[1][13] = -(g2_a2_leg1 * minus_rate_dot_2_leg1); // zz_2_leg1R
             output[0][16] = a_on_f2_leg1 + g2_a1_leg1 * a_on_f1_leg1; // my_2_leg1
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            output[0][19] = ::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][19] = math::wide::signed(g2_a1_leg1 - 1.0, qd_2_leg1); // fs_2_leg1
             output[1][16] = g2_a2_leg1 * a_on_f1_leg1; // my_2_leg1
-            output[1][19] = ::overact::math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
+            output[1][19] = math::wide::signed(g2_a2_leg1, qd_2_leg1); // fs_2_leg1
             // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
@@ -4494,7 +4311,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let v2_by_1_y_leg2 = L_1 * c2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
@@ -4512,12 +4329,9 @@ impl ThreeLegPoint {
             output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             output[1][17] = a_on_f2_leg2 + g2_a2_leg2 * a_on_f1_leg2; // my_2_leg2
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][20] = math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2); // fs_2_leg2
             output[0][17] = g2_a1_leg2 * a_on_f1_leg2; // my_2_leg2
-            output[0][20] = ::overact::math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
+            output[0][20] = math::wide::signed(g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             // --- leg3
             let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
             let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
@@ -4535,9 +4349,9 @@ impl ThreeLegPoint {
             output[1][12] = g1_a2_leg3; // off_1_leg3
             output[1][6] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
             output[0][6] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
-            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            output[0][9] = math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
             let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
@@ -4545,7 +4359,7 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
@@ -4555,14 +4369,8 @@ impl ThreeLegPoint {
             let g2_a2_leg3 = minus_g2_vx_leg3 * minus_vx_by_a2
                 - g2_vy_leg3 * minus_vy_by_a2;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[1][21] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
-            output[0][21] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[1][21] = math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3); // fs_2_leg3
+            output[0][21] = math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3); // fs_2_leg3
             let v2_by_1_y_leg3 = L_1 * c2_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
@@ -4573,7 +4381,7 @@ impl ThreeLegPoint {
             output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][3] = g1_a2_leg3 * rate_dot_1_leg3; // zz_1_leg3R
             output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
-            ::core::result::Result::Ok(())
+            Ok(())
         })
     }
     /// IDM_red of the actuator projection (case 2): Γ² = IDM_red χ on the kept actuators, eq. (36).
@@ -4591,14 +4399,14 @@ impl ThreeLegPoint {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
-        ::overact::zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+    ) -> Result<[[f64; 22]; 2], Error> {
+        zeroed_then_fill(|output| Self::idm_red_actuators_base_from_actuators_into(
             actuators,
             actuator_velocities,
             actuator_accelerations,
@@ -4611,39 +4419,39 @@ impl ThreeLegPoint {
     /// # Errors
     /// Those of [`Self::idm_red_actuators_base_from_actuators`]; `output` is then only partly written.
     pub fn idm_red_actuators_base_from_actuators_into(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        start: &[::core::primitive::f64; 2],
-        output: &mut [[::core::primitive::f64; 22]; 2],
-    ) -> ::core::result::Result<(), ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        start: &[f64; 2],
+        output: &mut [[f64; 22]; 2],
+    ) -> Result<(), Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12), ("start", start, 1e6),
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx512(#[inline(always)] || {
+        with_avx512(#[inline(always)] || {
             let (pose, actuator_velocities, actuator_accelerations) = (
                 *pose,
                 *actuator_velocities,
                 *actuator_accelerations,
             );
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             output[0][2] = 0.0; // zz_1_leg2R
             output[0][5] = 0.0; // fv_1_leg2
             output[0][8] = 0.0; // fs_1_leg2
@@ -4657,12 +4465,12 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
@@ -4673,21 +4481,21 @@ impl ThreeLegPoint {
                 + t1_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             // --- leg2
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
             let l2_y_leg2 = d_y_leg2 - l1_y_leg2;
@@ -4710,11 +4518,7 @@ impl ThreeLegPoint {
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.1,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
             // --- leg3
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -4726,7 +4530,7 @@ impl ThreeLegPoint {
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
@@ -4737,11 +4541,7 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
                 - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -4753,10 +4553,10 @@ impl ThreeLegPoint {
             let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
             output[0][4] = rate_1_leg1; // fv_1_leg1
-            output[0][7] = ::overact::math::wide::sign(rate_1_leg1); // fs_1_leg1
+            output[0][7] = math::wide::sign(rate_1_leg1); // fs_1_leg1
             let rate_1_leg2 = g1_vx_leg2 * vx - minus_g1_vy_leg2 * vy;
             output[1][5] = rate_1_leg2; // fv_1_leg2
-            output[1][8] = ::overact::math::wide::sign(rate_1_leg2); // fs_1_leg2
+            output[1][8] = math::wide::sign(rate_1_leg2); // fs_1_leg2
             let inv_det_ja = 1.0 / det_ja;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
             let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
@@ -4765,29 +4565,23 @@ impl ThreeLegPoint {
             output[0][12] = g1_a1_leg3; // off_1_leg3
             let rate_1_leg3 = g1_vx_leg3 * vx - minus_g1_vy_leg3 * vy;
             output[0][6] = g1_a1_leg3 * rate_1_leg3; // fv_1_leg3
-            output[0][9] = ::overact::math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
+            output[0][9] = math::wide::signed(g1_a1_leg3, rate_1_leg3); // fs_1_leg3
             let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
             let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
             let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2
                 - g1_vx_leg3 * minus_vx_by_a2;
             output[1][12] = g1_a2_leg3; // off_1_leg3
             output[1][6] = g1_a2_leg3 * rate_1_leg3; // fv_1_leg3
-            output[1][9] = ::overact::math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
+            output[1][9] = math::wide::signed(g1_a2_leg3, rate_1_leg3); // fs_1_leg3
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let g2_a1_leg1 = minus_g2_vx_leg1 * minus_vx_by_a1
                 + minus_g2_vy_leg1 * minus_vy_by_a1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            output[0][19] = -::overact::math::wide::signed(
-                g2_a1_leg1 - 1.0,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[0][19] = -math::wide::signed(g2_a1_leg1 - 1.0, minus_qd_2_leg1); // fs_2_leg1
             let g2_a2_leg1 = k_leg1 * inv_det_ja;
-            output[1][19] = -::overact::math::wide::signed(
-                g2_a2_leg1,
-                minus_qd_2_leg1,
-            ); // fs_2_leg1
+            output[1][19] = -math::wide::signed(g2_a2_leg1, minus_qd_2_leg1); // fs_2_leg1
             // --- leg2
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -4797,10 +4591,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * vy - minus_g2_vx_leg2 * vx;
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            ::overact::guard::size(rate_2_squared_leg2, 1e60)?;
+            guard::size(rate_2_squared_leg2, 1e60)?;
             let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
-            ::overact::guard::size(rate_1_squared_leg2, 1e60)?;
+            guard::size(rate_1_squared_leg2, 1e60)?;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg2 = rate_1_squared_leg2 * v2_by_1_y_leg2;
@@ -4810,10 +4604,10 @@ impl ThreeLegPoint {
                 - bias_rate_dot_1_leg2;
             // --- leg1
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
-            ::overact::guard::size(rate_2_squared_leg1, 1e60)?;
+            guard::size(rate_2_squared_leg1, 1e60)?;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
-            ::overact::guard::size(rate_1_squared_leg1, 1e60)?;
+            guard::size(rate_1_squared_leg1, 1e60)?;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let t2_leg1 = rate_1_squared_leg1 * t1_leg1;
             let bias_rate_dot_1_leg1 = k_leg1 * (minus_bias_a_on_f1_leg1 + t2_leg1);
@@ -4828,10 +4622,10 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * vy - minus_g2_vx_leg3 * vx;
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            ::overact::guard::size(rate_2_squared_leg3, 1e60)?;
+            guard::size(rate_2_squared_leg3, 1e60)?;
             let bias_a_on_f1_leg3 = L_1 * rate_2_squared_leg3;
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
-            ::overact::guard::size(rate_1_squared_leg3, 1e60)?;
+            guard::size(rate_1_squared_leg3, 1e60)?;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_1_squared_v2_by_1_y_leg3 = rate_1_squared_leg3 * v2_by_1_y_leg3;
@@ -4849,8 +4643,8 @@ impl ThreeLegPoint {
                     + minus_l_2_1 * t2);
             let dvx = inv_pivot_1 * t2 + minus_l_2_1 * dvy;
             // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - minus_bias_a_on_f1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx - minus_fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
@@ -4861,8 +4655,8 @@ impl ThreeLegPoint {
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
             output[0][1] = -minus_rate_dot_1_leg1; // zz_1_leg1R
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let a_tip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = a_tip_x_leg3 + bias_a_on_f1_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
             output[0][3] = g1_a1_leg3 * rate_dot_1_leg3; // zz_1_leg3R
@@ -4886,10 +4680,7 @@ impl ThreeLegPoint {
             output[1][16] = g2_a2_leg1 * minus_a2_x_leg1; // my_2_leg1
             output[1][14] = -(g2_a2_leg2 * minus_rate_dot_2_leg2); // zz_2_leg2R
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            output[1][20] = ::overact::math::wide::signed(
-                g2_a2_leg2 - 1.0,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[1][20] = math::wide::signed(g2_a2_leg2 - 1.0, qd_2_leg2); // fs_2_leg2
             let g2_a1_leg3 = minus_g2_vx_leg3 * minus_vx_by_a1
                 - g2_vy_leg3 * minus_vy_by_a1;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
@@ -4904,22 +4695,13 @@ impl ThreeLegPoint {
                 - g2_vy_leg3 * minus_vy_by_a2;
             output[1][15] = g2_a2_leg3 * rate_dot_2_leg3; // zz_2_leg3R
             output[0][17] = -(minus_g2_a1_leg2 * a_on_f1_leg2); // my_2_leg2
-            output[0][20] = -::overact::math::wide::signed(
-                minus_g2_a1_leg2,
-                qd_2_leg2,
-            ); // fs_2_leg2
+            output[0][20] = -math::wide::signed(minus_g2_a1_leg2, qd_2_leg2); // fs_2_leg2
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            output[0][21] = ::overact::math::wide::signed(
-                g2_a1_leg3 - g1_a1_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
+            output[0][21] = math::wide::signed(g2_a1_leg3 - g1_a1_leg3, qd_2_leg3); // fs_2_leg3
             output[0][18] = -(g1_a1_leg3 * a_on_f2_leg3 + g2_a1_leg3 * a_on_f1_leg3); // my_2_leg3
             output[1][18] = -(g1_a2_leg3 * a_on_f2_leg3 + g2_a2_leg3 * a_on_f1_leg3); // my_2_leg3
-            output[1][21] = ::overact::math::wide::signed(
-                g2_a2_leg3 - g1_a2_leg3,
-                qd_2_leg3,
-            ); // fs_2_leg3
-            ::core::result::Result::Ok(())
+            output[1][21] = math::wide::signed(g2_a2_leg3 - g1_a2_leg3, qd_2_leg3); // fs_2_leg3
+            Ok(())
         })
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -4933,22 +4715,22 @@ impl ThreeLegPoint {
     /// 80 operations (28 additions, 46 multiplications, 6 divisions), 3 square roots, 9 guards, 81 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_platform(
-        pose: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        pose: &[f64; 2],
+        torques: &[f64; 3],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg3
         let t1_leg3 = pose[0] - 0.3031088913245535;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -4960,7 +4742,7 @@ impl ThreeLegPoint {
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
@@ -4971,30 +4753,30 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
@@ -5003,7 +4785,7 @@ impl ThreeLegPoint {
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
-        ::core::result::Result::Ok([
+        Ok([
             g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
                 + g1_vx_leg3 * torques[2],
             g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
@@ -5021,22 +4803,22 @@ impl ThreeLegPoint {
     /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 10 guards, 89 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_actuators(
-        pose: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        pose: &[f64; 2],
+        torques: &[f64; 3],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg2
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t1_leg2 = 0.5 * y_plus_half_radius;
@@ -5047,7 +4829,7 @@ impl ThreeLegPoint {
         let d_y_leg3 = pose[0] - d_y_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
@@ -5058,7 +4840,7 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * t2_leg2 + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
@@ -5069,19 +4851,19 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
@@ -5089,7 +4871,7 @@ impl ThreeLegPoint {
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.1, ::overact::ActuatorGroup::Kept)?;
+        guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
         let inv_det_ja = 1.0 / det_ja;
         let minus_vy_by_a1 = g1_vx_leg2 * inv_det_ja;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
@@ -5099,9 +4881,7 @@ impl ThreeLegPoint {
         let minus_vy_by_a2 = minus_g1_vx_leg1 * inv_det_ja;
         let minus_vx_by_a2 = g1_vy_leg1 * inv_det_ja;
         let g1_a2_leg3 = minus_g1_vy_leg3 * minus_vy_by_a2 - g1_vx_leg3 * minus_vx_by_a2;
-        ::core::result::Result::Ok([
-            torques[0] + torques[2] * g1_a1_leg3, torques[1] + torques[2] * g1_a2_leg3,
-        ])
+        Ok([torques[0] + torques[2] * g1_a1_leg3, torques[1] + torques[2] * g1_a2_leg3])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the unique ones without redundancy, eq. (19).
     ///
@@ -5116,45 +4896,45 @@ impl ThreeLegPoint {
     /// 291 operations (120 additions, 162 multiplications, 9 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 293 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 31],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        parameters: &[f64; 31],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let half_x = 0.5 * pose[0];
@@ -5167,10 +4947,8 @@ impl ThreeLegPoint {
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                parameters[9],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = parameters[9];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
@@ -5178,22 +4956,29 @@ impl ThreeLegPoint {
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-            let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
+            let mx_2_leg1 = parameters[6];
+            let inv_l_1_mx_2_leg1 = INV_L_1 * mx_2_leg1;
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
+            let ia_1_leg1 = parameters[1];
+            let fs_1_leg1 = parameters[3];
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-            let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
-            let t2_leg1 = parameters[4]
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
-                + a_on_f2_leg1 * my_2_leg1_inv_l_1 + parameters[2] * rate_1_leg1
+            let my_2_leg1 = parameters[7];
+            let my_2_inv_l_1_leg1 = my_2_leg1 * INV_L_1;
+            let fv_1_leg1 = parameters[2];
+            let off_1_leg1 = parameters[4];
+            let t2_leg1 = off_1_leg1 + math::wide::signed(fs_1_leg1, rate_1_leg1)
+                + a_on_f2_leg1 * my_2_inv_l_1_leg1 + fv_1_leg1 * rate_1_leg1
                 - minus_rate_dot_1_leg1
-                    * (parameters[0]
-                        + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
-                        + parameters[1]);
+                    * (zz_1_leg1 + L_1_SQUARED * (m_2_leg1 - inv_l_1_mx_2_leg1)
+                        + ia_1_leg1);
             let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
-                - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
+            let zz_2_leg1 = parameters[5];
+            let moment2_z_leg1 = a_on_f1_leg1 * my_2_inv_l_1_leg1
+                - minus_rate_dot_2_leg1 * (zz_2_leg1 - L_1 * mx_2_leg1);
             let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
             // --- leg2
             let d_y_leg2 = half_x - pose[1] * 0.8660254037844386;
@@ -5203,10 +4988,10 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -5214,19 +4999,20 @@ impl ThreeLegPoint {
             let t1_leg3 = y_plus_half_radius * INV_L_1;
             let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
                 + minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let my_2_leg2 = parameters[17];
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
@@ -5237,41 +5023,45 @@ impl ThreeLegPoint {
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-                - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
+            let mx_2_leg2 = parameters[16];
+            let zz_2_leg2 = parameters[15];
+            let moment2_z_leg2 = my_2_leg2 * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (zz_2_leg2 - L_1 * mx_2_leg2);
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                parameters[19],
-                -minus_qd_2_leg2,
-            );
+            let fs_2_leg2 = parameters[19];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, -minus_qd_2_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let fs_1_leg2 = parameters[13];
+            let fv_1_leg2 = parameters[12];
+            let off_1_leg2 = parameters[14];
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
-            let t3_leg2 = parameters[14]
-                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
-                + parameters[17] * a_on_f2_leg2 + parameters[12] * rate_1_leg2
+            let inv_l_1_mx_2_leg2 = INV_L_1 * mx_2_leg2;
+            let m_2_leg2 = parameters[18];
+            let zz_1_leg2 = parameters[10];
+            let ia_1_leg2 = parameters[11];
+            let t3_leg2 = off_1_leg2 + math::wide::signed(fs_1_leg2, rate_1_leg2)
+                + my_2_leg2 * a_on_f2_leg2 + fv_1_leg2 * rate_1_leg2
                 - minus_rate_dot_1_leg2
-                    * (parameters[10]
-                        + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
-                        + parameters[11]);
+                    * (zz_1_leg2 + L_1_SQUARED * (m_2_leg2 - inv_l_1_mx_2_leg2)
+                        + ia_1_leg2);
             let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = pose[0] - d_y_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -5291,28 +5081,32 @@ impl ThreeLegPoint {
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            let mx_2_leg3 = parameters[26];
+            let zz_2_leg3 = parameters[25];
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let my_2_leg3 = parameters[27];
             let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
-                * (parameters[25] - L_1 * parameters[26])
-                + parameters[27] * a_on_f1_leg3;
+                * (zz_2_leg3 - L_1 * mx_2_leg3) + my_2_leg3 * a_on_f1_leg3;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                parameters[29],
-                -minus_qd_2_leg3,
-            );
+            let fs_2_leg3 = parameters[29];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, -minus_qd_2_leg3);
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            let fs_1_leg3 = parameters[23];
+            let fv_1_leg3 = parameters[22];
+            let off_1_leg3 = parameters[24];
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
-            let t3_leg3 = parameters[24]
-                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
-                + minus_a_on_f2_leg3 * parameters[27] + parameters[22] * rate_1_leg3
+            let inv_l_1_mx_2_leg3 = INV_L_1 * mx_2_leg3;
+            let m_2_leg3 = parameters[28];
+            let zz_1_leg3 = parameters[20];
+            let ia_1_leg3 = parameters[21];
+            let t3_leg3 = off_1_leg3 + math::wide::signed(fs_1_leg3, rate_1_leg3)
+                + minus_a_on_f2_leg3 * my_2_leg3 + fv_1_leg3 * rate_1_leg3
                 + rate_dot_1_leg3
-                    * (parameters[20]
-                        + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
-                        + parameters[21]);
+                    * (zz_1_leg3 + L_1_SQUARED * (m_2_leg3 - inv_l_1_mx_2_leg3)
+                        + ia_1_leg3);
             let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
             let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
                 - minus_g2_vy_leg1 * force_on_u2_leg1
@@ -5320,7 +5114,8 @@ impl ThreeLegPoint {
                     + minus_g1_vy_leg2 * force_on_u1_leg2)
                 - (minus_g2_vy_leg3 * force_on_u2_leg3
                     + minus_g1_vy_leg3 * force_on_u1_leg3);
-            let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
+            let m_platform = parameters[30];
+            let t1_platform = m_platform + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
                 + inv_l_1_mx_2_leg2;
             let force_y_platform = acceleration[1] * t1_platform;
             let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2
@@ -5335,20 +5130,16 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let t1 = (t4_leg3 + force_y_platform + t2_platform * minus_l_2_1)
                 / pivot_2;
             let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
                 g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
             ])
@@ -5368,70 +5159,79 @@ impl ThreeLegPoint {
     /// 255 operations (101 additions, 148 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 264 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 31],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        parameters: &[f64; 31],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             // --- sines and cosines
             let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = math::wide::sin_cos_all([
                 joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
+            guard::leg(s2_leg1, 0.998, "leg1")?;
+            guard::leg(s2_leg2, 0.998, "leg2")?;
+            guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
             let k_leg1 = INV_L_1 / s2_leg1;
             let g1_vy_leg1 = c12_leg1 * k_leg1;
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+            let minus_a_tip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
             let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
             let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
             let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_a_tip_x_leg1 - l_1_rate_2_squared_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - l_1_rate_1_squared_leg1 * c2_leg1);
-            let l_1_mx_2_leg1 = L_1 * parameters[6];
+            let mx_2_leg1 = parameters[6];
+            let l_1_mx_2_leg1 = L_1 * mx_2_leg1;
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
+            let ia_1_leg1 = parameters[1];
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + l_1_rate_1_squared_leg1;
-            let t1_leg1 = parameters[7] * a_on_f2_leg1 + parameters[2] * rate_1_leg1
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
-                + parameters[4]
+            let my_2_leg1 = parameters[7];
+            let fv_1_leg1 = parameters[2];
+            let fs_1_leg1 = parameters[3];
+            let off_1_leg1 = parameters[4];
+            let t1_leg1 = my_2_leg1 * a_on_f2_leg1 + fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1
                 - minus_rate_dot_1_leg1
-                    * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
-                        + parameters[1]);
+                    * (zz_1_leg1 + L_1_SQUARED * m_2_leg1 - l_1_mx_2_leg1
+                        + ia_1_leg1);
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            let tau_2_leg1 = ::overact::math::wide::signed(parameters[9], qd_2_leg1);
+            let fs_2_leg1 = parameters[9];
+            let tau_2_leg1 = math::wide::signed(fs_2_leg1, qd_2_leg1);
             let force_on_u1_leg1 = t1_leg1 - tau_2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + c2_leg1 * l_1_rate_2_squared_leg1);
-            let moment2_z_leg1 = parameters[7] * a_on_f1_leg1
-                - minus_rate_dot_2_leg1 * (parameters[5] - l_1_mx_2_leg1);
+            let zz_2_leg1 = parameters[5];
+            let moment2_z_leg1 = my_2_leg1 * a_on_f1_leg1
+                - minus_rate_dot_2_leg1 * (zz_2_leg1 - l_1_mx_2_leg1);
             let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
             // --- leg2
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -5441,14 +5241,15 @@ impl ThreeLegPoint {
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
             let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - l_1_rate_2_squared_leg2;
+            let my_2_leg2 = parameters[17];
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
@@ -5458,23 +5259,29 @@ impl ThreeLegPoint {
                 - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
-            let l_1_mx_2_leg2 = L_1 * parameters[16];
-            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-                - minus_rate_dot_2_leg2 * (parameters[15] - l_1_mx_2_leg2);
+            let mx_2_leg2 = parameters[16];
+            let l_1_mx_2_leg2 = L_1 * mx_2_leg2;
+            let zz_2_leg2 = parameters[15];
+            let moment2_z_leg2 = my_2_leg2 * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (zz_2_leg2 - l_1_mx_2_leg2);
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                parameters[19],
-                qd_2_leg2,
-            );
+            let fs_2_leg2 = parameters[19];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, qd_2_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
+            let fv_1_leg2 = parameters[12];
+            let fs_1_leg2 = parameters[13];
+            let off_1_leg2 = parameters[14];
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
-            let t1_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
-                + parameters[12] * rate_1_leg2
-                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
+            let m_2_leg2 = parameters[18];
+            let zz_1_leg2 = parameters[10];
+            let ia_1_leg2 = parameters[11];
+            let t1_leg2 = off_1_leg2 + my_2_leg2 * a_on_f2_leg2
+                + fv_1_leg2 * rate_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2)
                 - minus_rate_dot_1_leg2
-                    * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
-                        + parameters[11]);
+                    * (zz_1_leg2 + L_1_SQUARED * m_2_leg2 - l_1_mx_2_leg2
+                        + ia_1_leg2);
             let force_on_u1_leg2 = t1_leg2 - tau_2_leg2;
             // --- leg3
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
@@ -5498,33 +5305,39 @@ impl ThreeLegPoint {
             let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
-            let l_1_mx_2_leg3 = L_1 * parameters[26];
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            let mx_2_leg3 = parameters[26];
+            let l_1_mx_2_leg3 = L_1 * mx_2_leg3;
+            let zz_2_leg3 = parameters[25];
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
-            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-            let moment2_z_leg3 = rate_dot_2_leg3 * (parameters[25] - l_1_mx_2_leg3)
-                - parameters[27] * a_on_f1_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + l_1_rate_2_squared_leg3;
+            let my_2_leg3 = parameters[27];
+            let moment2_z_leg3 = rate_dot_2_leg3 * (zz_2_leg3 - l_1_mx_2_leg3)
+                - my_2_leg3 * a_on_f1_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                parameters[29],
-                qd_2_leg3,
-            );
+            let fs_2_leg3 = parameters[29];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, qd_2_leg3);
             let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
+            let m_2_leg3 = parameters[28];
+            let zz_1_leg3 = parameters[20];
+            let ia_1_leg3 = parameters[21];
+            let fs_1_leg3 = parameters[23];
+            let fv_1_leg3 = parameters[22];
+            let off_1_leg3 = parameters[24];
             let t1_leg3 = rate_dot_1_leg3
-                * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
-                    + parameters[21])
-                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
-                + parameters[22] * rate_1_leg3 - a_on_f2_leg3 * parameters[27]
-                + parameters[24];
+                * (zz_1_leg3 + L_1_SQUARED * m_2_leg3 - l_1_mx_2_leg3 + ia_1_leg3)
+                + math::wide::signed(fs_1_leg3, rate_1_leg3)
+                + fv_1_leg3 * rate_1_leg3 - a_on_f2_leg3 * my_2_leg3 + off_1_leg3;
             let force_on_u1_leg3 = t1_leg3 - tau_2_leg3;
             let t2_leg3 = g1_vy_leg1 * force_on_u1_leg1
                 - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
                 - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
                 - minus_g1_vy_leg3 * force_on_u1_leg3;
-            let t1_platform = parameters[30]
-                + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
+            let m_platform = parameters[30];
+            let t1_platform = m_platform
+                + INV_L_1 * (mx_2_leg1 + mx_2_leg2 + mx_2_leg3);
             let force_y_platform = acceleration[1] * t1_platform;
             let t3_leg3 = g2_vx_leg1 * force_on_u2_leg1
                 - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
@@ -5536,20 +5349,16 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let t1 = (t2_leg3 + force_y_platform + t2_platform * minus_l_2_1)
                 / pivot_2;
             let t2 = t2_platform / s_1_1 + minus_l_2_1 * t1;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
                 g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
             ])
@@ -5570,15 +5379,15 @@ impl ThreeLegPoint {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        parameters: &[::core::primitive::f64; 31],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        parameters: &[f64; 31],
+        start: &[f64; 2],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
@@ -5586,32 +5395,32 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let g1_vy_leg1 = l2_x_leg1 / det_leg1;
             let half_x = 0.5 * pose[0];
             let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
@@ -5623,32 +5432,32 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             // --- leg3
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
@@ -5664,7 +5473,7 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
                 - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -5672,11 +5481,7 @@ impl ThreeLegPoint {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let vy = (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
                 - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
@@ -5688,10 +5493,8 @@ impl ThreeLegPoint {
             let minus_g2_vy_leg1 = l1_x_leg1 / det_leg1;
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * vx + minus_g2_vy_leg1 * vy;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                parameters[9],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = parameters[9];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let t2_leg3 = y_plus_half_radius * INV_L_1;
             // --- leg2
             let fk2_y_leg2 = fk1_y_leg2 + t2_leg3;
@@ -5749,50 +5552,64 @@ impl ThreeLegPoint {
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = (a_on_f1_leg1 - t2_leg1) / det_leg1;
-            let inv_l_1_mx_2_leg1 = INV_L_1 * parameters[6];
+            let mx_2_leg1 = parameters[6];
+            let inv_l_1_mx_2_leg1 = INV_L_1 * mx_2_leg1;
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
+            let ia_1_leg1 = parameters[1];
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
-            let my_2_leg1_inv_l_1 = parameters[7] * INV_L_1;
-            let t3_leg1 = parameters[4] + a_on_f2_leg1 * my_2_leg1_inv_l_1
-                + rate_1_leg1 * parameters[2]
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+            let my_2_leg1 = parameters[7];
+            let my_2_inv_l_1_leg1 = my_2_leg1 * INV_L_1;
+            let fv_1_leg1 = parameters[2];
+            let fs_1_leg1 = parameters[3];
+            let off_1_leg1 = parameters[4];
+            let t3_leg1 = off_1_leg1 + a_on_f2_leg1 * my_2_inv_l_1_leg1
+                + rate_1_leg1 * fv_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1)
                 - minus_rate_dot_1_leg1
-                    * (parameters[0]
-                        + L_1_SQUARED * (parameters[8] - inv_l_1_mx_2_leg1)
-                        + parameters[1]);
+                    * (zz_1_leg1 + L_1_SQUARED * (m_2_leg1 - inv_l_1_mx_2_leg1)
+                        + ia_1_leg1);
             let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1;
             let minus_rate_dot_2_leg1 = (a_on_f2_leg1
                 + rate_2_squared_leg1 * t1_leg1) / det_leg1;
-            let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
-                - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
+            let zz_2_leg1 = parameters[5];
+            let moment2_z_leg1 = a_on_f1_leg1 * my_2_inv_l_1_leg1
+                - minus_rate_dot_2_leg1 * (zz_2_leg1 - L_1 * mx_2_leg1);
             let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
             // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let my_2_leg2 = parameters[17];
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-                - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
+            let mx_2_leg2 = parameters[16];
+            let zz_2_leg2 = parameters[15];
+            let moment2_z_leg2 = my_2_leg2 * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (zz_2_leg2 - L_1 * mx_2_leg2);
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                parameters[19],
-                -minus_qd_2_leg2,
-            );
+            let fs_2_leg2 = parameters[19];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, -minus_qd_2_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            let inv_l_1_mx_2_leg2 = INV_L_1 * parameters[16];
-            let t3_leg2 = parameters[14] + parameters[17] * a_on_f2_leg2
-                + rate_1_leg2 * parameters[12]
-                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
+            let inv_l_1_mx_2_leg2 = INV_L_1 * mx_2_leg2;
+            let m_2_leg2 = parameters[18];
+            let zz_1_leg2 = parameters[10];
+            let ia_1_leg2 = parameters[11];
+            let fv_1_leg2 = parameters[12];
+            let fs_1_leg2 = parameters[13];
+            let off_1_leg2 = parameters[14];
+            let t3_leg2 = off_1_leg2 + my_2_leg2 * a_on_f2_leg2
+                + rate_1_leg2 * fv_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2)
                 - minus_rate_dot_1_leg2
-                    * (parameters[10]
-                        + L_1_SQUARED * (parameters[18] - inv_l_1_mx_2_leg2)
-                        + parameters[11]);
+                    * (zz_1_leg2 + L_1_SQUARED * (m_2_leg2 - inv_l_1_mx_2_leg2)
+                        + ia_1_leg2);
             let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
             // --- leg3
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
@@ -5800,26 +5617,31 @@ impl ThreeLegPoint {
                 + minus_bias_a_on_f2_leg3;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
+            let mx_2_leg3 = parameters[26];
+            let zz_2_leg3 = parameters[25];
+            let a_tip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = a_tip_x_leg3 + bias_a_on_f1_leg3;
+            let my_2_leg3 = parameters[27];
             let minus_moment2_z_leg3 = minus_rate_dot_2_leg3
-                * (parameters[25] - L_1 * parameters[26])
-                + parameters[27] * a_on_f1_leg3;
+                * (zz_2_leg3 - L_1 * mx_2_leg3) + my_2_leg3 * a_on_f1_leg3;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                parameters[29],
-                -minus_qd_2_leg3,
-            );
+            let fs_2_leg3 = parameters[29];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, -minus_qd_2_leg3);
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            let inv_l_1_mx_2_leg3 = INV_L_1 * parameters[26];
+            let inv_l_1_mx_2_leg3 = INV_L_1 * mx_2_leg3;
+            let m_2_leg3 = parameters[28];
+            let zz_1_leg3 = parameters[20];
+            let ia_1_leg3 = parameters[21];
+            let fv_1_leg3 = parameters[22];
+            let fs_1_leg3 = parameters[23];
+            let off_1_leg3 = parameters[24];
             let t3_leg3 = rate_dot_1_leg3
-                * (parameters[20]
-                    + L_1_SQUARED * (parameters[28] - inv_l_1_mx_2_leg3)
-                    + parameters[21]) + parameters[24]
-                + minus_a_on_f2_leg3 * parameters[27] + rate_1_leg3 * parameters[22]
-                + ::overact::math::wide::signed(parameters[23], rate_1_leg3);
+                * (zz_1_leg3 + L_1_SQUARED * (m_2_leg3 - inv_l_1_mx_2_leg3)
+                    + ia_1_leg3) + off_1_leg3 + minus_a_on_f2_leg3 * my_2_leg3
+                + rate_1_leg3 * fv_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3);
             let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
             let t4_leg3 = g1_vy_leg1 * force_on_u1_leg1
                 - minus_g2_vy_leg1 * force_on_u2_leg1
@@ -5827,7 +5649,8 @@ impl ThreeLegPoint {
                     + minus_g1_vy_leg2 * force_on_u1_leg2)
                 - (minus_g2_vy_leg3 * force_on_u2_leg3
                     + minus_g1_vy_leg3 * force_on_u1_leg3);
-            let t1_platform = parameters[30] + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
+            let m_platform = parameters[30];
+            let t1_platform = m_platform + inv_l_1_mx_2_leg3 + inv_l_1_mx_2_leg1
                 + inv_l_1_mx_2_leg2;
             let force_y_platform = dvy * t1_platform;
             let t5_leg3 = g1_vx_leg2 * force_on_u1_leg2
@@ -5840,10 +5663,10 @@ impl ThreeLegPoint {
             let t2_platform = t5_leg3 + force_x_platform;
             let t3 = (t4_leg3 + force_y_platform + minus_l_2_1 * t2_platform)
                 / pivot_2;
-            ::overact::guard::size(t3, 1e100)?;
+            guard::size(t3, 1e100)?;
             let t4 = t2_platform / s_1_1 + minus_l_2_1 * t3;
-            ::overact::guard::size(t4, 1e100)?;
-            ::core::result::Result::Ok([
+            guard::size(t4, 1e100)?;
+            Ok([
                 g1_vy_leg1 * t3 - minus_g1_vx_leg1 * t4, g1_vx_leg2 * t4 - minus_g1_vy_leg2 * t3,
                 g1_vx_leg3 * t4 - minus_g1_vy_leg3 * t3,
             ])
@@ -5862,45 +5685,45 @@ impl ThreeLegPoint {
     /// 268 operations (105 additions, 155 multiplications, 8 divisions), 3 square roots, 6 signs, 11 guards, 2 negations, 270 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 22],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        base_parameters: &[f64; 22],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let half_x = 0.5 * pose[0];
@@ -5913,30 +5736,33 @@ impl ThreeLegPoint {
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                base_parameters[19],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = base_parameters[19];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
                 + l1_x_leg1 * acceleration[1] + L_1_SQUARED * rate_1_squared_leg1;
-            let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
+            let my_2_leg1 = base_parameters[16];
+            let my_2_inv_l_1_leg1 = my_2_leg1 * INV_L_1;
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t1_leg1);
-            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
-                + base_parameters[10];
+            let zz_1_leg1R = base_parameters[1];
+            let fv_1_leg1 = base_parameters[4];
+            let fs_1_leg1 = base_parameters[7];
+            let off_1_leg1 = base_parameters[10];
+            let tau_1_leg1 = fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1;
             let force_on_u1_leg1 = minus_tau_2_leg1
-                + a_on_f2_leg1 * my_2_leg1_inv_l_1
-                - base_parameters[1] * minus_rate_dot_1_leg1 + tau_1_leg1;
+                + a_on_f2_leg1 * my_2_inv_l_1_leg1
+                - zz_1_leg1R * minus_rate_dot_1_leg1 + tau_1_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let moment2_z_leg1 = a_on_f1_leg1 * my_2_leg1_inv_l_1
-                - base_parameters[13] * minus_rate_dot_2_leg1;
+            let zz_2_leg1R = base_parameters[13];
+            let moment2_z_leg1 = a_on_f1_leg1 * my_2_inv_l_1_leg1
+                - zz_2_leg1R * minus_rate_dot_2_leg1;
             let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
             let d_y_leg3 = half_x + pose[1] * 0.8660254037844386;
             // --- leg2
@@ -5947,10 +5773,10 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -5958,19 +5784,20 @@ impl ThreeLegPoint {
             let t1_leg3 = y_plus_half_radius * INV_L_1;
             let fk2_y_leg2 = fk1_y_leg2 + t1_leg3;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g2_vy_leg2 = fk2_y_leg2 * k_leg2;
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let fk2_x_leg2 = t1_leg2 * INV_L_1 - minus_fk1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
                 + minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = minus_rate_2_leg2 * minus_rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let my_2_leg2 = base_parameters[17];
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
@@ -5981,37 +5808,38 @@ impl ThreeLegPoint {
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
-                - base_parameters[14] * minus_rate_dot_2_leg2;
+            let zz_2_leg2R = base_parameters[14];
+            let moment2_z_leg2 = my_2_leg2 * a_on_f1_leg2
+                - zz_2_leg2R * minus_rate_dot_2_leg2;
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                base_parameters[20],
-                -minus_qd_2_leg2,
-            );
+            let fs_2_leg2 = base_parameters[20];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, -minus_qd_2_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
-                + base_parameters[11];
-            let force_on_u1_leg2 = base_parameters[17] * a_on_f2_leg2
-                - base_parameters[2] * minus_rate_dot_1_leg2 + tau_1_leg2
-                - tau_2_leg2;
+            let zz_1_leg2R = base_parameters[2];
+            let fv_1_leg2 = base_parameters[5];
+            let fs_1_leg2 = base_parameters[8];
+            let off_1_leg2 = base_parameters[11];
+            let tau_1_leg2 = fv_1_leg2 * rate_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2) + off_1_leg2;
+            let force_on_u1_leg2 = my_2_leg2 * a_on_f2_leg2
+                - zz_1_leg2R * minus_rate_dot_1_leg2 + tau_1_leg2 - tau_2_leg2;
             // --- leg3
             let t2_leg3 = pose[0] - 0.3031088913245535;
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let minus_fk2_y_leg3 = minus_fk1_y_leg3 + t1_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g2_vy_leg3 = minus_fk2_y_leg3 * k_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -6031,58 +5859,58 @@ impl ThreeLegPoint {
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            let zz_2_leg3R = base_parameters[15];
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
-            let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
-                + base_parameters[18] * a_on_f1_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let my_2_leg3 = base_parameters[18];
+            let minus_moment2_z_leg3 = zz_2_leg3R * minus_rate_dot_2_leg3
+                + my_2_leg3 * a_on_f1_leg3;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                base_parameters[21],
-                -minus_qd_2_leg3,
-            );
+            let fs_2_leg3 = base_parameters[21];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, -minus_qd_2_leg3);
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
-                + base_parameters[12];
-            let force_on_u1_leg3 = base_parameters[3] * rate_dot_1_leg3
-                + minus_a_on_f2_leg3 * base_parameters[18] + tau_1_leg3 - tau_2_leg3;
+            let zz_1_leg3R = base_parameters[3];
+            let fv_1_leg3 = base_parameters[6];
+            let fs_1_leg3 = base_parameters[9];
+            let off_1_leg3 = base_parameters[12];
+            let tau_1_leg3 = fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
+            let force_on_u1_leg3 = zz_1_leg3R * rate_dot_1_leg3
+                + minus_a_on_f2_leg3 * my_2_leg3 + tau_1_leg3 - tau_2_leg3;
             let t3_leg3 = g1_vy_leg1 * force_on_u1_leg1
                 - minus_g2_vy_leg1 * force_on_u2_leg1
                 - (minus_g2_vy_leg2 * force_on_u2_leg2
                     + minus_g1_vy_leg2 * force_on_u1_leg2)
                 - (minus_g2_vy_leg3 * force_on_u2_leg3
                     + minus_g1_vy_leg3 * force_on_u1_leg3);
-            let force_y_platform = acceleration[1] * base_parameters[0];
+            let m_platformR = base_parameters[0];
+            let force_y_platform = acceleration[1] * m_platformR;
             let t4_leg3 = g1_vx_leg2 * force_on_u1_leg2
                 - minus_g2_vx_leg2 * force_on_u2_leg2
                 - (minus_g1_vx_leg1 * force_on_u1_leg1
                     + minus_g2_vx_leg1 * force_on_u2_leg1)
                 + g1_vx_leg3 * force_on_u1_leg3
                 - minus_g2_vx_leg3 * force_on_u2_leg3;
-            let force_x_platform = acceleration[0] * base_parameters[0];
+            let force_x_platform = acceleration[0] * m_platformR;
             let t1_platform = t4_leg3 + force_x_platform;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let t1 = (t3_leg3 + force_y_platform + t1_platform * minus_l_2_1)
                 / pivot_2;
             let t2 = t1_platform * inv_pivot_1 + minus_l_2_1 * t1;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vy_leg1 * t1 - minus_g1_vx_leg1 * t2, g1_vx_leg2 * t2 - minus_g1_vy_leg2 * t1,
                 g1_vx_leg3 * t2 - minus_g1_vy_leg3 * t1,
             ])
@@ -6102,33 +5930,33 @@ impl ThreeLegPoint {
     /// 233 operations (86 additions, 141 multiplications, 6 divisions), 6 trigonometric pairs, 6 signs, 5 guards, 242 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_joints(
-        pose: &[::core::primitive::f64; 2],
-        joints: &[::core::primitive::f64; 6],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 22],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        joints: &[f64; 6],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        base_parameters: &[f64; 22],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("joints", joints, 1e12), ("twist", twist, 1e9),
                 ("acceleration", acceleration, 1e12), ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             // --- sines and cosines
             let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
-            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::wide::sin_cos_all([
+            (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = math::wide::sin_cos_all([
                 joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
             ]);
-            ::overact::guard::leg(s2_leg1, 0.998, "leg1")?;
-            ::overact::guard::leg(s2_leg2, 0.998, "leg2")?;
-            ::overact::guard::leg(s2_leg3, 0.998, "leg3")?;
+            guard::leg(s2_leg1, 0.998, "leg1")?;
+            guard::leg(s2_leg2, 0.998, "leg2")?;
+            guard::leg(s2_leg3, 0.998, "leg3")?;
             // --- leg1
             let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
             let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
@@ -6136,35 +5964,38 @@ impl ThreeLegPoint {
             let g1_vy_leg1 = c12_leg1 * k_leg1;
             let minus_g1_vx_leg1 = s12_leg1 * k_leg1;
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
-                + base_parameters[10];
-            let minus_atip_x_leg1 = s12_leg1 * acceleration[0]
+            let fv_1_leg1 = base_parameters[4];
+            let fs_1_leg1 = base_parameters[7];
+            let off_1_leg1 = base_parameters[10];
+            let tau_1_leg1 = fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1;
+            let minus_a_tip_x_leg1 = s12_leg1 * acceleration[0]
                 - c12_leg1 * acceleration[1];
             let g2_vx_leg1 = s1_leg1 * k_leg1;
             let minus_g2_vy_leg1 = c1_leg1 * k_leg1;
             let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
             let rate_2_squared_leg1 = rate_2_leg1 * rate_2_leg1;
             let l_1_rate_2_squared_leg1 = L_1 * rate_2_squared_leg1;
-            let a_on_f1_leg1 = minus_atip_x_leg1 - l_1_rate_2_squared_leg1;
+            let a_on_f1_leg1 = minus_a_tip_x_leg1 - l_1_rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let l_1_rate_1_squared_leg1 = L_1 * rate_1_squared_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - c2_leg1 * l_1_rate_1_squared_leg1);
-            let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+            let zz_1_leg1R = base_parameters[1];
+            let minus_moment1_z_leg1 = zz_1_leg1R * minus_rate_dot_1_leg1;
             let a_on_f2_leg1 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0]
                 + l_1_rate_1_squared_leg1;
+            let my_2_leg1 = base_parameters[16];
             let qd_2_leg1 = rate_2_leg1 - rate_1_leg1;
-            let tau_2_leg1 = ::overact::math::wide::signed(
-                base_parameters[19],
-                qd_2_leg1,
-            );
+            let fs_2_leg1 = base_parameters[19];
+            let tau_2_leg1 = math::wide::signed(fs_2_leg1, qd_2_leg1);
             let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
-                + base_parameters[16] * a_on_f2_leg1 - tau_2_leg1;
+                + my_2_leg1 * a_on_f2_leg1 - tau_2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + l_1_rate_2_squared_leg1 * c2_leg1);
-            let moment2_z_leg1 = base_parameters[16] * a_on_f1_leg1
-                - base_parameters[13] * minus_rate_dot_2_leg1;
+            let zz_2_leg1R = base_parameters[13];
+            let moment2_z_leg1 = my_2_leg1 * a_on_f1_leg1
+                - zz_2_leg1R * minus_rate_dot_2_leg1;
             let force_on_u2_leg1 = moment2_z_leg1 + tau_2_leg1;
             // --- leg2
             let minus_fk2_y_leg2 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
@@ -6174,14 +6005,15 @@ impl ThreeLegPoint {
             let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
             let fk1_y_leg2 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
             let minus_fk1_x_leg2 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let fk2_x_leg2 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
             let l_1_rate_2_squared_leg2 = L_1 * rate_2_squared_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - l_1_rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - l_1_rate_2_squared_leg2;
+            let my_2_leg2 = base_parameters[17];
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
@@ -6191,22 +6023,24 @@ impl ThreeLegPoint {
                 - minus_fk2_y_leg2 * acceleration[1] + l_1_rate_1_squared_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + l_1_rate_2_squared_leg2 * c2_leg2);
-            let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
-                - base_parameters[14] * minus_rate_dot_2_leg2;
+            let zz_2_leg2R = base_parameters[14];
+            let moment2_z_leg2 = my_2_leg2 * a_on_f1_leg2
+                - zz_2_leg2R * minus_rate_dot_2_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                base_parameters[20],
-                qd_2_leg2,
-            );
+            let fs_2_leg2 = base_parameters[20];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, qd_2_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
-                + base_parameters[11];
+            let fv_1_leg2 = base_parameters[5];
+            let fs_1_leg2 = base_parameters[8];
+            let off_1_leg2 = base_parameters[11];
+            let tau_1_leg2 = fv_1_leg2 * rate_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2) + off_1_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - l_1_rate_1_squared_leg2 * c2_leg2);
-            let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+            let zz_1_leg2R = base_parameters[2];
+            let minus_moment1_z_leg2 = zz_1_leg2R * minus_rate_dot_1_leg2;
             let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-                + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
+                + my_2_leg2 * a_on_f2_leg2 - tau_2_leg2;
             // --- leg3
             let fk2_y_leg3 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
             let k_leg3 = INV_L_1 / s2_leg3;
@@ -6229,53 +6063,53 @@ impl ThreeLegPoint {
             let l_1_rate_2_squared_leg3 = L_1 * rate_2_squared_leg3;
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - c2_leg3 * l_1_rate_2_squared_leg3);
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            let zz_2_leg3R = base_parameters[15];
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
-            let a_on_f1_leg3 = atip_x_leg3 + l_1_rate_2_squared_leg3;
-            let moment2_z_leg3 = base_parameters[15] * rate_dot_2_leg3
-                - base_parameters[18] * a_on_f1_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + l_1_rate_2_squared_leg3;
+            let my_2_leg3 = base_parameters[18];
+            let moment2_z_leg3 = zz_2_leg3R * rate_dot_2_leg3
+                - my_2_leg3 * a_on_f1_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                base_parameters[21],
-                qd_2_leg3,
-            );
+            let fs_2_leg3 = base_parameters[21];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, qd_2_leg3);
             let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + l_1_rate_1_squared_leg3 * c2_leg3);
-            let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
-            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
-                + base_parameters[12];
+            let zz_1_leg3R = base_parameters[3];
+            let moment1_z_leg3 = zz_1_leg3R * rate_dot_1_leg3;
+            let fv_1_leg3 = base_parameters[6];
+            let fs_1_leg3 = base_parameters[9];
+            let off_1_leg3 = base_parameters[12];
+            let tau_1_leg3 = fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
             let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-                - a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+                - a_on_f2_leg3 * my_2_leg3 - tau_2_leg3;
             let t1 = g1_vy_leg1 * force_on_u1_leg1
                 - minus_g2_vy_leg1 * force_on_u2_leg1 + g2_vy_leg2 * force_on_u2_leg2
                 - minus_g1_vy_leg2 * force_on_u1_leg2 + g2_vy_leg3 * force_on_u2_leg3
                 - minus_g1_vy_leg3 * force_on_u1_leg3;
-            let force_y_platform = acceleration[1] * base_parameters[0];
+            let m_platformR = base_parameters[0];
+            let force_y_platform = acceleration[1] * m_platformR;
             let t2 = g2_vx_leg1 * force_on_u2_leg1
                 - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
                 - minus_g2_vx_leg2 * force_on_u2_leg2 + g1_vx_leg3 * force_on_u1_leg3
                 - minus_g2_vx_leg3 * force_on_u2_leg3;
-            let force_x_platform = acceleration[0] * base_parameters[0];
+            let force_x_platform = acceleration[0] * m_platformR;
             let t3 = t2 + force_x_platform;
             let minus_s_1_2 = minus_g1_vx_leg1 * g1_vy_leg1
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let minus_l_2_1 = minus_s_1_2 / s_1_1;
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let t4 = (t1 + force_y_platform + t3 * minus_l_2_1) / pivot_2;
             let t5 = t3 / s_1_1 + minus_l_2_1 * t4;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vy_leg1 * t4 - minus_g1_vx_leg1 * t5, g1_vx_leg2 * t5 - minus_g1_vy_leg2 * t4,
                 g1_vx_leg3 * t5 - minus_g1_vy_leg3 * t4,
             ])
@@ -6296,15 +6130,15 @@ impl ThreeLegPoint {
     /// Additionally in each step of the iteration in `pose_from_actuators`: 134 operations (51 additions, 75 multiplications, 8 divisions), 3 square roots, 3 trigonometric pairs, 3 arc tangents, 11 guards, 139 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_base_from_actuators(
-        actuators: &[::core::primitive::f64; 3],
-        actuator_velocities: &[::core::primitive::f64; 3],
-        actuator_accelerations: &[::core::primitive::f64; 3],
-        base_parameters: &[::core::primitive::f64; 22],
-        start: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        actuators: &[f64; 3],
+        actuator_velocities: &[f64; 3],
+        actuator_accelerations: &[f64; 3],
+        base_parameters: &[f64; 22],
+        start: &[f64; 2],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("actuators", actuators, 1e12), ("actuator_velocities", actuator_velocities, 1e9),
                 ("actuator_accelerations", actuator_accelerations, 1e12),
@@ -6312,32 +6146,32 @@ impl ThreeLegPoint {
             ],
         )?;
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let half_x = 0.5 * pose[0];
@@ -6350,16 +6184,16 @@ impl ThreeLegPoint {
             let minus_d_x_leg2 = 0.8660254037844386 * t1_leg2 + t2_leg2;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
             let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
                 - INV_TWICE_L_1 * minus_l2_x_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             // --- leg3
@@ -6367,16 +6201,16 @@ impl ThreeLegPoint {
             let d_x_leg3 = 0.8660254037844386 * t2_leg3 - t2_leg2;
             let d_y_leg3 = half_x + t1_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let minus_l1_y_leg1 = half_x + d_x_leg1 * h_leg1;
@@ -6392,7 +6226,7 @@ impl ThreeLegPoint {
                 + g1_vx_leg2 * minus_g1_vy_leg2 + g1_vx_leg3 * minus_g1_vy_leg3;
             let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3;
-            ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
             let t1 = g1_vx_leg2 * actuator_velocities[1]
@@ -6401,20 +6235,18 @@ impl ThreeLegPoint {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + minus_g1_vy_leg3 * minus_g1_vy_leg3;
             let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                26.15,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
             let vy = (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
                 - minus_g1_vy_leg3 * actuator_velocities[2] + minus_l_2_1 * t1)
                 / pivot_2;
             let vx = inv_pivot_1 * t1 + minus_l_2_1 * vy;
             let rate_1_leg1 = g1_vy_leg1 * vy - minus_g1_vx_leg1 * vx;
-            let tau_1_leg1 = rate_1_leg1 * base_parameters[4]
-                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
-                + base_parameters[10];
+            let fv_1_leg1 = base_parameters[4];
+            let fs_1_leg1 = base_parameters[7];
+            let off_1_leg1 = base_parameters[10];
+            let tau_1_leg1 = rate_1_leg1 * fv_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1;
             let t3_leg3 = y_plus_half_radius * INV_L_1;
             // --- leg2
             let fk2_y_leg2 = fk1_y_leg2 + t3_leg3;
@@ -6473,91 +6305,97 @@ impl ThreeLegPoint {
             let a_on_f1_leg1 = l2_y_leg1 * dvx - l2_x_leg1 * dvy
                 - minus_bias_a_on_f1_leg1;
             let minus_rate_dot_1_leg1 = k_leg1 * (a_on_f1_leg1 - t2_leg1);
-            let minus_moment1_z_leg1 = base_parameters[1] * minus_rate_dot_1_leg1;
+            let zz_1_leg1R = base_parameters[1];
+            let minus_moment1_z_leg1 = zz_1_leg1R * minus_rate_dot_1_leg1;
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * dvx + l1_x_leg1 * dvy
                 + bias_a_on_f2_leg1;
-            let inv_l_1_my_2_leg1 = INV_L_1 * base_parameters[16];
+            let my_2_leg1 = base_parameters[16];
+            let inv_l_1_my_2_leg1 = INV_L_1 * my_2_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                base_parameters[19],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = base_parameters[19];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let force_on_u1_leg1 = tau_1_leg1 - minus_moment1_z_leg1
                 + a_on_f2_leg1 * inv_l_1_my_2_leg1 + minus_tau_2_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
+            let zz_2_leg1R = base_parameters[13];
             let moment2_z_leg1 = a_on_f1_leg1 * inv_l_1_my_2_leg1
-                - base_parameters[13] * minus_rate_dot_2_leg1;
+                - zz_2_leg1R * minus_rate_dot_2_leg1;
             let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
-            // --- leg2
-            let minus_atip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * dvy - minus_fk1_x_leg2 * dvx;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - minus_bias_a_on_f1_leg2;
+            let my_2_leg2 = base_parameters[17];
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * dvx + fk2_y_leg2 * dvy
                 + bias_a_on_f2_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let moment2_z_leg2 = base_parameters[17] * a_on_f1_leg2
-                - base_parameters[14] * minus_rate_dot_2_leg2;
+            let zz_2_leg2R = base_parameters[14];
+            let moment2_z_leg2 = my_2_leg2 * a_on_f1_leg2
+                - zz_2_leg2R * minus_rate_dot_2_leg2;
             let minus_qd_2_leg2 = minus_rate_2_leg2 + rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                base_parameters[20],
-                -minus_qd_2_leg2,
-            );
+            let fs_2_leg2 = base_parameters[20];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, -minus_qd_2_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-            let tau_1_leg2 = rate_1_leg2 * base_parameters[5]
-                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
-                + base_parameters[11];
+            let fv_1_leg2 = base_parameters[5];
+            let fs_1_leg2 = base_parameters[8];
+            let off_1_leg2 = base_parameters[11];
+            let tau_1_leg2 = rate_1_leg2 * fv_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2) + off_1_leg2;
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_v2_by_1_y_leg2);
-            let minus_moment1_z_leg2 = base_parameters[2] * minus_rate_dot_1_leg2;
+            let zz_1_leg2R = base_parameters[2];
+            let minus_moment1_z_leg2 = zz_1_leg2R * minus_rate_dot_1_leg2;
             let force_on_u1_leg2 = tau_1_leg2 - minus_moment1_z_leg2
-                + base_parameters[17] * a_on_f2_leg2 - tau_2_leg2;
-            // --- leg3
+                + my_2_leg2 * a_on_f2_leg2 - tau_2_leg2;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
             let minus_a_on_f2_leg3 = minus_fk2_y_leg3 * dvy + minus_fk2_x_leg3 * dvx
                 + minus_bias_a_on_f2_leg3;
             let minus_rate_dot_2_leg3 = k_leg3
                 * (minus_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let atip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
-            let a_on_f1_leg3 = atip_x_leg3 + bias_a_on_f1_leg3;
-            let minus_moment2_z_leg3 = base_parameters[15] * minus_rate_dot_2_leg3
-                + base_parameters[18] * a_on_f1_leg3;
+            let zz_2_leg3R = base_parameters[15];
+            let a_tip_x_leg3 = fk1_x_leg3 * dvx - minus_fk1_y_leg3 * dvy;
+            let a_on_f1_leg3 = a_tip_x_leg3 + bias_a_on_f1_leg3;
+            let my_2_leg3 = base_parameters[18];
+            let minus_moment2_z_leg3 = zz_2_leg3R * minus_rate_dot_2_leg3
+                + my_2_leg3 * a_on_f1_leg3;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                base_parameters[21],
-                -minus_qd_2_leg3,
-            );
+            let fs_2_leg3 = base_parameters[21];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, -minus_qd_2_leg3);
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_v2_by_1_y_leg3);
-            let moment1_z_leg3 = base_parameters[3] * rate_dot_1_leg3;
-            let tau_1_leg3 = rate_1_leg3 * base_parameters[6]
-                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
-                + base_parameters[12];
+            let zz_1_leg3R = base_parameters[3];
+            let moment1_z_leg3 = zz_1_leg3R * rate_dot_1_leg3;
+            let fv_1_leg3 = base_parameters[6];
+            let fs_1_leg3 = base_parameters[9];
+            let off_1_leg3 = base_parameters[12];
+            let tau_1_leg3 = rate_1_leg3 * fv_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
             let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-                + minus_a_on_f2_leg3 * base_parameters[18] - tau_2_leg3;
+                + minus_a_on_f2_leg3 * my_2_leg3 - tau_2_leg3;
             let t3 = g1_vy_leg1 * force_on_u1_leg1
                 - minus_g2_vy_leg1 * force_on_u2_leg1
                 - (minus_g2_vy_leg2 * force_on_u2_leg2
                     + minus_g1_vy_leg2 * force_on_u1_leg2)
                 - (minus_g2_vy_leg3 * force_on_u2_leg3
                     + minus_g1_vy_leg3 * force_on_u1_leg3);
-            let force_y_platform = dvy * base_parameters[0];
+            let m_platformR = base_parameters[0];
+            let force_y_platform = dvy * m_platformR;
             let t4 = g1_vx_leg2 * force_on_u1_leg2
                 - minus_g2_vx_leg2 * force_on_u2_leg2
                 - (minus_g1_vx_leg1 * force_on_u1_leg1
                     + minus_g2_vx_leg1 * force_on_u2_leg1)
                 + g1_vx_leg3 * force_on_u1_leg3
                 - minus_g2_vx_leg3 * force_on_u2_leg3;
-            let force_x_platform = dvx * base_parameters[0];
+            let force_x_platform = dvx * m_platformR;
             let t5 = t4 + force_x_platform;
             let t6 = (t3 + force_y_platform + minus_l_2_1 * t5) / pivot_2;
-            ::overact::guard::size(t6, 1e100)?;
+            guard::size(t6, 1e100)?;
             let t7 = inv_pivot_1 * t5 + minus_l_2_1 * t6;
-            ::overact::guard::size(t7, 1e100)?;
-            ::core::result::Result::Ok([
+            guard::size(t7, 1e100)?;
+            Ok([
                 g1_vy_leg1 * t6 - minus_g1_vx_leg1 * t7, g1_vx_leg2 * t7 - minus_g1_vy_leg2 * t6,
                 g1_vx_leg3 * t7 - minus_g1_vy_leg3 * t6,
             ])
@@ -6574,50 +6412,52 @@ impl ThreeLegPoint {
     /// 195 operations (75 additions, 114 multiplications, 6 divisions), 3 square roots, 9 guards, 195 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix(
-        pose: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 31],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(
-            &[("pose", pose, 1e6), ("parameters", parameters, 1e12)],
-        )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        pose: &[f64; 2],
+        parameters: &[f64; 31],
+    ) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(&[("pose", pose, 1e6), ("parameters", parameters, 1e12)])?;
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1²
-            const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+            const INV_L_1_SQUARED: f64 = 17.36111111111111;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
-            let masses_leg1_1_1 = parameters[0] + L_1_SQUARED * parameters[8]
-                + parameters[1];
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
+            let ia_1_leg1 = parameters[1];
+            let masses_leg1_1_1 = zz_1_leg1 + L_1_SQUARED * m_2_leg1 + ia_1_leg1;
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let c2_leg1 = 8.680555555555555 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
+            let mx_2_leg1 = parameters[6];
             let s2_leg1 = INV_L_1_SQUARED * det_leg1;
-            let force1_y_by_2_leg1 = c2_leg1 * parameters[6]
-                - s2_leg1 * parameters[7];
+            let my_2_leg1 = parameters[7];
+            let force1_y_by_2_leg1 = c2_leg1 * mx_2_leg1 - s2_leg1 * my_2_leg1;
             let masses_leg1_1_2 = L_1 * force1_y_by_2_leg1;
+            let zz_2_leg1 = parameters[5];
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let t1_leg2 = 0.5 * y_plus_half_radius;
             let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
@@ -6628,10 +6468,10 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -6639,38 +6479,41 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
-            let masses_leg2_1_1 = parameters[10] + L_1_SQUARED * parameters[18]
-                + parameters[11];
+            let m_2_leg2 = parameters[18];
+            let zz_1_leg2 = parameters[10];
+            let ia_1_leg2 = parameters[11];
+            let masses_leg2_1_1 = zz_1_leg2 + L_1_SQUARED * m_2_leg2 + ia_1_leg2;
             let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let c2_leg2 = 8.680555555555555 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
+            let mx_2_leg2 = parameters[16];
             let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-            let force1_y_by_2_leg2 = c2_leg2 * parameters[16]
-                - s2_leg2 * parameters[17];
+            let my_2_leg2 = parameters[17];
+            let force1_y_by_2_leg2 = c2_leg2 * mx_2_leg2 - s2_leg2 * my_2_leg2;
             let masses_leg2_1_2 = L_1 * force1_y_by_2_leg2;
+            let zz_2_leg2 = parameters[15];
             let t2_leg2 = minus_g1_vx_leg1
                 * (minus_g1_vx_leg1 * masses_leg1_1_1
                     + minus_g2_vx_leg1 * masses_leg1_1_2)
                 + minus_g2_vx_leg1
                     * (minus_g1_vx_leg1 * masses_leg1_1_2
-                        + minus_g2_vx_leg1 * parameters[5])
+                        + minus_g2_vx_leg1 * zz_2_leg1)
                 + g1_vx_leg2
                     * (g1_vx_leg2 * masses_leg2_1_1
                         - minus_g2_vx_leg2 * masses_leg2_1_2)
                 - minus_g2_vx_leg2
-                    * (g1_vx_leg2 * masses_leg2_1_2
-                        - minus_g2_vx_leg2 * parameters[15]);
+                    * (g1_vx_leg2 * masses_leg2_1_2 - minus_g2_vx_leg2 * zz_2_leg2);
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
@@ -6678,26 +6521,30 @@ impl ThreeLegPoint {
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
-            let masses_leg3_1_1 = parameters[20] + L_1_SQUARED * parameters[28]
-                + parameters[21];
+            let m_2_leg3 = parameters[28];
+            let zz_1_leg3 = parameters[20];
+            let ia_1_leg3 = parameters[21];
+            let masses_leg3_1_1 = zz_1_leg3 + L_1_SQUARED * m_2_leg3 + ia_1_leg3;
             let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
                 + INV_TWICE_L_1 * l1_y_leg3;
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let c2_leg3 = 8.680555555555555 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
+            let mx_2_leg3 = parameters[26];
             let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-            let force1_y_by_2_leg3 = c2_leg3 * parameters[26]
-                - s2_leg3 * parameters[27];
+            let my_2_leg3 = parameters[27];
+            let force1_y_by_2_leg3 = c2_leg3 * mx_2_leg3 - s2_leg3 * my_2_leg3;
             let masses_leg3_1_2 = L_1 * force1_y_by_2_leg3;
+            let zz_2_leg3 = parameters[25];
             let t2_leg3 = t2_leg2
                 + g1_vx_leg3
                     * (g1_vx_leg3 * masses_leg3_1_1
                         - minus_g2_vx_leg3 * masses_leg3_1_2)
                 - minus_g2_vx_leg3
-                    * (g1_vx_leg3 * masses_leg3_1_2
-                        - minus_g2_vx_leg3 * parameters[25]);
+                    * (g1_vx_leg3 * masses_leg3_1_2 - minus_g2_vx_leg3 * zz_2_leg3);
+            let m_platform = parameters[30];
             // --- leg2
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
@@ -6707,7 +6554,7 @@ impl ThreeLegPoint {
             let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
             let t3_leg2 = g2_vy_leg2 * masses_leg2_1_2
                 - minus_g1_vy_leg2 * masses_leg2_1_1;
-            let t4_leg2 = g2_vy_leg2 * parameters[15]
+            let t4_leg2 = g2_vy_leg2 * zz_2_leg2
                 - minus_g1_vy_leg2 * masses_leg2_1_2;
             // --- leg1
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -6717,7 +6564,7 @@ impl ThreeLegPoint {
             let t1_leg1 = g1_vy_leg1 * masses_leg1_1_1
                 - minus_g2_vy_leg1 * masses_leg1_1_2;
             let t2_leg1 = g1_vy_leg1 * masses_leg1_1_2
-                - minus_g2_vy_leg1 * parameters[5];
+                - minus_g2_vy_leg1 * zz_2_leg1;
             // --- leg3
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
                 - 3.608439182435161 * l1_y_leg3;
@@ -6727,7 +6574,7 @@ impl ThreeLegPoint {
             let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
             let t3_leg3 = g2_vy_leg3 * masses_leg3_1_2
                 - minus_g1_vy_leg3 * masses_leg3_1_1;
-            let t4_leg3 = g2_vy_leg3 * parameters[25]
+            let t4_leg3 = g2_vy_leg3 * zz_2_leg3
                 - minus_g1_vy_leg3 * masses_leg3_1_2;
             let t5_leg3 = g1_vx_leg2 * t3_leg2 - minus_g2_vx_leg2 * t4_leg2
                 - (minus_g1_vx_leg1 * t1_leg1 + minus_g2_vx_leg1 * t2_leg1)
@@ -6735,9 +6582,7 @@ impl ThreeLegPoint {
             let t6_leg3 = g1_vy_leg1 * t1_leg1 - minus_g2_vy_leg1 * t2_leg1
                 + g2_vy_leg2 * t4_leg2 - minus_g1_vy_leg2 * t3_leg2
                 + g2_vy_leg3 * t4_leg3 - minus_g1_vy_leg3 * t3_leg3;
-            ::core::result::Result::Ok([
-                [t2_leg3 + parameters[30], t5_leg3], [t5_leg3, t6_leg3 + parameters[30]],
-            ])
+            Ok([[t2_leg3 + m_platform, t5_leg3], [t5_leg3, t6_leg3 + m_platform]])
         })
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6751,44 +6596,47 @@ impl ThreeLegPoint {
     /// 174 operations (63 additions, 105 multiplications, 6 divisions), 3 square roots, 9 guards, 174 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn mass_matrix_base(
-        pose: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 22],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        base_parameters: &[f64; 22],
+    ) -> Result<[[f64; 2]; 2], Error> {
+        guard::within(
             &[("pose", pose, 1e6), ("base_parameters", base_parameters, 1e12)],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1²
-            const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+            const INV_L_1_SQUARED: f64 = 17.36111111111111;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let s2_leg1 = INV_L_1_SQUARED * det_leg1;
-            let minus_first1_x_leg1 = s2_leg1 * base_parameters[16];
+            let my_2_leg1 = base_parameters[16];
+            let minus_first1_x_leg1 = s2_leg1 * my_2_leg1;
             let minus_masses_leg1_1_2 = L_1 * minus_first1_x_leg1;
+            let zz_2_leg1R = base_parameters[13];
+            let zz_1_leg1R = base_parameters[1];
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let t1_leg2 = 0.5 * y_plus_half_radius;
             let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
@@ -6799,10 +6647,10 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -6810,34 +6658,37 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
+            let zz_1_leg2R = base_parameters[2];
             let fk2_x_leg2 = INV_TWICE_L_1 * l1_y_leg2
                 - 3.608439182435161 * l1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let s2_leg2 = INV_L_1_SQUARED * det_leg2;
-            let minus_first1_x_leg2 = s2_leg2 * base_parameters[17];
+            let my_2_leg2 = base_parameters[17];
+            let minus_first1_x_leg2 = s2_leg2 * my_2_leg2;
             let minus_masses_leg2_1_2 = L_1 * minus_first1_x_leg2;
+            let zz_2_leg2R = base_parameters[14];
             let t2_leg2 = minus_g2_vx_leg1
-                * (minus_g2_vx_leg1 * base_parameters[13]
+                * (minus_g2_vx_leg1 * zz_2_leg1R
                     - minus_g1_vx_leg1 * minus_masses_leg1_1_2)
                 - minus_g1_vx_leg1
                     * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
-                        - minus_g1_vx_leg1 * base_parameters[1])
+                        - minus_g1_vx_leg1 * zz_1_leg1R)
                 + g1_vx_leg2
-                    * (g1_vx_leg2 * base_parameters[2]
+                    * (g1_vx_leg2 * zz_1_leg2R
                         + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
                 + minus_g2_vx_leg2
                     * (g1_vx_leg2 * minus_masses_leg2_1_2
-                        + minus_g2_vx_leg2 * base_parameters[14]);
+                        + minus_g2_vx_leg2 * zz_2_leg2R);
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
@@ -6845,30 +6696,34 @@ impl ThreeLegPoint {
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
+            let zz_1_leg3R = base_parameters[3];
             let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3
                 + INV_TWICE_L_1 * l1_y_leg3;
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-            let minus_first1_x_leg3 = s2_leg3 * base_parameters[18];
+            let my_2_leg3 = base_parameters[18];
+            let minus_first1_x_leg3 = s2_leg3 * my_2_leg3;
             let minus_masses_leg3_1_2 = L_1 * minus_first1_x_leg3;
+            let zz_2_leg3R = base_parameters[15];
             let t2_leg3 = t2_leg2
                 + g1_vx_leg3
-                    * (g1_vx_leg3 * base_parameters[3]
+                    * (g1_vx_leg3 * zz_1_leg3R
                         + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
                 + minus_g2_vx_leg3
                     * (g1_vx_leg3 * minus_masses_leg3_1_2
-                        + minus_g2_vx_leg3 * base_parameters[15]);
+                        + minus_g2_vx_leg3 * zz_2_leg3R);
+            let m_platformR = base_parameters[0];
             // --- leg1
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let minus_g2_vy_leg1 = l1_x_leg1 * k_leg1;
             let t1_leg1 = minus_masses_leg1_1_2 * g1_vy_leg1
-                + minus_g2_vy_leg1 * base_parameters[13];
-            let t2_leg1 = g1_vy_leg1 * base_parameters[1]
+                + minus_g2_vy_leg1 * zz_2_leg1R;
+            let t2_leg1 = g1_vy_leg1 * zz_1_leg1R
                 + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
             // --- leg2
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -6877,10 +6732,10 @@ impl ThreeLegPoint {
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
                 + INV_TWICE_L_1 * l1_x_leg2;
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
-            let t3_leg2 = minus_g1_vy_leg2 * base_parameters[2]
+            let t3_leg2 = minus_g1_vy_leg2 * zz_1_leg2R
                 + g2_vy_leg2 * minus_masses_leg2_1_2;
             let t4_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
-                + g2_vy_leg2 * base_parameters[14];
+                + g2_vy_leg2 * zz_2_leg2R;
             // --- leg3
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
                 - 3.608439182435161 * l2_y_leg3;
@@ -6888,19 +6743,17 @@ impl ThreeLegPoint {
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
                 - 3.608439182435161 * l1_y_leg3;
             let g2_vy_leg3 = fk2_y_leg3 * k_leg3;
-            let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
+            let t3_leg3 = minus_g1_vy_leg3 * zz_1_leg3R
                 + g2_vy_leg3 * minus_masses_leg3_1_2;
             let t4_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
-                + g2_vy_leg3 * base_parameters[15];
+                + g2_vy_leg3 * zz_2_leg3R;
             let t5_leg3 = minus_g2_vx_leg1 * t1_leg1 - minus_g1_vx_leg1 * t2_leg1
                 - (g1_vx_leg2 * t3_leg2 + minus_g2_vx_leg2 * t4_leg2)
                 - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
             let t6_leg3 = g1_vy_leg1 * t2_leg1 + minus_g2_vy_leg1 * t1_leg1
                 + minus_g1_vy_leg2 * t3_leg2 + g2_vy_leg2 * t4_leg2
                 + minus_g1_vy_leg3 * t3_leg3 + g2_vy_leg3 * t4_leg3;
-            ::core::result::Result::Ok([
-                [t2_leg3 + base_parameters[0], t5_leg3], [t5_leg3, t6_leg3 + base_parameters[0]],
-            ])
+            Ok([[t2_leg3 + m_platformR, t5_leg3], [t5_leg3, t6_leg3 + m_platformR]])
         })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -6915,42 +6768,42 @@ impl ThreeLegPoint {
     /// 227 operations (93 additions, 128 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 1 negation, 229 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 31],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        parameters: &[f64; 31],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("parameters", parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -6968,26 +6821,32 @@ impl ThreeLegPoint {
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let minus_bias_rate_dot_2_leg1 = k_leg1
                 * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let l_1_mx_2_leg1 = L_1 * parameters[6];
-            let l_1_my_2_leg1 = L_1 * parameters[7];
+            let mx_2_leg1 = parameters[6];
+            let l_1_mx_2_leg1 = L_1 * mx_2_leg1;
+            let zz_2_leg1 = parameters[5];
+            let my_2_leg1 = parameters[7];
+            let l_1_my_2_leg1 = L_1 * my_2_leg1;
             let minus_moment2_z_leg1 = minus_bias_rate_dot_2_leg1
-                * (parameters[5] - l_1_mx_2_leg1)
-                + rate_2_squared_leg1 * l_1_my_2_leg1;
+                * (zz_2_leg1 - l_1_mx_2_leg1) + rate_2_squared_leg1 * l_1_my_2_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                parameters[9],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = parameters[9];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+            let fv_1_leg1 = parameters[2];
+            let fs_1_leg1 = parameters[3];
+            let off_1_leg1 = parameters[4];
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let bias_rate_dot_1_leg1 = k_leg1
                 * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
-            let t2_leg1 = parameters[4] + rate_1_squared_leg1 * l_1_my_2_leg1
-                + parameters[2] * rate_1_leg1
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
+            let ia_1_leg1 = parameters[1];
+            let t2_leg1 = off_1_leg1 + rate_1_squared_leg1 * l_1_my_2_leg1
+                + fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1)
                 + bias_rate_dot_1_leg1
-                    * (parameters[0] + L_1_SQUARED * parameters[8] - l_1_mx_2_leg1
-                        + parameters[1]);
+                    * (zz_1_leg1 + L_1_SQUARED * m_2_leg1 - l_1_mx_2_leg1
+                        + ia_1_leg1);
             let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
             // --- leg2
             let t1_leg2 = pose[0] + 0.3031088913245535;
@@ -6999,10 +6858,10 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -7010,7 +6869,7 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -7019,8 +6878,12 @@ impl ThreeLegPoint {
             let minus_fk1_y_leg2 = minus_fk2_y_leg2 + t3_leg2;
             let g1_vy_leg2 = minus_fk1_y_leg2 * k_leg2;
             let rate_1_leg2 = g1_vx_leg2 * twist[0] + g1_vy_leg2 * twist[1];
+            let fs_1_leg2 = parameters[13];
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let my_2_leg2 = parameters[17];
+            let fv_1_leg2 = parameters[12];
+            let off_1_leg2 = parameters[14];
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let fk2_x_leg2 = INV_L_1 * t1_leg2 - minus_fk1_x_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
@@ -7031,38 +6894,39 @@ impl ThreeLegPoint {
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let bias_rate_dot_1_leg2 = k_leg2
                 * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let l_1_mx_2_leg2 = L_1 * parameters[16];
-            let t4_leg2 = parameters[14]
-                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
-                + parameters[17] * bias_a_on_f2_leg2 + parameters[12] * rate_1_leg2
+            let mx_2_leg2 = parameters[16];
+            let l_1_mx_2_leg2 = L_1 * mx_2_leg2;
+            let m_2_leg2 = parameters[18];
+            let zz_1_leg2 = parameters[10];
+            let ia_1_leg2 = parameters[11];
+            let t4_leg2 = off_1_leg2 + math::wide::signed(fs_1_leg2, rate_1_leg2)
+                + my_2_leg2 * bias_a_on_f2_leg2 + fv_1_leg2 * rate_1_leg2
                 + bias_rate_dot_1_leg2
-                    * (parameters[10] + L_1_SQUARED * parameters[18] - l_1_mx_2_leg2
-                        + parameters[11]);
+                    * (zz_1_leg2 + L_1_SQUARED * m_2_leg2 - l_1_mx_2_leg2
+                        + ia_1_leg2);
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                parameters[19],
-                qd_2_leg2,
-            );
+            let fs_2_leg2 = parameters[19];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, qd_2_leg2);
             let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
             let minus_bias_rate_dot_2_leg2 = k_leg2
                 * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
+            let zz_2_leg2 = parameters[15];
             let minus_moment2_z_leg2 = minus_bias_rate_dot_2_leg2
-                * (parameters[15] - l_1_mx_2_leg2)
-                + minus_bias_a_on_f1_leg2 * parameters[17];
+                * (zz_2_leg2 - l_1_mx_2_leg2) + minus_bias_a_on_f1_leg2 * my_2_leg2;
             let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t2_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3
@@ -7082,25 +6946,29 @@ impl ThreeLegPoint {
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let bias_rate_dot_1_leg3 = k_leg3
                 * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let l_1_mx_2_leg3 = L_1 * parameters[26];
+            let mx_2_leg3 = parameters[26];
+            let l_1_mx_2_leg3 = L_1 * mx_2_leg3;
+            let m_2_leg3 = parameters[28];
+            let zz_1_leg3 = parameters[20];
+            let ia_1_leg3 = parameters[21];
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let my_2_leg3 = parameters[27];
+            let fv_1_leg3 = parameters[22];
+            let fs_1_leg3 = parameters[23];
+            let off_1_leg3 = parameters[24];
             let t2_leg3 = bias_rate_dot_1_leg3
-                * (parameters[20] + L_1_SQUARED * parameters[28] - l_1_mx_2_leg3
-                    + parameters[21]) + parameters[27] * minus_bias_a_on_f2_leg3
-                + parameters[22] * rate_1_leg3
-                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
-                + parameters[24];
+                * (zz_1_leg3 + L_1_SQUARED * m_2_leg3 - l_1_mx_2_leg3 + ia_1_leg3)
+                + my_2_leg3 * minus_bias_a_on_f2_leg3 + fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                parameters[29],
-                -minus_qd_2_leg3,
-            );
+            let fs_2_leg3 = parameters[29];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, -minus_qd_2_leg3);
             let force_on_u1_leg3 = t2_leg3 - tau_2_leg3;
             let minus_bias_rate_dot_2_leg3 = k_leg3
                 * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
+            let zz_2_leg3 = parameters[25];
             let minus_moment2_z_leg3 = minus_bias_rate_dot_2_leg3
-                * (parameters[25] - l_1_mx_2_leg3)
-                + bias_a_on_f1_leg3 * parameters[27];
+                * (zz_2_leg3 - l_1_mx_2_leg3) + bias_a_on_f1_leg3 * my_2_leg3;
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
             let t3_leg3 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
                 - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
@@ -7111,7 +6979,7 @@ impl ThreeLegPoint {
                 + g2_vy_leg2 * force_on_u2_leg2 + g1_vy_leg2 * force_on_u1_leg2
                 - (minus_g2_vy_leg3 * force_on_u2_leg3
                     + minus_g1_vy_leg3 * force_on_u1_leg3);
-            ::core::result::Result::Ok([t3_leg3, t4_leg3])
+            Ok([t3_leg3, t4_leg3])
         })
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -7126,43 +6994,43 @@ impl ThreeLegPoint {
     /// 221 operations (84 additions, 131 multiplications, 6 divisions), 3 square roots, 6 signs, 9 guards, 222 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn bias_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        base_parameters: &[::core::primitive::f64; 22],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        base_parameters: &[f64; 22],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g2_vx_leg1 = minus_l1_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -7181,24 +7049,27 @@ impl ThreeLegPoint {
             let t2_leg1 = 0.5 * t1_leg1;
             let minus_bias_rate_dot_2_leg1 = k_leg1
                 * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-            let minus_force2_y_leg1 = base_parameters[16] * rate_2_squared_leg1;
-            let minus_moment2_z_leg1 = base_parameters[13]
-                * minus_bias_rate_dot_2_leg1 + L_1 * minus_force2_y_leg1;
+            let zz_2_leg1R = base_parameters[13];
+            let my_2_leg1 = base_parameters[16];
+            let minus_force2_y_leg1 = my_2_leg1 * rate_2_squared_leg1;
+            let minus_moment2_z_leg1 = zz_2_leg1R * minus_bias_rate_dot_2_leg1
+                + L_1 * minus_force2_y_leg1;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                base_parameters[19],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = base_parameters[19];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let bias_rate_dot_1_leg1 = k_leg1
                 * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t2_leg1);
-            let moment1_z_leg1 = base_parameters[1] * bias_rate_dot_1_leg1;
-            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
-                + base_parameters[10];
+            let zz_1_leg1R = base_parameters[1];
+            let moment1_z_leg1 = zz_1_leg1R * bias_rate_dot_1_leg1;
+            let fv_1_leg1 = base_parameters[4];
+            let fs_1_leg1 = base_parameters[7];
+            let off_1_leg1 = base_parameters[10];
+            let tau_1_leg1 = fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1;
             let v2_by_1_x_leg1 = INV_L_1 * det_leg1;
-            let force2_x_leg1 = base_parameters[16] * minus_bias_rate_dot_2_leg1;
+            let force2_x_leg1 = my_2_leg1 * minus_bias_rate_dot_2_leg1;
             let v2_by_1_y_leg1 = INV_TWICE_L_1 * t1_leg1;
             let force_on_u1_leg1 = moment1_z_leg1 + tau_1_leg1
                 + v2_by_1_x_leg1 * force2_x_leg1
@@ -7213,10 +7084,10 @@ impl ThreeLegPoint {
             let d_y_leg2 = pose[0] - d_y_leg3;
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -7224,7 +7095,7 @@ impl ThreeLegPoint {
             let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
                 + INV_TWICE_L_1 * l2_y_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
             let k_leg2 = L_1 / det_leg2;
             let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
             let minus_fk2_y_leg2 = 3.608439182435161 * l1_y_leg2
@@ -7245,31 +7116,33 @@ impl ThreeLegPoint {
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let bias_rate_dot_1_leg2 = k_leg2
                 * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let moment1_z_leg2 = base_parameters[2] * bias_rate_dot_1_leg2;
-            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
-                + base_parameters[11];
+            let zz_1_leg2R = base_parameters[2];
+            let moment1_z_leg2 = zz_1_leg2R * bias_rate_dot_1_leg2;
+            let fv_1_leg2 = base_parameters[5];
+            let fs_1_leg2 = base_parameters[8];
+            let off_1_leg2 = base_parameters[11];
+            let tau_1_leg2 = fv_1_leg2 * rate_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2) + off_1_leg2;
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
+            let my_2_leg2 = base_parameters[17];
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                base_parameters[20],
-                qd_2_leg2,
-            );
+            let fs_2_leg2 = base_parameters[20];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, qd_2_leg2);
             let force_on_u1_leg2 = moment1_z_leg2 + tau_1_leg2
-                + base_parameters[17] * bias_a_on_f2_leg2 - tau_2_leg2;
+                + my_2_leg2 * bias_a_on_f2_leg2 - tau_2_leg2;
             let minus_bias_rate_dot_2_leg2 = k_leg2
                 * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let minus_moment2_z_leg2 = base_parameters[14]
-                * minus_bias_rate_dot_2_leg2
-                + minus_bias_a_on_f1_leg2 * base_parameters[17];
+            let zz_2_leg2R = base_parameters[14];
+            let minus_moment2_z_leg2 = zz_2_leg2R * minus_bias_rate_dot_2_leg2
+                + minus_bias_a_on_f1_leg2 * my_2_leg2;
             let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
             // --- leg3
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
@@ -7277,7 +7150,7 @@ impl ThreeLegPoint {
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
                 + INV_TWICE_L_1 * l2_y_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg3 = L_1 / det_leg3;
             let g1_vx_leg3 = fk1_x_leg3 * k_leg3;
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
@@ -7298,23 +7171,25 @@ impl ThreeLegPoint {
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let bias_rate_dot_1_leg3 = k_leg3
                 * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
-            let moment1_z_leg3 = base_parameters[3] * bias_rate_dot_1_leg3;
-            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
-                + base_parameters[12];
+            let zz_1_leg3R = base_parameters[3];
+            let moment1_z_leg3 = zz_1_leg3R * bias_rate_dot_1_leg3;
+            let fv_1_leg3 = base_parameters[6];
+            let fs_1_leg3 = base_parameters[9];
+            let off_1_leg3 = base_parameters[12];
+            let tau_1_leg3 = fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
+            let my_2_leg3 = base_parameters[18];
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                base_parameters[21],
-                qd_2_leg3,
-            );
+            let fs_2_leg3 = base_parameters[21];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, qd_2_leg3);
             let force_on_u1_leg3 = moment1_z_leg3 + tau_1_leg3
-                + base_parameters[18] * minus_bias_a_on_f2_leg3 - tau_2_leg3;
+                + my_2_leg3 * minus_bias_a_on_f2_leg3 - tau_2_leg3;
             let minus_bias_rate_dot_2_leg3 = k_leg3
                 * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let minus_moment2_z_leg3 = base_parameters[15]
-                * minus_bias_rate_dot_2_leg3
-                + bias_a_on_f1_leg3 * base_parameters[18];
+            let zz_2_leg3R = base_parameters[15];
+            let minus_moment2_z_leg3 = zz_2_leg3R * minus_bias_rate_dot_2_leg3
+                + bias_a_on_f1_leg3 * my_2_leg3;
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
             let t1 = minus_g2_vx_leg1 * minus_force_on_u2_leg1
                 - minus_g1_vx_leg1 * force_on_u1_leg1 + g1_vx_leg2 * force_on_u1_leg2
@@ -7325,7 +7200,7 @@ impl ThreeLegPoint {
                 + g2_vy_leg2 * force_on_u2_leg2 - minus_g1_vy_leg2 * force_on_u1_leg2
                 + g2_vy_leg3 * force_on_u2_leg3
                 - minus_g1_vy_leg3 * force_on_u1_leg3;
-            ::core::result::Result::Ok([t1, t2])
+            Ok([t1, t2])
         })
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
@@ -7343,14 +7218,14 @@ impl ThreeLegPoint {
     /// In the loop, `at` is the first leg of a vector, names with the suffix `_leg` hold one value per leg, and `of_leg` holds the constants that differ between legs, the rows of `OF_LEG`.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 3],
-        parameters: &[::core::primitive::f64; 31],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        torques: &[f64; 3],
+        parameters: &[f64; 31],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
                 ("parameters", parameters, 1e12),
@@ -7358,87 +7233,60 @@ impl ThreeLegPoint {
         )?;
         /// The function with one leg in each lane of SIMD vectors, whose width is chosen at run time.
         struct Legs<'a> {
-            pose: &'a [::core::primitive::f64; 2],
-            twist: &'a [::core::primitive::f64; 2],
-            torques: &'a [::core::primitive::f64; 3],
-            parameters: &'a [::core::primitive::f64; 31],
+            pose: &'a [f64; 2],
+            twist: &'a [f64; 2],
+            torques: &'a [f64; 3],
+            parameters: &'a [f64; 31],
         }
-        impl ::overact::simd::SideBySide for Legs<'_> {
-            type Output = ::core::result::Result<
-                [::core::primitive::f64; 2],
-                ::overact::Error,
-            >;
+        impl simd::SideBySide for Legs<'_> {
+            type Output = Result<[f64; 2], Error>;
             #[inline(always)]
-            fn run<V: ::overact::simd::Vector>(self, lanes: V::Proof) -> Self::Output {
+            fn run<V: simd::Vector>(self, lanes: V::Proof) -> Self::Output {
                 let Self { pose, twist, torques, parameters } = self;
                 /// 1 / l_1
-                const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+                const INV_L_1: f64 = 4.166666666666667;
                 /// 1 / l_1²
-                const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+                const INV_L_1_SQUARED: f64 = 17.36111111111111;
                 /// l_1 = l_2
-                const L_1: ::core::primitive::f64 = 0.24;
+                const L_1: f64 = 0.24;
                 /// l_1²
-                const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+                const L_1_SQUARED: f64 = 0.0576;
                 /// 2 l_1²
-                const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
-                // --- what the legs add: a row for each number, in it one for each leg
+                const TWICE_L_1_SQUARED: f64 = 0.1152;
+                let m_platform = parameters[30];
+                // --- terms of the sums: one row for each sum, one column for each leg
                 let mut added = [[0.0; 3]; 5];
                 /// Constants that differ between legs: rows of one number per leg.
                 /// 0: x of the base
                 /// 1: cos(turn of the base about z)
                 /// 2: y of the base
                 /// 3: sin(turn of the base about z)
-                static OF_LEG: [[::core::primitive::f64; 3]; 4] = [
+                static OF_LEG: [[f64; 3]; 4] = [
                     [0.0, -0.3031088913245535, 0.30310889132455343],
                     [0.0, -0.8660254037844386, 0.8660254037844384], [0.35, -0.175, -0.175],
                     [1.0, -0.5, -0.5],
                 ];
                 /// Names of the legs, for errors.
-                static LEGS: [&::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
-                for at in ::overact::simd::places::<V, 3>(lanes) {
-                    // --- the legs' own
-                    let torques = ::overact::simd::elements::<1, _, _, _>(torques, at);
-                    // --- numbers in which the legs differ, for the legs of this turn
+                static LEGS: [&str; 3] = ["leg1", "leg2", "leg3"];
+                for at in simd::places::<V, 3>(lanes) {
+                    // --- inputs of the legs in this batch
+                    let torques = simd::elements::<1, _, _, _>(torques, at);
+                    // --- constants of the legs in this batch
                     let of_leg = [
-                        ::overact::simd::row(&OF_LEG[0], at), ::overact::simd::row(&OF_LEG[1], at),
-                        ::overact::simd::row(&OF_LEG[2], at), ::overact::simd::row(&OF_LEG[3], at),
+                        simd::row(&OF_LEG[0], at), simd::row(&OF_LEG[1], at),
+                        simd::row(&OF_LEG[2], at), simd::row(&OF_LEG[3], at),
                     ];
-                    // --- the legs' own: where the first leg's stands, and how far the next leg's is from it
-                    let own_parameters = [
-                        ::overact::simd::scattered(parameters, [8, 10], at),
-                        ::overact::simd::scattered(parameters, [0, 10], at),
-                        ::overact::simd::scattered(parameters, [1, 10], at),
-                        ::overact::simd::scattered(parameters, [6, 10], at),
-                        ::overact::simd::scattered(parameters, [7, 10], at),
-                        ::overact::simd::scattered(parameters, [5, 10], at),
-                        ::overact::simd::scattered(parameters, [9, 10], at),
-                        ::overact::simd::scattered(parameters, [2, 10], at),
-                        ::overact::simd::scattered(parameters, [3, 10], at),
-                        ::overact::simd::scattered(parameters, [4, 10], at),
-                    ];
-                    let mut failed = ::overact::simd::Failed::none();
+                    let mut failed = simd::Failed::none();
                     // --- leg
                     let t1_leg = pose[0] - of_leg[0];
                     let t2_leg = pose[1] - of_leg[2];
                     let d_x_leg = of_leg[1] * t1_leg + of_leg[3] * t2_leg;
                     let d_y_leg = of_leg[1] * t2_leg - of_leg[3] * t1_leg;
                     let rho_squared_leg = d_x_leg * d_x_leg + d_y_leg * d_y_leg;
-                    ::overact::simd::leg(
-                        &mut failed,
-                        rho_squared_leg,
-                        &[0.1225; 3],
-                        &LEGS,
-                        at,
-                    );
+                    simd::leg(&mut failed, rho_squared_leg, &[0.1225; 3], &LEGS, at);
                     let h_squared_leg = L_1_SQUARED / rho_squared_leg - 0.25;
-                    ::overact::simd::reach(
-                        &mut failed,
-                        h_squared_leg,
-                        &[0.2202; 3],
-                        &LEGS,
-                        at,
-                    );
-                    let h_leg = ::overact::simd::sqrt(h_squared_leg);
+                    simd::reach(&mut failed, h_squared_leg, &[0.2202; 3], &LEGS, at);
+                    let h_leg = simd::sqrt(h_squared_leg);
                     let l1_x_leg = 0.5 * d_x_leg + d_y_leg * h_leg;
                     let l2_x_leg = d_x_leg - l1_x_leg;
                     let c12_leg = INV_L_1 * l2_x_leg;
@@ -7447,29 +7295,32 @@ impl ThreeLegPoint {
                     let s12_leg = INV_L_1 * l2_y_leg;
                     let minus_fk1_x_leg = of_leg[1] * c12_leg - of_leg[3] * s12_leg;
                     let det_leg = rho_squared_leg * h_leg;
-                    ::overact::simd::leg(&mut failed, det_leg, &[0.05748; 3], &LEGS, at);
+                    simd::leg(&mut failed, det_leg, &[0.05748; 3], &LEGS, at);
                     let k_leg = L_1 / det_leg;
                     let g1_vx_leg = minus_fk1_x_leg * k_leg;
-                    let masses_leg_1_1 = own_parameters[1]
-                        + L_1_SQUARED * own_parameters[0] + own_parameters[2];
+                    let m_2_leg = simd::scattered(parameters, [8, 10], at);
+                    let zz_1_leg = simd::scattered(parameters, [0, 10], at);
+                    let ia_1_leg = simd::scattered(parameters, [1, 10], at);
+                    let masses_leg_1_1 = zz_1_leg + L_1_SQUARED * m_2_leg + ia_1_leg;
                     let c1_leg = INV_L_1 * l1_x_leg;
                     let s1_leg = INV_L_1 * l1_y_leg;
                     let fk2_x_leg = of_leg[1] * c1_leg - of_leg[3] * s1_leg;
                     let minus_g2_vx_leg = fk2_x_leg * k_leg;
                     let c2_leg = 8.680555555555555
                         * (rho_squared_leg - TWICE_L_1_SQUARED);
+                    let mx_2_leg = simd::scattered(parameters, [6, 10], at);
                     let s2_leg = INV_L_1_SQUARED * det_leg;
-                    let force1_y_by_2_leg = c2_leg * own_parameters[3]
-                        - s2_leg * own_parameters[4];
+                    let my_2_leg = simd::scattered(parameters, [7, 10], at);
+                    let force1_y_by_2_leg = c2_leg * mx_2_leg - s2_leg * my_2_leg;
                     let masses_leg_1_2 = L_1 * force1_y_by_2_leg;
+                    let zz_2_leg = simd::scattered(parameters, [5, 10], at);
                     let minus_fk1_y_leg = of_leg[1] * s12_leg + of_leg[3] * c12_leg;
                     let g1_vy_leg = minus_fk1_y_leg * k_leg;
                     let fk2_y_leg = of_leg[1] * s1_leg + of_leg[3] * c1_leg;
                     let minus_g2_vy_leg = fk2_y_leg * k_leg;
                     let t3_leg = g1_vy_leg * masses_leg_1_1
                         - minus_g2_vy_leg * masses_leg_1_2;
-                    let t4_leg = g1_vy_leg * masses_leg_1_2
-                        - minus_g2_vy_leg * own_parameters[5];
+                    let t4_leg = g1_vy_leg * masses_leg_1_2 - minus_g2_vy_leg * zz_2_leg;
                     let rate_1_leg = g1_vx_leg * twist[0] + g1_vy_leg * twist[1];
                     let rate_1_squared_leg = rate_1_leg * rate_1_leg;
                     let bias_a_on_f2_leg = L_1 * rate_1_squared_leg;
@@ -7479,31 +7330,34 @@ impl ThreeLegPoint {
                     let minus_bias_a_on_f1_leg = L_1 * rate_2_squared_leg;
                     let minus_bias_rate_dot_2_leg = k_leg
                         * (bias_a_on_f2_leg + c2_leg * minus_bias_a_on_f1_leg);
-                    let t5_leg = own_parameters[3] * minus_bias_rate_dot_2_leg;
-                    let t6_leg = own_parameters[4] * rate_2_squared_leg;
-                    let moment2_z_leg = L_1 * (t5_leg - t6_leg)
-                        - own_parameters[5] * minus_bias_rate_dot_2_leg;
+                    let minus_mx_2_bias_rate_dot_2_leg_leg = mx_2_leg
+                        * minus_bias_rate_dot_2_leg;
+                    let my_2_rate_2_squared_leg_leg = my_2_leg * rate_2_squared_leg;
+                    let moment2_z_leg = L_1
+                        * (minus_mx_2_bias_rate_dot_2_leg_leg
+                            - my_2_rate_2_squared_leg_leg)
+                        - zz_2_leg * minus_bias_rate_dot_2_leg;
                     let minus_qd_2_leg = rate_1_leg + minus_rate_2_leg;
-                    let minus_tau_2_leg = ::overact::simd::signed(
-                        own_parameters[6],
-                        minus_qd_2_leg,
-                        at,
-                    );
+                    let fs_2_leg = simd::scattered(parameters, [9, 10], at);
+                    let minus_tau_2_leg = simd::signed(fs_2_leg, minus_qd_2_leg, at);
                     let force_on_u2_leg = moment2_z_leg - minus_tau_2_leg;
-                    let force2_x_leg = own_parameters[4] * minus_bias_rate_dot_2_leg
-                        - own_parameters[3] * rate_2_squared_leg;
-                    let minus_force2_y_leg = t5_leg + t6_leg;
+                    let force2_x_leg = my_2_leg * minus_bias_rate_dot_2_leg
+                        - mx_2_leg * rate_2_squared_leg;
+                    let minus_force2_y_leg = minus_mx_2_bias_rate_dot_2_leg_leg
+                        + my_2_rate_2_squared_leg_leg;
+                    let fv_1_leg = simd::scattered(parameters, [2, 10], at);
+                    let fs_1_leg = simd::scattered(parameters, [3, 10], at);
+                    let off_1_leg = simd::scattered(parameters, [4, 10], at);
                     let bias_rate_dot_1_leg = k_leg
                         * (minus_bias_a_on_f1_leg + c2_leg * bias_a_on_f2_leg);
-                    let t7_leg = own_parameters[9]
+                    let t5_leg = off_1_leg
                         + L_1 * (s2_leg * force2_x_leg - c2_leg * minus_force2_y_leg)
-                        + own_parameters[7] * rate_1_leg
-                        + ::overact::simd::signed(own_parameters[8], rate_1_leg, at)
+                        + fv_1_leg * rate_1_leg + simd::signed(fs_1_leg, rate_1_leg, at)
                         + bias_rate_dot_1_leg * masses_leg_1_1;
-                    let force_on_u1_leg = minus_tau_2_leg + t7_leg;
-                    let tau1_minus_force_on_u1_leg_leg1 = torques[0] - force_on_u1_leg;
+                    let force_on_u1_leg = minus_tau_2_leg + t5_leg;
+                    let tau1_minus_force_on_u1_leg_leg = torques[0] - force_on_u1_leg;
                     failed.result()?;
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[0],
                         [0, 1],
                         at,
@@ -7511,59 +7365,56 @@ impl ThreeLegPoint {
                             * (g1_vx_leg * masses_leg_1_1
                                 - minus_g2_vx_leg * masses_leg_1_2)
                             - minus_g2_vx_leg
-                                * (g1_vx_leg * masses_leg_1_2
-                                    - minus_g2_vx_leg * own_parameters[5]),
+                                * (g1_vx_leg * masses_leg_1_2 - minus_g2_vx_leg * zz_2_leg),
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[1],
                         [0, 1],
                         at,
                         g1_vx_leg * t3_leg - minus_g2_vx_leg * t4_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[2],
                         [0, 1],
                         at,
                         g1_vy_leg * t3_leg - minus_g2_vy_leg * t4_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[3],
                         [0, 1],
                         at,
                         minus_g2_vx_leg * force_on_u2_leg
-                            + g1_vx_leg * tau1_minus_force_on_u1_leg_leg1,
+                            + g1_vx_leg * tau1_minus_force_on_u1_leg_leg,
                     );
-                    ::overact::simd::put(
+                    simd::put(
                         &mut added[4],
                         [0, 1],
                         at,
                         minus_g2_vy_leg * force_on_u2_leg
-                            + g1_vy_leg * tau1_minus_force_on_u1_leg_leg1,
+                            + g1_vy_leg * tau1_minus_force_on_u1_leg_leg,
                     );
                 }
-                // --- what all share and what the legs add, added up
+                // --- sums of the shared terms and those of all legs
                 let sums = [
-                    parameters[30] + ::overact::simd::sum(&added[0]),
-                    ::overact::simd::sum(&added[1]),
-                    parameters[30] + ::overact::simd::sum(&added[2]),
-                    ::overact::simd::sum(&added[3]), ::overact::simd::sum(&added[4]),
+                    m_platform + simd::sum(&added[0]), simd::sum(&added[1]),
+                    m_platform + simd::sum(&added[2]), simd::sum(&added[3]), simd::sum(&added[4]),
                 ];
                 let output = {
                     let inv_pivot_1 = 1.0 / sums[0];
-                    ::overact::guard::mass(sums[0])?;
+                    guard::mass(sums[0])?;
                     let l_2_1 = sums[1] * inv_pivot_1;
                     let pivot_2 = sums[2] - sums[1] * l_2_1;
-                    ::overact::guard::mass(pivot_2)?;
-                    ::overact::guard::size(inv_pivot_1, 1e100)?;
+                    guard::mass(pivot_2)?;
+                    guard::size(inv_pivot_1, 1e100)?;
                     let t1 = (sums[4] - l_2_1 * sums[3]) / pivot_2;
-                    ::overact::guard::size(t1, 1e100)?;
+                    guard::size(t1, 1e100)?;
                     [inv_pivot_1 * sums[3] - l_2_1 * t1, t1]
                 };
-                ::core::result::Result::Ok(output)
+                Ok(output)
             }
         }
-        if ::overact::simd::four() {
-            return ::overact::simd::few(Legs {
+        if simd::four() {
+            return simd::few(Legs {
                 pose,
                 twist,
                 torques,
@@ -7571,30 +7422,30 @@ impl ThreeLegPoint {
             });
         }
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / l_1²
-        const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+        const INV_L_1_SQUARED: f64 = 17.36111111111111;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         /// 2 l_1²
-        const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+        const TWICE_L_1_SQUARED: f64 = 0.1152;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
         let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -7606,7 +7457,9 @@ impl ThreeLegPoint {
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
         let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-        let minus_tau_2_leg1 = ::overact::math::signed(parameters[9], minus_qd_2_leg1);
+        let fs_2_leg1 = parameters[9];
+        let minus_tau_2_leg1 = math::signed(fs_2_leg1, minus_qd_2_leg1);
+        let fs_1_leg1 = parameters[3];
         let s2_leg1 = INV_L_1_SQUARED * det_leg1;
         let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
         let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
@@ -7616,20 +7469,27 @@ impl ThreeLegPoint {
         let c2_leg1 = 8.680555555555555 * t1_leg1;
         let minus_bias_rate_dot_2_leg1 = k_leg1
             * (bias_a_on_f2_leg1 + minus_bias_a_on_f1_leg1 * c2_leg1);
-        let force2_x_leg1 = parameters[7] * minus_bias_rate_dot_2_leg1
-            - parameters[6] * rate_2_squared_leg1;
-        let t2_leg1 = parameters[6] * minus_bias_rate_dot_2_leg1;
-        let my_2_leg1_rate_2_squared_leg1 = parameters[7] * rate_2_squared_leg1;
-        let minus_force2_y_leg1 = t2_leg1 + my_2_leg1_rate_2_squared_leg1;
+        let my_2_leg1 = parameters[7];
+        let mx_2_leg1 = parameters[6];
+        let force2_x_leg1 = my_2_leg1 * minus_bias_rate_dot_2_leg1
+            - mx_2_leg1 * rate_2_squared_leg1;
+        let minus_mx_2_bias_rate_dot_2_leg1 = mx_2_leg1 * minus_bias_rate_dot_2_leg1;
+        let my_2_rate_2_squared_leg1 = my_2_leg1 * rate_2_squared_leg1;
+        let minus_force2_y_leg1 = minus_mx_2_bias_rate_dot_2_leg1
+            + my_2_rate_2_squared_leg1;
+        let fv_1_leg1 = parameters[2];
+        let off_1_leg1 = parameters[4];
         let bias_rate_dot_1_leg1 = k_leg1
             * (minus_bias_a_on_f1_leg1 + bias_a_on_f2_leg1 * c2_leg1);
-        let masses_leg1_1_1 = parameters[0] + L_1_SQUARED * parameters[8]
-            + parameters[1];
-        let t3_leg1 = ::overact::math::signed(parameters[3], rate_1_leg1)
+        let m_2_leg1 = parameters[8];
+        let zz_1_leg1 = parameters[0];
+        let ia_1_leg1 = parameters[1];
+        let masses_leg1_1_1 = zz_1_leg1 + L_1_SQUARED * m_2_leg1 + ia_1_leg1;
+        let t2_leg1 = math::signed(fs_1_leg1, rate_1_leg1)
             + L_1 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
-            + parameters[2] * rate_1_leg1 + parameters[4]
+            + fv_1_leg1 * rate_1_leg1 + off_1_leg1
             + bias_rate_dot_1_leg1 * masses_leg1_1_1;
-        let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1;
+        let force_on_u1_leg1 = minus_tau_2_leg1 + t2_leg1;
         let force_on_u1_minus_tau1_leg1 = force_on_u1_leg1 - torques[0];
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
         let t1_leg2 = 0.5 * y_plus_half_radius;
@@ -7640,10 +7500,10 @@ impl ThreeLegPoint {
         // --- leg2
         let d_y_leg2 = pose[0] - d_y_leg3;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
         let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
         let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -7651,12 +7511,13 @@ impl ThreeLegPoint {
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
             + INV_TWICE_L_1 * l2_y_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let g1_vx_leg2 = minus_fk1_x_leg2 * k_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
+        let fs_1_leg2 = parameters[13];
         let s2_leg2 = INV_L_1_SQUARED * det_leg2;
         let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
         let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
@@ -7670,37 +7531,44 @@ impl ThreeLegPoint {
         let v2_by_1_y_leg2 = INV_TWICE_L_1 * t2_leg2;
         let minus_bias_rate_dot_2_leg2 = k_leg2
             * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-        let force2_x_leg2 = parameters[17] * minus_bias_rate_dot_2_leg2
-            - parameters[16] * rate_2_squared_leg2;
+        let my_2_leg2 = parameters[17];
+        let mx_2_leg2 = parameters[16];
+        let force2_x_leg2 = my_2_leg2 * minus_bias_rate_dot_2_leg2
+            - mx_2_leg2 * rate_2_squared_leg2;
         let c2_leg2 = 8.680555555555555 * t2_leg2;
-        let t3_leg2 = parameters[16] * minus_bias_rate_dot_2_leg2;
-        let my_2_leg2_rate_2_squared_leg2 = parameters[17] * rate_2_squared_leg2;
-        let minus_force2_y_leg2 = t3_leg2 + my_2_leg2_rate_2_squared_leg2;
+        let minus_mx_2_bias_rate_dot_2_leg2 = mx_2_leg2 * minus_bias_rate_dot_2_leg2;
+        let my_2_rate_2_squared_leg2 = my_2_leg2 * rate_2_squared_leg2;
+        let minus_force2_y_leg2 = minus_mx_2_bias_rate_dot_2_leg2
+            + my_2_rate_2_squared_leg2;
+        let fv_1_leg2 = parameters[12];
+        let off_1_leg2 = parameters[14];
         let minus_bias_a_on_f1_leg2 = L_1 * rate_2_squared_leg2;
         let bias_rate_dot_1_leg2 = k_leg2
             * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
-        let masses_leg2_1_1 = parameters[10] + L_1_SQUARED * parameters[18]
-            + parameters[11];
-        let t4_leg2 = parameters[14]
-            + ::overact::math::signed(parameters[13], rate_1_leg2)
+        let m_2_leg2 = parameters[18];
+        let zz_1_leg2 = parameters[10];
+        let ia_1_leg2 = parameters[11];
+        let masses_leg2_1_1 = zz_1_leg2 + L_1_SQUARED * m_2_leg2 + ia_1_leg2;
+        let t3_leg2 = off_1_leg2 + math::signed(fs_1_leg2, rate_1_leg2)
             + L_1 * (s2_leg2 * force2_x_leg2 - c2_leg2 * minus_force2_y_leg2)
-            + parameters[12] * rate_1_leg2 + bias_rate_dot_1_leg2 * masses_leg2_1_1;
+            + fv_1_leg2 * rate_1_leg2 + bias_rate_dot_1_leg2 * masses_leg2_1_1;
         let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-        let tau_2_leg2 = ::overact::math::signed(parameters[19], qd_2_leg2);
-        let force_on_u1_leg2 = t4_leg2 - tau_2_leg2;
+        let fs_2_leg2 = parameters[19];
+        let tau_2_leg2 = math::signed(fs_2_leg2, qd_2_leg2);
+        let force_on_u1_leg2 = t3_leg2 - tau_2_leg2;
         let tau1_minus_force_on_u1_leg2 = torques[1] - force_on_u1_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
         let minus_fk2_x_leg3 = 3.608439182435161 * l1_x_leg3 + INV_TWICE_L_1 * l1_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
         let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
@@ -7721,33 +7589,47 @@ impl ThreeLegPoint {
         let c2_leg3 = 8.680555555555555 * t2_leg3;
         let minus_bias_rate_dot_2_leg3 = k_leg3
             * (minus_bias_a_on_f2_leg3 + bias_a_on_f1_leg3 * c2_leg3);
-        let t3_leg3 = parameters[26] * minus_bias_rate_dot_2_leg3;
-        let my_2_leg3_rate_2_squared_leg3 = parameters[27] * rate_2_squared_leg3;
-        let moment2_z_leg3 = L_1 * (t3_leg3 - my_2_leg3_rate_2_squared_leg3)
-            - parameters[25] * minus_bias_rate_dot_2_leg3;
+        let mx_2_leg3 = parameters[26];
+        let minus_mx_2_bias_rate_dot_2_leg3 = mx_2_leg3 * minus_bias_rate_dot_2_leg3;
+        let my_2_leg3 = parameters[27];
+        let my_2_rate_2_squared_leg3 = my_2_leg3 * rate_2_squared_leg3;
+        let zz_2_leg3 = parameters[25];
+        let moment2_z_leg3 = L_1
+            * (minus_mx_2_bias_rate_dot_2_leg3 - my_2_rate_2_squared_leg3)
+            - zz_2_leg3 * minus_bias_rate_dot_2_leg3;
         let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-        let tau_2_leg3 = ::overact::math::signed(parameters[29], qd_2_leg3);
+        let fs_2_leg3 = parameters[29];
+        let tau_2_leg3 = math::signed(fs_2_leg3, qd_2_leg3);
         let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
-        let moment2_z_leg2 = L_1 * (t3_leg2 - my_2_leg2_rate_2_squared_leg2)
-            - parameters[15] * minus_bias_rate_dot_2_leg2;
+        let zz_2_leg2 = parameters[15];
+        let moment2_z_leg2 = L_1
+            * (minus_mx_2_bias_rate_dot_2_leg2 - my_2_rate_2_squared_leg2)
+            - zz_2_leg2 * minus_bias_rate_dot_2_leg2;
         let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
-        let moment2_z_leg1 = L_1 * (t2_leg1 - my_2_leg1_rate_2_squared_leg1)
-            - parameters[5] * minus_bias_rate_dot_2_leg1;
+        let zz_2_leg1 = parameters[5];
+        let moment2_z_leg1 = L_1
+            * (minus_mx_2_bias_rate_dot_2_leg1 - my_2_rate_2_squared_leg1)
+            - zz_2_leg1 * minus_bias_rate_dot_2_leg1;
         let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
         let s2_leg3 = INV_L_1_SQUARED * det_leg3;
-        let force2_x_leg3 = parameters[27] * minus_bias_rate_dot_2_leg3
-            - parameters[26] * rate_2_squared_leg3;
-        let minus_force2_y_leg3 = t3_leg3 + my_2_leg3_rate_2_squared_leg3;
+        let force2_x_leg3 = my_2_leg3 * minus_bias_rate_dot_2_leg3
+            - mx_2_leg3 * rate_2_squared_leg3;
+        let minus_force2_y_leg3 = minus_mx_2_bias_rate_dot_2_leg3
+            + my_2_rate_2_squared_leg3;
+        let fv_1_leg3 = parameters[22];
+        let fs_1_leg3 = parameters[23];
+        let off_1_leg3 = parameters[24];
         let bias_rate_dot_1_leg3 = k_leg3
             * (bias_a_on_f1_leg3 + minus_bias_a_on_f2_leg3 * c2_leg3);
-        let masses_leg3_1_1 = parameters[20] + L_1_SQUARED * parameters[28]
-            + parameters[21];
-        let t4_leg3 = parameters[24]
+        let m_2_leg3 = parameters[28];
+        let zz_1_leg3 = parameters[20];
+        let ia_1_leg3 = parameters[21];
+        let masses_leg3_1_1 = zz_1_leg3 + L_1_SQUARED * m_2_leg3 + ia_1_leg3;
+        let t3_leg3 = off_1_leg3
             + L_1 * (s2_leg3 * force2_x_leg3 - c2_leg3 * minus_force2_y_leg3)
-            + parameters[22] * rate_1_leg3
-            + ::overact::math::signed(parameters[23], rate_1_leg3)
+            + fv_1_leg3 * rate_1_leg3 + math::signed(fs_1_leg3, rate_1_leg3)
             + bias_rate_dot_1_leg3 * masses_leg3_1_1;
-        let force_on_u1_leg3 = t4_leg3 - tau_2_leg3;
+        let force_on_u1_leg3 = t3_leg3 - tau_2_leg3;
         let tau1_minus_force_on_u1_leg3 = torques[2] - force_on_u1_leg3;
         let t1 = minus_g1_vx_leg1 * force_on_u1_minus_tau1_leg1
             + g1_vx_leg2 * tau1_minus_force_on_u1_leg2
@@ -7755,66 +7637,59 @@ impl ThreeLegPoint {
             + minus_g2_vx_leg1 * force_on_u2_leg1
             + g1_vx_leg3 * tau1_minus_force_on_u1_leg3;
         let minus_masses_leg2_1_2 = 0.024464831804281346
-            * (170.3125 * (det_leg2 * parameters[17])
-                - 85.15625 * (t2_leg2 * parameters[16]));
+            * (170.3125 * (det_leg2 * my_2_leg2) - 85.15625 * (t2_leg2 * mx_2_leg2));
         let minus_masses_leg1_1_2 = 0.024464831804281346
-            * (170.3125 * (det_leg1 * parameters[7])
-                - 85.15625 * (t1_leg1 * parameters[6]));
-        let t5_leg2 = g1_vx_leg2
+            * (170.3125 * (det_leg1 * my_2_leg1) - 85.15625 * (t1_leg1 * mx_2_leg1));
+        let t4_leg2 = g1_vx_leg2
             * (g1_vx_leg2 * masses_leg2_1_1 + minus_g2_vx_leg2 * minus_masses_leg2_1_2)
             + minus_g2_vx_leg2
-                * (g1_vx_leg2 * minus_masses_leg2_1_2
-                    + minus_g2_vx_leg2 * parameters[15])
+                * (g1_vx_leg2 * minus_masses_leg2_1_2 + minus_g2_vx_leg2 * zz_2_leg2)
             - (minus_g1_vx_leg1
                 * (minus_g2_vx_leg1 * minus_masses_leg1_1_2
                     - minus_g1_vx_leg1 * masses_leg1_1_1)
                 + minus_g2_vx_leg1
                     * (minus_g1_vx_leg1 * minus_masses_leg1_1_2
-                        - minus_g2_vx_leg1 * parameters[5]));
+                        - minus_g2_vx_leg1 * zz_2_leg1));
         let minus_masses_leg3_1_2 = 0.024464831804281346
-            * (170.3125 * (det_leg3 * parameters[27])
-                - 85.15625 * (t2_leg3 * parameters[26]));
-        let t5_leg3 = t5_leg2
+            * (170.3125 * (det_leg3 * my_2_leg3) - 85.15625 * (t2_leg3 * mx_2_leg3));
+        let t4_leg3 = t4_leg2
             + g1_vx_leg3
                 * (g1_vx_leg3 * masses_leg3_1_1
                     + minus_g2_vx_leg3 * minus_masses_leg3_1_2)
             + minus_g2_vx_leg3
-                * (g1_vx_leg3 * minus_masses_leg3_1_2
-                    + minus_g2_vx_leg3 * parameters[25]);
-        let mass_1_1 = t5_leg3 + parameters[30];
-        ::overact::guard::mass(mass_1_1)?;
-        let t4_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2
-            + minus_g2_vy_leg1 * parameters[5];
-        let t5_leg1 = g1_vy_leg1 * masses_leg1_1_1
+                * (g1_vx_leg3 * minus_masses_leg3_1_2 + minus_g2_vx_leg3 * zz_2_leg3);
+        let m_platform = parameters[30];
+        let mass_1_1 = t4_leg3 + m_platform;
+        guard::mass(mass_1_1)?;
+        let t3_leg1 = g1_vy_leg1 * minus_masses_leg1_1_2 + minus_g2_vy_leg1 * zz_2_leg1;
+        let t4_leg1 = g1_vy_leg1 * masses_leg1_1_1
             + minus_g2_vy_leg1 * minus_masses_leg1_1_2;
-        let t6_leg2 = minus_g1_vy_leg2 * masses_leg2_1_1
+        let t5_leg2 = minus_g1_vy_leg2 * masses_leg2_1_1
             + g2_vy_leg2 * minus_masses_leg2_1_2;
-        let t7_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2
-            + g2_vy_leg2 * parameters[15];
-        let t6_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
+        let t6_leg2 = minus_g1_vy_leg2 * minus_masses_leg2_1_2 + g2_vy_leg2 * zz_2_leg2;
+        let t5_leg3 = minus_g1_vy_leg3 * masses_leg3_1_1
             + g2_vy_leg3 * minus_masses_leg3_1_2;
-        let t7_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2
-            + g2_vy_leg3 * parameters[25];
-        let mass_1_2 = minus_g2_vx_leg1 * t4_leg1 - minus_g1_vx_leg1 * t5_leg1
-            - (g1_vx_leg2 * t6_leg2 + minus_g2_vx_leg2 * t7_leg2)
-            - (g1_vx_leg3 * t6_leg3 + minus_g2_vx_leg3 * t7_leg3);
+        let t6_leg3 = minus_g1_vy_leg3 * minus_masses_leg3_1_2 + g2_vy_leg3 * zz_2_leg3;
+        let mass_1_2 = minus_g2_vx_leg1 * t3_leg1 - minus_g1_vx_leg1 * t4_leg1
+            - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
+            - (g1_vx_leg3 * t5_leg3 + minus_g2_vx_leg3 * t6_leg3);
         let l_2_1 = mass_1_2 / mass_1_1;
         let t2 = minus_g2_vy_leg1 * force_on_u2_leg1 - g2_vy_leg2 * force_on_u2_leg2
             - g2_vy_leg3 * force_on_u2_leg3 - g1_vy_leg1 * force_on_u1_minus_tau1_leg1
             - minus_g1_vy_leg2 * tau1_minus_force_on_u1_leg2
             - minus_g1_vy_leg3 * tau1_minus_force_on_u1_leg3;
-        let t8_leg3 = g1_vy_leg1 * t5_leg1 + minus_g2_vy_leg1 * t4_leg1
-            + minus_g1_vy_leg2 * t6_leg2 + g2_vy_leg2 * t7_leg2
-            + minus_g1_vy_leg3 * t6_leg3 + g2_vy_leg3 * t7_leg3;
-        let mass_2_2 = t8_leg3 + parameters[30];
+        let t7_leg3 = g1_vy_leg1 * t4_leg1 + minus_g2_vy_leg1 * t3_leg1
+            + minus_g1_vy_leg2 * t5_leg2 + g2_vy_leg2 * t6_leg2
+            + minus_g1_vy_leg3 * t5_leg3 + g2_vy_leg3 * t6_leg3;
+        let mass_2_2 = t7_leg3 + m_platform;
         let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-        ::overact::guard::mass(pivot_2)?;
-        ::overact::guard::size(l_2_1, 1e100)?;
+        guard::mass(pivot_2)?;
+        guard::size(l_2_1, 1e100)?;
         let t3 = (t2 - t1 * l_2_1) / pivot_2;
         let t4 = t1 / mass_1_1 - l_2_1 * t3;
-        ::overact::guard::size(t4, 1e100)?;
-        ::overact::guard::size(t3, 1e100)?;
-        ::core::result::Result::Ok([t4, t3])
+        guard::size(t4, 1e100)?;
+        guard::size(t3, 1e100)?;
+        Ok([t4, t3])
     }
     /// Acceleration under given torques: v̇ = M⁻¹ (Γ¹(τ) - bias), the mass matrix factored as L D Lᵀ.
     ///
@@ -7829,34 +7704,34 @@ impl ThreeLegPoint {
     /// 293 operations (116 additions, 169 multiplications, 8 divisions), 3 square roots, 6 signs, 13 guards, 1 negation, 295 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn forward_dynamics_base(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 3],
-        base_parameters: &[::core::primitive::f64; 22],
-    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        torques: &[f64; 3],
+        base_parameters: &[f64; 22],
+    ) -> Result<[f64; 2], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("torques", torques, 1e12),
                 ("base_parameters", base_parameters, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg3
             let t1_leg3 = pose[0] - 0.3031088913245535;
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -7865,7 +7740,7 @@ impl ThreeLegPoint {
             let d_y_leg3 = 0.5 * t1_leg3 + 0.8660254037844386 * y_plus_half_radius;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -7891,18 +7766,19 @@ impl ThreeLegPoint {
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let bias_rate_dot_1_leg3 = k_leg3
                 * (bias_a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let zz_1_leg3R = base_parameters[3];
             let minus_bias_a_on_f2_leg3 = L_1 * rate_1_squared_leg3;
-            let tau_1_leg3 = base_parameters[6] * rate_1_leg3
-                + ::overact::math::wide::signed(base_parameters[9], rate_1_leg3)
-                + base_parameters[12];
+            let my_2_leg3 = base_parameters[18];
+            let fv_1_leg3 = base_parameters[6];
+            let fs_1_leg3 = base_parameters[9];
+            let off_1_leg3 = base_parameters[12];
+            let tau_1_leg3 = fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
             let minus_qd_2_leg3 = minus_rate_2_leg3 + rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                base_parameters[21],
-                -minus_qd_2_leg3,
-            );
-            let force_on_u1_leg3 = base_parameters[3] * bias_rate_dot_1_leg3
-                + base_parameters[18] * minus_bias_a_on_f2_leg3 + tau_1_leg3
-                - tau_2_leg3;
+            let fs_2_leg3 = base_parameters[21];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, -minus_qd_2_leg3);
+            let force_on_u1_leg3 = zz_1_leg3R * bias_rate_dot_1_leg3
+                + my_2_leg3 * minus_bias_a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
             let tau1_minus_force_on_u1_leg3 = torques[2] - force_on_u1_leg3;
             // --- leg2
             let t3_leg2 = pose[0] + 0.3031088913245535;
@@ -7911,7 +7787,7 @@ impl ThreeLegPoint {
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -7937,35 +7813,37 @@ impl ThreeLegPoint {
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let bias_rate_dot_1_leg2 = k_leg2
                 * (minus_bias_a_on_f1_leg2 + rate_1_squared_leg2 * v2_by_1_y_leg2);
+            let zz_1_leg2R = base_parameters[2];
             let bias_a_on_f2_leg2 = L_1 * rate_1_squared_leg2;
-            let tau_1_leg2 = base_parameters[5] * rate_1_leg2
-                + ::overact::math::wide::signed(base_parameters[8], rate_1_leg2)
-                + base_parameters[11];
+            let my_2_leg2 = base_parameters[17];
+            let fv_1_leg2 = base_parameters[5];
+            let fs_1_leg2 = base_parameters[8];
+            let off_1_leg2 = base_parameters[11];
+            let tau_1_leg2 = fv_1_leg2 * rate_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2) + off_1_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                base_parameters[20],
-                qd_2_leg2,
-            );
-            let force_on_u1_leg2 = base_parameters[2] * bias_rate_dot_1_leg2
-                + base_parameters[17] * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
+            let fs_2_leg2 = base_parameters[20];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, qd_2_leg2);
+            let force_on_u1_leg2 = zz_1_leg2R * bias_rate_dot_1_leg2
+                + my_2_leg2 * bias_a_on_f2_leg2 + tau_1_leg2 - tau_2_leg2;
             let tau1_minus_force_on_u1_leg2 = torques[1] - force_on_u1_leg2;
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let l1_x_leg1 = 0.5 * d_x_leg1 - pose[0] * h_leg1;
@@ -7977,42 +7855,47 @@ impl ThreeLegPoint {
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                base_parameters[19],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = base_parameters[19];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let rate_2_squared_leg1 = minus_rate_2_leg1 * minus_rate_2_leg1;
             let minus_bias_a_on_f1_leg1 = L_1_SQUARED * rate_2_squared_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let t1_leg1 = 0.5 * (rho_squared_leg1 - TWICE_L_1_SQUARED);
             let bias_rate_dot_1_leg1 = k_leg1
                 * (minus_bias_a_on_f1_leg1 + rate_1_squared_leg1 * t1_leg1);
+            let zz_1_leg1R = base_parameters[1];
             let bias_a_on_f2_leg1 = L_1_SQUARED * rate_1_squared_leg1;
-            let my_2_leg1_inv_l_1 = base_parameters[16] * INV_L_1;
-            let tau_1_leg1 = base_parameters[4] * rate_1_leg1
-                + ::overact::math::wide::signed(base_parameters[7], rate_1_leg1)
-                + base_parameters[10];
+            let my_2_leg1 = base_parameters[16];
+            let my_2_inv_l_1_leg1 = my_2_leg1 * INV_L_1;
+            let fv_1_leg1 = base_parameters[4];
+            let fs_1_leg1 = base_parameters[7];
+            let off_1_leg1 = base_parameters[10];
+            let tau_1_leg1 = fv_1_leg1 * rate_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1;
             let force_on_u1_leg1 = minus_tau_2_leg1
-                + base_parameters[1] * bias_rate_dot_1_leg1
-                + bias_a_on_f2_leg1 * my_2_leg1_inv_l_1 + tau_1_leg1;
+                + zz_1_leg1R * bias_rate_dot_1_leg1
+                + bias_a_on_f2_leg1 * my_2_inv_l_1_leg1 + tau_1_leg1;
             let force_on_u1_minus_tau1_leg1 = force_on_u1_leg1 - torques[0];
+            // --- leg3
             let minus_bias_rate_dot_2_leg3 = k_leg3
                 * (minus_bias_a_on_f2_leg3 + rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let minus_moment2_z_leg3 = base_parameters[15]
-                * minus_bias_rate_dot_2_leg3
-                + bias_a_on_f1_leg3 * base_parameters[18];
+            let zz_2_leg3R = base_parameters[15];
+            let minus_moment2_z_leg3 = zz_2_leg3R * minus_bias_rate_dot_2_leg3
+                + bias_a_on_f1_leg3 * my_2_leg3;
             let force_on_u2_leg3 = tau_2_leg3 - minus_moment2_z_leg3;
+            // --- leg1
             let minus_bias_rate_dot_2_leg1 = k_leg1
                 * (bias_a_on_f2_leg1 + rate_2_squared_leg1 * t1_leg1);
-            let minus_moment2_z_leg1 = base_parameters[13]
-                * minus_bias_rate_dot_2_leg1
-                + minus_bias_a_on_f1_leg1 * my_2_leg1_inv_l_1;
+            let zz_2_leg1R = base_parameters[13];
+            let minus_moment2_z_leg1 = zz_2_leg1R * minus_bias_rate_dot_2_leg1
+                + minus_bias_a_on_f1_leg1 * my_2_inv_l_1_leg1;
             let minus_force_on_u2_leg1 = minus_moment2_z_leg1 + minus_tau_2_leg1;
+            // --- leg2
             let minus_bias_rate_dot_2_leg2 = k_leg2
                 * (bias_a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let minus_moment2_z_leg2 = base_parameters[14]
-                * minus_bias_rate_dot_2_leg2
-                + minus_bias_a_on_f1_leg2 * base_parameters[17];
+            let zz_2_leg2R = base_parameters[14];
+            let minus_moment2_z_leg2 = zz_2_leg2R * minus_bias_rate_dot_2_leg2
+                + minus_bias_a_on_f1_leg2 * my_2_leg2;
             let force_on_u2_leg2 = tau_2_leg2 - minus_moment2_z_leg2;
             let t1 = g1_vx_leg3 * tau1_minus_force_on_u1_leg3
                 + g1_vx_leg2 * tau1_minus_force_on_u1_leg2
@@ -8021,39 +7904,31 @@ impl ThreeLegPoint {
                 + minus_g2_vx_leg2 * force_on_u2_leg2
                 - minus_g2_vx_leg1 * minus_force_on_u2_leg1;
             let t4_leg2 = minus_g2_vx_leg1
-                * (minus_g2_vx_leg1 * base_parameters[13]
-                    - l2_y_leg1 * my_2_leg1_inv_l_1)
+                * (minus_g2_vx_leg1 * zz_2_leg1R - l2_y_leg1 * my_2_inv_l_1_leg1)
                 - minus_g1_vx_leg1
-                    * (minus_l1_y_leg1 * my_2_leg1_inv_l_1
-                        - minus_g1_vx_leg1 * base_parameters[1])
-                + g1_vx_leg2
-                    * (g1_vx_leg2 * base_parameters[2]
-                        + fk2_x_leg2 * base_parameters[17])
+                    * (minus_l1_y_leg1 * my_2_inv_l_1_leg1
+                        - minus_g1_vx_leg1 * zz_1_leg1R)
+                + g1_vx_leg2 * (g1_vx_leg2 * zz_1_leg2R + fk2_x_leg2 * my_2_leg2)
                 + minus_g2_vx_leg2
-                    * (minus_fk1_x_leg2 * base_parameters[17]
-                        + minus_g2_vx_leg2 * base_parameters[14]);
+                    * (minus_fk1_x_leg2 * my_2_leg2 + minus_g2_vx_leg2 * zz_2_leg2R);
             let t2_leg3 = t4_leg2
                 + g1_vx_leg3
-                    * (g1_vx_leg3 * base_parameters[3]
-                        + minus_fk2_x_leg3 * base_parameters[18])
+                    * (g1_vx_leg3 * zz_1_leg3R + minus_fk2_x_leg3 * my_2_leg3)
                 + minus_g2_vx_leg3
-                    * (fk1_x_leg3 * base_parameters[18]
-                        + minus_g2_vx_leg3 * base_parameters[15]);
-            let mass_1_1 = t2_leg3 + base_parameters[0];
-            ::overact::guard::mass(mass_1_1)?;
+                    * (fk1_x_leg3 * my_2_leg3 + minus_g2_vx_leg3 * zz_2_leg3R);
+            let m_platformR = base_parameters[0];
+            let mass_1_1 = t2_leg3 + m_platformR;
+            guard::mass(mass_1_1)?;
             let inv_pivot_1 = 1.0 / mass_1_1;
-            let t2_leg1 = l2_x_leg1 * my_2_leg1_inv_l_1
-                + minus_g2_vy_leg1 * base_parameters[13];
-            let t3_leg1 = g1_vy_leg1 * base_parameters[1]
-                + l1_x_leg1 * my_2_leg1_inv_l_1;
-            let t5_leg2 = minus_fk2_y_leg2 * base_parameters[17]
-                - g1_vy_leg2 * base_parameters[2];
-            let t6_leg2 = g2_vy_leg2 * base_parameters[14]
-                - minus_fk1_y_leg2 * base_parameters[17];
-            let t3_leg3 = minus_g1_vy_leg3 * base_parameters[3]
-                - minus_fk2_y_leg3 * base_parameters[18];
-            let t4_leg3 = minus_fk1_y_leg3 * base_parameters[18]
-                - minus_g2_vy_leg3 * base_parameters[15];
+            let t2_leg1 = l2_x_leg1 * my_2_inv_l_1_leg1
+                + minus_g2_vy_leg1 * zz_2_leg1R;
+            let t3_leg1 = g1_vy_leg1 * zz_1_leg1R + l1_x_leg1 * my_2_inv_l_1_leg1;
+            let t5_leg2 = minus_fk2_y_leg2 * my_2_leg2 - g1_vy_leg2 * zz_1_leg2R;
+            let t6_leg2 = g2_vy_leg2 * zz_2_leg2R - minus_fk1_y_leg2 * my_2_leg2;
+            let t3_leg3 = minus_g1_vy_leg3 * zz_1_leg3R
+                - minus_fk2_y_leg3 * my_2_leg3;
+            let t4_leg3 = minus_fk1_y_leg3 * my_2_leg3
+                - minus_g2_vy_leg3 * zz_2_leg3R;
             let mass_1_2 = minus_g2_vx_leg1 * t2_leg1 - minus_g1_vx_leg1 * t3_leg1
                 - (g1_vx_leg2 * t5_leg2 + minus_g2_vx_leg2 * t6_leg2)
                 - (g1_vx_leg3 * t3_leg3 + minus_g2_vx_leg3 * t4_leg3);
@@ -8067,13 +7942,13 @@ impl ThreeLegPoint {
             let t5_leg3 = g1_vy_leg1 * t3_leg1 + minus_g2_vy_leg1 * t2_leg1
                 + g2_vy_leg2 * t6_leg2 - g1_vy_leg2 * t5_leg2
                 + minus_g1_vy_leg3 * t3_leg3 - minus_g2_vy_leg3 * t4_leg3;
-            let mass_2_2 = t5_leg3 + base_parameters[0];
+            let mass_2_2 = t5_leg3 + m_platformR;
             let pivot_2 = mass_2_2 - mass_1_2 * l_2_1;
-            ::overact::guard::mass(pivot_2)?;
-            ::overact::guard::size(inv_pivot_1, 1e100)?;
+            guard::mass(pivot_2)?;
+            guard::size(inv_pivot_1, 1e100)?;
             let t3 = (t2 - t1 * l_2_1) / pivot_2;
-            ::overact::guard::size(t3, 1e100)?;
-            ::core::result::Result::Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
+            guard::size(t3, 1e100)?;
+            Ok([t1 * inv_pivot_1 - l_2_1 * t3, t3])
         })
     }
     /// Actuator torques of least norm plus N `preload`, where N is the basis from `null_space`.
@@ -8090,37 +7965,37 @@ impl ThreeLegPoint {
     /// 317 operations (124 additions, 185 multiplications, 8 divisions), 4 square roots, 6 signs, 11 guards, 2 negations, 318 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics_preloaded(
-        pose: &[::core::primitive::f64; 2],
-        twist: &[::core::primitive::f64; 2],
-        acceleration: &[::core::primitive::f64; 2],
-        parameters: &[::core::primitive::f64; 31],
-        preload: &[::core::primitive::f64; 1],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 2],
+        twist: &[f64; 2],
+        acceleration: &[f64; 2],
+        parameters: &[f64; 31],
+        preload: &[f64; 1],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
                 ("parameters", parameters, 1e12), ("preload", preload, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// radius / 2
-            const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+            const HALF_RADIUS: f64 = 0.175;
             /// 1 / l_1
-            const INV_L_1: ::core::primitive::f64 = 4.166666666666667;
+            const INV_L_1: f64 = 4.166666666666667;
             /// 1 / l_1²
-            const INV_L_1_SQUARED: ::core::primitive::f64 = 17.36111111111111;
+            const INV_L_1_SQUARED: f64 = 17.36111111111111;
             /// 1 / (2 l_1)
-            const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+            const INV_TWICE_L_1: f64 = 2.0833333333333335;
             /// l_1 = l_2
-            const L_1: ::core::primitive::f64 = 0.24;
+            const L_1: f64 = 0.24;
             /// l_1²
-            const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+            const L_1_SQUARED: f64 = 0.0576;
             /// radius
-            const RADIUS: ::core::primitive::f64 = 0.35;
+            const RADIUS: f64 = 0.35;
             /// 2 l_1²
-            const TWICE_L_1_SQUARED: ::core::primitive::f64 = 0.1152;
+            const TWICE_L_1_SQUARED: f64 = 0.1152;
             // --- leg2
             let y_plus_half_radius = pose[1] + HALF_RADIUS;
             let t1_leg2 = 0.5 * y_plus_half_radius;
@@ -8132,7 +8007,7 @@ impl ThreeLegPoint {
             let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2
                 + d_y_leg2 * d_y_leg2;
             let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = d_y_leg2 * h_leg2 - 0.5 * minus_d_x_leg2;
             let minus_l2_x_leg2 = minus_d_x_leg2 + l1_x_leg2;
             let l1_y_leg2 = 0.5 * d_y_leg2 + minus_d_x_leg2 * h_leg2;
@@ -8146,7 +8021,7 @@ impl ThreeLegPoint {
             let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
             let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let l1_y_leg3 = 0.5 * d_y_leg3 - d_x_leg3 * h_leg3;
@@ -8159,20 +8034,20 @@ impl ThreeLegPoint {
             // --- leg1
             let d_x_leg1 = pose[1] - RADIUS;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-            ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
             let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let minus_l1_y_leg1 = 0.5 * pose[0] + d_x_leg1 * h_leg1;
             let l2_y_leg1 = minus_l1_y_leg1 - pose[0];
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
-            ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
-            ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-            ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
-            ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
-            ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-            ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+            guard::leg(det_leg1, 0.05748, "leg1")?;
+            guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+            guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+            guard::leg(det_leg2, 0.05748, "leg2")?;
+            guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+            guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+            guard::leg(det_leg3, 0.05748, "leg3")?;
             let k_leg1 = 1.0 / det_leg1;
             let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
             let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2
@@ -8183,11 +8058,7 @@ impl ThreeLegPoint {
             let g1_vy_leg1 = l2_x_leg1 * k_leg1;
             let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2
                 - g1_vy_leg1 * g1_vx_leg2;
-            ::overact::guard::platform(
-                det_ja,
-                15.1,
-                ::overact::ActuatorGroup::Kept,
-            )?;
+            guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
             let inv_det_ja = 1.0 / det_ja;
             let t1 = minus_g1_vy_leg3 * inv_det_ja;
             let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3
@@ -8196,14 +8067,10 @@ impl ThreeLegPoint {
             let t2 = g1_vx_leg3 * inv_det_ja;
             let share_1_3 = g1_vx_leg2 * t1 - minus_g1_vy_leg2 * t2;
             let share_2_3 = minus_g1_vx_leg1 * t1 - g1_vy_leg1 * t2;
-            let norm_3 = ::overact::math::wide::sqrt(
+            let norm_3 = math::wide::sqrt(
                 1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3,
             );
-            ::overact::guard::platform(
-                norm_3,
-                1.732,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(norm_3, 1.732, ActuatorGroup::All)?;
             let inv_norm_3 = 1.0 / norm_3;
             let share_1_3_inv_norm_3 = share_1_3 * inv_norm_3;
             // --- leg2
@@ -8215,35 +8082,40 @@ impl ThreeLegPoint {
             let rate_1_squared_leg2 = rate_1_leg2 * rate_1_leg2;
             let a_on_f2_leg2 = fk2_x_leg2 * acceleration[0]
                 - minus_fk2_y_leg2 * acceleration[1] + L_1 * rate_1_squared_leg2;
-            let minus_atip_x_leg2 = fk1_y_leg2 * acceleration[1]
+            let my_2_leg2 = parameters[17];
+            let minus_a_tip_x_leg2 = fk1_y_leg2 * acceleration[1]
                 - minus_fk1_x_leg2 * acceleration[0];
             let g2_vy_leg2 = minus_fk2_y_leg2 * k_leg2;
             let minus_g2_vx_leg2 = fk2_x_leg2 * k_leg2;
             let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
             let rate_2_squared_leg2 = rate_2_leg2 * rate_2_leg2;
-            let a_on_f1_leg2 = minus_atip_x_leg2 - L_1 * rate_2_squared_leg2;
+            let a_on_f1_leg2 = minus_a_tip_x_leg2 - L_1 * rate_2_squared_leg2;
             let v2_by_1_y_leg2 = INV_TWICE_L_1
                 * (rho_squared_leg2 - TWICE_L_1_SQUARED);
             let minus_rate_dot_1_leg2 = k_leg2
                 * (a_on_f1_leg2 - rate_1_squared_leg2 * v2_by_1_y_leg2);
-            let tau_1_leg2 = parameters[12] * rate_1_leg2
-                - parameters[11] * minus_rate_dot_1_leg2
-                + ::overact::math::wide::signed(parameters[13], rate_1_leg2)
-                + parameters[14];
+            let mx_2_leg2 = parameters[16];
+            let m_2_leg2 = parameters[18];
+            let zz_1_leg2 = parameters[10];
+            let fv_1_leg2 = parameters[12];
+            let ia_1_leg2 = parameters[11];
+            let fs_1_leg2 = parameters[13];
+            let off_1_leg2 = parameters[14];
+            let tau_1_leg2 = fv_1_leg2 * rate_1_leg2
+                - ia_1_leg2 * minus_rate_dot_1_leg2
+                + math::wide::signed(fs_1_leg2, rate_1_leg2) + off_1_leg2;
             let qd_2_leg2 = rate_2_leg2 - rate_1_leg2;
-            let tau_2_leg2 = ::overact::math::wide::signed(
-                parameters[19],
-                qd_2_leg2,
-            );
-            let force_on_u1_leg2 = parameters[17] * a_on_f2_leg2
+            let fs_2_leg2 = parameters[19];
+            let tau_2_leg2 = math::wide::signed(fs_2_leg2, qd_2_leg2);
+            let force_on_u1_leg2 = my_2_leg2 * a_on_f2_leg2
                 - minus_rate_dot_1_leg2
-                    * (parameters[10]
-                        + L_1_SQUARED * (parameters[18] - INV_L_1 * parameters[16]))
+                    * (zz_1_leg2 + L_1_SQUARED * (m_2_leg2 - INV_L_1 * mx_2_leg2))
                 + tau_1_leg2 - tau_2_leg2;
             let minus_rate_dot_2_leg2 = k_leg2
                 * (a_on_f2_leg2 + rate_2_squared_leg2 * v2_by_1_y_leg2);
-            let moment2_z_leg2 = parameters[17] * a_on_f1_leg2
-                - minus_rate_dot_2_leg2 * (parameters[15] - L_1 * parameters[16]);
+            let zz_2_leg2 = parameters[15];
+            let moment2_z_leg2 = my_2_leg2 * a_on_f1_leg2
+                - minus_rate_dot_2_leg2 * (zz_2_leg2 - L_1 * mx_2_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2;
             // --- leg1
             let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
@@ -8252,10 +8124,8 @@ impl ThreeLegPoint {
             let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
                 + minus_g2_vy_leg1 * twist[1];
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
-            let minus_tau_2_leg1 = ::overact::math::wide::signed(
-                parameters[9],
-                minus_qd_2_leg1,
-            );
+            let fs_2_leg1 = parameters[9];
+            let minus_tau_2_leg1 = math::wide::signed(fs_2_leg1, minus_qd_2_leg1);
             let s2_leg1 = INV_L_1_SQUARED * det_leg1;
             let rate_1_squared_leg1 = rate_1_leg1 * rate_1_leg1;
             let a_on_f2_leg1 = minus_l1_y_leg1 * acceleration[0]
@@ -8265,29 +8135,36 @@ impl ThreeLegPoint {
             let t2_leg1 = 0.5 * t1_leg1;
             let minus_rate_dot_2_leg1 = k_leg1
                 * (a_on_f2_leg1 + rate_2_squared_leg1 * t2_leg1);
-            let force2_x_leg1 = parameters[7] * minus_rate_dot_2_leg1;
+            let my_2_leg1 = parameters[7];
+            let force2_x_leg1 = my_2_leg1 * minus_rate_dot_2_leg1;
             let c2_leg1 = 8.680555555555555 * t1_leg1;
-            let minus_force2_y_leg1 = parameters[7] * rate_2_squared_leg1;
+            let minus_force2_y_leg1 = my_2_leg1 * rate_2_squared_leg1;
             let a_on_f1_leg1 = l2_y_leg1 * acceleration[0]
                 - l2_x_leg1 * acceleration[1] - L_1_SQUARED * rate_2_squared_leg1;
             let minus_rate_dot_1_leg1 = k_leg1
                 * (a_on_f1_leg1 - rate_1_squared_leg1 * t2_leg1);
+            let mx_2_leg1 = parameters[6];
+            let m_2_leg1 = parameters[8];
+            let zz_1_leg1 = parameters[0];
             let t3_leg1 = L_1
                 * (s2_leg1 * force2_x_leg1 - c2_leg1 * minus_force2_y_leg1)
                 - minus_rate_dot_1_leg1
-                    * (parameters[0]
-                        + L_1_SQUARED * (parameters[8] - INV_L_1 * parameters[6]));
-            let tau_1_leg1 = parameters[2] * rate_1_leg1
-                - parameters[1] * minus_rate_dot_1_leg1
-                + ::overact::math::wide::signed(parameters[3], rate_1_leg1)
-                + parameters[4];
+                    * (zz_1_leg1 + L_1_SQUARED * (m_2_leg1 - INV_L_1 * mx_2_leg1));
+            let fv_1_leg1 = parameters[2];
+            let ia_1_leg1 = parameters[1];
+            let fs_1_leg1 = parameters[3];
+            let off_1_leg1 = parameters[4];
+            let tau_1_leg1 = fv_1_leg1 * rate_1_leg1
+                - ia_1_leg1 * minus_rate_dot_1_leg1
+                + math::wide::signed(fs_1_leg1, rate_1_leg1) + off_1_leg1;
             let force_on_u1_leg1 = minus_tau_2_leg1 + t3_leg1 + tau_1_leg1;
             let minus_a2_x_leg1 = INV_L_1 * a_on_f1_leg1;
-            let moment2_z_leg1 = parameters[7] * minus_a2_x_leg1
-                - minus_rate_dot_2_leg1 * (parameters[5] - L_1 * parameters[6]);
+            let zz_2_leg1 = parameters[5];
+            let moment2_z_leg1 = my_2_leg1 * minus_a2_x_leg1
+                - minus_rate_dot_2_leg1 * (zz_2_leg1 - L_1 * mx_2_leg1);
             let force_on_u2_leg1 = moment2_z_leg1 - minus_tau_2_leg1;
             // --- leg3
-            let atip_x_leg3 = fk1_x_leg3 * acceleration[0]
+            let a_tip_x_leg3 = fk1_x_leg3 * acceleration[0]
                 - minus_fk1_y_leg3 * acceleration[1];
             let fk2_y_leg3 = INV_TWICE_L_1 * l1_x_leg3
                 - 3.608439182435161 * l1_y_leg3;
@@ -8297,33 +8174,36 @@ impl ThreeLegPoint {
             let minus_g2_vx_leg3 = minus_fk2_x_leg3 * k_leg3;
             let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
             let rate_2_squared_leg3 = rate_2_leg3 * rate_2_leg3;
-            let a_on_f1_leg3 = atip_x_leg3 + L_1 * rate_2_squared_leg3;
+            let a_on_f1_leg3 = a_tip_x_leg3 + L_1 * rate_2_squared_leg3;
             let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
             let rate_1_squared_leg3 = rate_1_leg3 * rate_1_leg3;
             let v2_by_1_y_leg3 = INV_TWICE_L_1
                 * (rho_squared_leg3 - TWICE_L_1_SQUARED);
             let rate_dot_1_leg3 = k_leg3
                 * (a_on_f1_leg3 + rate_1_squared_leg3 * v2_by_1_y_leg3);
+            let mx_2_leg3 = parameters[26];
+            let m_2_leg3 = parameters[28];
+            let zz_1_leg3 = parameters[20];
             let a_on_f2_leg3 = fk2_y_leg3 * acceleration[1]
                 - minus_fk2_x_leg3 * acceleration[0] - L_1 * rate_1_squared_leg3;
-            let tau_1_leg3 = parameters[21] * rate_dot_1_leg3
-                + parameters[22] * rate_1_leg3
-                + ::overact::math::wide::signed(parameters[23], rate_1_leg3)
-                + parameters[24];
+            let my_2_leg3 = parameters[27];
+            let ia_1_leg3 = parameters[21];
+            let fv_1_leg3 = parameters[22];
+            let fs_1_leg3 = parameters[23];
+            let off_1_leg3 = parameters[24];
+            let tau_1_leg3 = ia_1_leg3 * rate_dot_1_leg3 + fv_1_leg3 * rate_1_leg3
+                + math::wide::signed(fs_1_leg3, rate_1_leg3) + off_1_leg3;
             let qd_2_leg3 = rate_2_leg3 - rate_1_leg3;
-            let tau_2_leg3 = ::overact::math::wide::signed(
-                parameters[29],
-                qd_2_leg3,
-            );
+            let fs_2_leg3 = parameters[29];
+            let tau_2_leg3 = math::wide::signed(fs_2_leg3, qd_2_leg3);
             let force_on_u1_leg3 = rate_dot_1_leg3
-                * (parameters[20]
-                    + L_1_SQUARED * (parameters[28] - INV_L_1 * parameters[26]))
-                - parameters[27] * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
+                * (zz_1_leg3 + L_1_SQUARED * (m_2_leg3 - INV_L_1 * mx_2_leg3))
+                - my_2_leg3 * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
             let rate_dot_2_leg3 = k_leg3
                 * (a_on_f2_leg3 - rate_2_squared_leg3 * v2_by_1_y_leg3);
-            let moment2_z_leg3 = rate_dot_2_leg3
-                * (parameters[25] - L_1 * parameters[26])
-                - parameters[27] * a_on_f1_leg3;
+            let zz_2_leg3 = parameters[25];
+            let moment2_z_leg3 = rate_dot_2_leg3 * (zz_2_leg3 - L_1 * mx_2_leg3)
+                - my_2_leg3 * a_on_f1_leg3;
             let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3;
             let t2_leg3 = g1_vx_leg2 * force_on_u1_leg2
                 - minus_g2_vx_leg2 * force_on_u2_leg2
@@ -8331,8 +8211,10 @@ impl ThreeLegPoint {
                     + minus_g2_vx_leg1 * force_on_u2_leg1)
                 + g1_vx_leg3 * force_on_u1_leg3
                 - minus_g2_vx_leg3 * force_on_u2_leg3;
-            let t1_platform = parameters[30]
-                + INV_L_1 * (parameters[6] + parameters[16] + parameters[26]);
+            // --- platform
+            let m_platform = parameters[30];
+            let t1_platform = m_platform
+                + INV_L_1 * (mx_2_leg1 + mx_2_leg2 + mx_2_leg3);
             let force_x_platform = acceleration[0] * t1_platform;
             let t2_platform = t2_leg3 + force_x_platform;
             let minus_vx_by_a1 = minus_g1_vy_leg2 * inv_det_ja;
@@ -8350,7 +8232,7 @@ impl ThreeLegPoint {
             let t4 = t2_platform * minus_vx_by_a2 + t3_platform * minus_vy_by_a2;
             let t5 = preload[0]
                 - (share_1_3_inv_norm_3 * t3 + share_2_3_inv_norm_3 * t4);
-            ::core::result::Result::Ok([
+            Ok([
                 -(share_1_3_inv_norm_3 * t5 + t3), -(share_2_3_inv_norm_3 * t5 + t4),
                 inv_norm_3 * t5,
             ])
@@ -8367,32 +8249,32 @@ impl ThreeLegPoint {
     /// 114 operations (40 additions, 66 multiplications, 8 divisions), 3 square roots, 11 guards, 114 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_torques(
-        pose: &[::core::primitive::f64; 2],
-        torques: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        pose: &[f64; 2],
+        torques: &[f64; 3],
+    ) -> Result<[f64; 3], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
         let k_leg1 = 1.0 / det_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let t1_leg3 = pose[0] - 0.3031088913245535;
@@ -8404,29 +8286,29 @@ impl ThreeLegPoint {
         let minus_d_x_leg2 = 0.8660254037844386 * (pose[0] + 0.3031088913245535)
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
         let det_leg2 = rho_squared_leg2 * h_leg2;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
         let k_leg2 = L_1 / det_leg2;
         let minus_g1_vy_leg2 = fk1_y_leg2 * k_leg2;
         // --- leg3
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
         let det_leg3 = rho_squared_leg3 * h_leg3;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg3 = L_1 / det_leg3;
         let minus_g1_vy_leg3 = minus_fk1_y_leg3 * k_leg3;
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
@@ -8440,7 +8322,7 @@ impl ThreeLegPoint {
             + g1_vx_leg3 * minus_g1_vy_leg3;
         let s_1_1 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(s_1_1, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(s_1_1, 26.15, ActuatorGroup::All)?;
         let inv_pivot_1 = 1.0 / s_1_1;
         let minus_l_2_1 = minus_s_1_2 * inv_pivot_1;
         let t1 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
@@ -8448,11 +8330,11 @@ impl ThreeLegPoint {
         let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3;
         let pivot_2 = s_2_2 - minus_s_1_2 * minus_l_2_1;
-        ::overact::guard::platform(pivot_2, 26.15, ::overact::ActuatorGroup::All)?;
+        guard::platform(pivot_2, 26.15, ActuatorGroup::All)?;
         let t2 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             - minus_g1_vy_leg3 * torques[2] + minus_l_2_1 * t1) / pivot_2;
         let t3 = inv_pivot_1 * t1 + minus_l_2_1 * t2;
-        ::core::result::Result::Ok([
+        Ok([
             g1_vy_leg1 * t2 - minus_g1_vx_leg1 * t3, g1_vx_leg2 * t3 - minus_g1_vy_leg2 * t2,
             g1_vx_leg3 * t3 - minus_g1_vy_leg3 * t2,
         ])
@@ -8467,21 +8349,19 @@ impl ThreeLegPoint {
     /// 89 operations (29 additions, 52 multiplications, 8 divisions), 4 square roots, 11 guards, 2 negations, 90 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn null_space(
-        pose: &[::core::primitive::f64; 2],
-    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn null_space(pose: &[f64; 2]) -> Result<[[f64; 1]; 3], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// radius / 2
-        const HALF_RADIUS: ::core::primitive::f64 = 0.175;
+        const HALF_RADIUS: f64 = 0.175;
         /// 1 / (2 l_1)
-        const INV_TWICE_L_1: ::core::primitive::f64 = 2.0833333333333335;
+        const INV_TWICE_L_1: f64 = 2.0833333333333335;
         /// l_1 = l_2
-        const L_1: ::core::primitive::f64 = 0.24;
+        const L_1: f64 = 0.24;
         /// l_1²
-        const L_1_SQUARED: ::core::primitive::f64 = 0.0576;
+        const L_1_SQUARED: f64 = 0.0576;
         /// radius
-        const RADIUS: ::core::primitive::f64 = 0.35;
+        const RADIUS: f64 = 0.35;
         // --- leg3
         let t1_leg3 = pose[0] - 0.3031088913245535;
         let y_plus_half_radius = pose[1] + HALF_RADIUS;
@@ -8493,7 +8373,7 @@ impl ThreeLegPoint {
             + t1_leg2;
         let rho_squared_leg2 = minus_d_x_leg2 * minus_d_x_leg2 + d_y_leg2 * d_y_leg2;
         let h_squared_leg2 = L_1_SQUARED / rho_squared_leg2 - 0.25;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let minus_l2_x_leg2 = d_y_leg2 * h_leg2 + 0.5 * minus_d_x_leg2;
         let l2_y_leg2 = 0.5 * d_y_leg2 - minus_d_x_leg2 * h_leg2;
         let minus_fk1_x_leg2 = 3.608439182435161 * minus_l2_x_leg2
@@ -8505,7 +8385,7 @@ impl ThreeLegPoint {
         let d_x_leg3 = 0.8660254037844386 * t1_leg3 - t1_leg2;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_leg3 * d_y_leg3;
         let h_squared_leg3 = L_1_SQUARED / rho_squared_leg3 - 0.25;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
         let l2_y_leg3 = 0.5 * d_y_leg3 + d_x_leg3 * h_leg3;
         let minus_fk1_y_leg3 = INV_TWICE_L_1 * l2_x_leg3 - 3.608439182435161 * l2_y_leg3;
@@ -8515,19 +8395,19 @@ impl ThreeLegPoint {
         // --- leg1
         let d_x_leg1 = pose[1] - RADIUS;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + pose[0] * pose[0];
-        ::overact::guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1225, "leg1")?;
         let h_squared_leg1 = L_1_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2202, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2202, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l2_y_leg1 = d_x_leg1 * h_leg1 - 0.5 * pose[0];
         let det_leg1 = rho_squared_leg1 * h_leg1;
-        ::overact::guard::leg(det_leg1, 0.05748, "leg1")?;
-        ::overact::guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
-        ::overact::guard::reach(h_squared_leg2, 0.2202, "leg2")?;
-        ::overact::guard::leg(det_leg2, 0.05748, "leg2")?;
-        ::overact::guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
-        ::overact::guard::reach(h_squared_leg3, 0.2202, "leg3")?;
-        ::overact::guard::leg(det_leg3, 0.05748, "leg3")?;
+        guard::leg(det_leg1, 0.05748, "leg1")?;
+        guard::leg(rho_squared_leg2, 0.1225, "leg2")?;
+        guard::reach(h_squared_leg2, 0.2202, "leg2")?;
+        guard::leg(det_leg2, 0.05748, "leg2")?;
+        guard::leg(rho_squared_leg3, 0.1225, "leg3")?;
+        guard::reach(h_squared_leg3, 0.2202, "leg3")?;
+        guard::leg(det_leg3, 0.05748, "leg3")?;
         let k_leg1 = 1.0 / det_leg1;
         let minus_g1_vx_leg1 = l2_y_leg1 * k_leg1;
         let fk1_y_leg2 = 3.608439182435161 * l2_y_leg2 - INV_TWICE_L_1 * minus_l2_x_leg2;
@@ -8535,7 +8415,7 @@ impl ThreeLegPoint {
         let l2_x_leg1 = 0.5 * d_x_leg1 + pose[0] * h_leg1;
         let g1_vy_leg1 = l2_x_leg1 * k_leg1;
         let det_ja = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(det_ja, 15.1, ::overact::ActuatorGroup::Kept)?;
+        guard::platform(det_ja, 15.1, ActuatorGroup::Kept)?;
         let inv_det_ja = 1.0 / det_ja;
         let t1 = minus_g1_vy_leg3 * inv_det_ja;
         let fk1_x_leg3 = 3.608439182435161 * l2_x_leg3 + INV_TWICE_L_1 * l2_y_leg3;
@@ -8543,41 +8423,32 @@ impl ThreeLegPoint {
         let t2 = g1_vx_leg3 * inv_det_ja;
         let share_1_3 = g1_vx_leg2 * t1 - minus_g1_vy_leg2 * t2;
         let share_2_3 = minus_g1_vx_leg1 * t1 - g1_vy_leg1 * t2;
-        let norm_3 = ::overact::math::sqrt(
-            1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3,
-        );
-        ::overact::guard::platform(norm_3, 1.732, ::overact::ActuatorGroup::All)?;
+        let norm_3 = math::sqrt(1.0 + share_1_3 * share_1_3 + share_2_3 * share_2_3);
+        guard::platform(norm_3, 1.732, ActuatorGroup::All)?;
         let inv_norm_3 = 1.0 / norm_3;
-        ::core::result::Result::Ok([
-            [-(share_1_3 * inv_norm_3)], [-(share_2_3 * inv_norm_3)], [inv_norm_3],
-        ])
+        Ok([[-(share_1_3 * inv_norm_3)], [-(share_2_3 * inv_norm_3)], [inv_norm_3]])
     }
     /// Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`. The iteration starts from `pose_in_closed_form` if that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps. If that fails, the result is in the assembly mode of the home configuration.
     ///
     /// # Errors
-    /// An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
+    /// An input is infinite, NaN or too large, the iteration does not converge, or a configuration on the way is singular or out of reach.
     pub fn pose_from_actuators(
-        actuators: &[::core::primitive::f64; Self::ACTUATORS],
-        start: &[::core::primitive::f64; Self::POSE],
-    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
-        ::overact::guard::within(
-            &[("actuators", actuators, 1e12), ("start", start, 1e6)],
-        )?;
+        actuators: &[f64; Self::ACTUATORS],
+        start: &[f64; Self::POSE],
+    ) -> Result<[f64; Self::POSE], Error> {
+        guard::within(&[("actuators", actuators, 1e12), ("start", start, 1e6)])?;
         let closed = Self::pose_in_closed_form(actuators).ok();
         ::overact::forward::from_closed_form(
             closed,
             *start,
-            |mut pose: [::core::primitive::f64; Self::POSE]| {
+            |mut pose: [f64; Self::POSE]| {
                 let mut stepped = pose;
-                let find = |
-                    pose: &[::core::primitive::f64],
-                    step: &mut [::core::primitive::f64]|
-                {
+                let find = |pose: &[f64], step: &mut [f64]| {
                     ::overact::block::write(
                         &Self::pose_step(::overact::block::array(pose)?, actuators)?,
                         step,
                     );
-                    ::core::result::Result::Ok(())
+                    Ok(())
                 };
                 if ::overact::forward::steps(
                     &mut stepped,
@@ -8585,7 +8456,7 @@ impl ThreeLegPoint {
                     find,
                     ::overact::forward::displace,
                 ) {
-                    return ::core::result::Result::Ok(stepped);
+                    return Ok(stepped);
                 }
                 ::overact::forward::gauss_newton(
                         ::overact::forward::Measured {
@@ -8609,7 +8480,7 @@ impl ThreeLegPoint {
                                 &Self::inverse_jacobian(pose)?,
                                 jacobian,
                             );
-                            ::core::result::Result::Ok(())
+                            Ok(())
                         },
                         ::overact::forward::displace,
                     )
@@ -8649,9 +8520,9 @@ impl ::overact::Model for ThreeLegPoint {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[::core::primitive::f64]],
-        output: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::SampleError> {
+        inputs: &[&[f64]],
+        output: &mut [f64],
+    ) -> Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::PoseInClosedForm => {
                 ::overact::block::Block::new(function, &Self::SIZES, inputs, output)?
@@ -8844,9 +8715,9 @@ impl ::overact::Model for ThreeLegPoint {
                     .each(|row| Self::null_space(row.row(0)?))
             }
             other => {
-                ::core::result::Result::Err(::overact::SampleError {
+                Err(::overact::SampleError {
                     sample: 0,
-                    error: ::overact::Error::NotOffered {
+                    error: Error::NotOffered {
                         function: other.name(),
                     },
                 })
@@ -8855,14 +8726,15 @@ impl ::overact::Model for ThreeLegPoint {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[::core::primitive::f64],
-        pose: &mut [::core::primitive::f64],
-    ) -> ::core::result::Result<(), ::overact::Error> {
+        actuators: &[f64],
+        pose: &mut [f64],
+    ) -> Result<(), Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        ::core::result::Result::Ok(())
+        Ok(())
     }
 }
+};

@@ -143,15 +143,11 @@ fn expansion(arguments: &Arguments, robot: &ItemStruct, source: &Source) -> syn:
             format!("{count} {noun} in the robot's description\n\n{list}"),
         )
     })?;
-    let rust::Robot {
-        documentation,
-        items,
-        ..
-    } = rust::robot(&compiled.model, &robot.ident);
+    let rust = rust::robot(&compiled.model, &robot.ident);
     let expansion = Expansion {
         summary: rust::summary(&compiled.model),
-        documentation,
-        items: items.to_string(),
+        items: rust.items().to_string(),
+        documentation: rust.documentation,
     };
     if let Some(folder) = folder {
         expansions::keep(&folder, &key, &expansion);

@@ -85,7 +85,7 @@ impl Accelerations {
     /// `what1_leg2` for every independent joint of a leg.
     pub(super) fn labels(self, leg: &Leg, what: &str) -> Vec<String> {
         let name = |joint: usize| {
-            let what = format!("{}{}", self.name(what), leg.joints[joint].name);
+            let what = format!("{}{}", self.name(what), leg.joints[joint].suffix());
             joined(&[&what, &leg.name])
         };
         leg.independent().map(name).collect()

@@ -83,6 +83,16 @@ impl Joint {
     pub fn is_independent(&self, index: usize) -> bool {
         self.variable.len() == 1 && self.variable[0].0 == index
     }
+
+    /// The joint at the end of the name of a quantity: `2` in `force2`, `_elbow` in `force_elbow`.
+    #[must_use]
+    pub(crate) fn suffix(&self) -> String {
+        if self.name.starts_with(|c: char| c.is_ascii_digit()) {
+            self.name.clone()
+        } else {
+            format!("_{}", self.name)
+        }
+    }
 }
 
 /// A leg.

@@ -52,6 +52,7 @@
 /// Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;
 /// `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.
 /// `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.
+/// Parameters have the names in `PARAMETERS` and `BASE_PARAMETERS`; those of any leg end in `_leg`.
 #[derive(
     ::core::fmt::Debug,
     ::core::clone::Clone,
@@ -64,62 +65,57 @@ pub struct DualV;
 #[allow(
     clippy::all,
     clippy::pedantic,
+    non_local_definitions,
     nonstandard_style,
     unused,
     unused_qualifications,
     reason = "straight-line code with the names of the derivation, in any scope"
 )]
+const _: () = {
+use ::core::primitive::{bool, f64, str, usize};
+use ::core::result::Result::Ok;
+use ::core::result::Result;
+use ::overact::{ActuatorGroup, Error, guard, math, with_avx2};
 impl DualV {
     /// The robot's name.
-    pub const NAME: &'static ::core::primitive::str = "DualV";
+    pub const NAME: &'static str = "DualV";
     /// Numbers in a pose.
-    pub const POSE: ::core::primitive::usize = 3;
+    pub const POSE: usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: ::core::primitive::usize = 3;
+    pub const DOF: usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: ::core::primitive::usize = 4;
+    pub const ACTUATORS: usize = 4;
     /// n_t, joints of all legs.
-    pub const JOINTS: ::core::primitive::usize = 12;
+    pub const JOINTS: usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static ::core::primitive::str; 4] = [
-        "leg1", "leg2", "leg3", "leg4",
-    ];
+    pub const LEGS: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 4] = [
-        "leg1", "leg2", "leg3", "leg4",
-    ];
+    pub const ACTUATOR_NAMES: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
+    pub const JOINT_NAMES: [&'static str; 12] = [
         "leg1.1", "leg1.2", "leg1.3", "leg2.1", "leg2.2", "leg2.3", "leg3.1", "leg3.2", "leg3.3",
         "leg4.1", "leg4.2", "leg4.3",
     ];
     /// Names of the independent coordinates, in the order of the twist.
-    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
+    pub const COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
     /// Names of the pose coordinates.
-    pub const POSE_COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
+    pub const POSE_COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
-        0, 3, 6, 9,
-    ];
+    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6, 9];
     /// Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
-        true, true, true, true,
-    ];
+    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true, true];
     /// Kept actuators of the actuator projection (case 2).
-    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
+    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which defines the working mode (m, rad).
-    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
         2.353104842321743, 1.5754853789017922, -0.7869975676342108, 0.7884878112680508,
         -1.5754853789017937, 3.928590221224005, -0.7884878112680508, 1.5754853789017937,
         -0.7869975676342119, 3.9300804648578436, -1.5754853789017924, -2.3545950859555824,
     ];
     /// Values of the base parameters and of the payload parameters (SI), which the functions contain as constants.
-    pub const PARAMETER_VALUES: [(
-        &'static ::core::primitive::str,
-        ::core::primitive::f64,
-    ); 53] = [
+    pub const PARAMETER_VALUES: [(&'static str, f64); 53] = [
         ("zz_platformR", 0.020607684175340465), ("mx_platform", 0.000013440854626730402),
         ("my_platformR", -0.0001796186535206276), ("m_platformR", 1.920521204934164),
         ("zz_1_leg1R", 0.04453048911420754), ("zz_1_leg2R", 0.04811478221073617),
@@ -157,16 +153,14 @@ impl DualV {
     /// 80 operations (38 additions, 38 multiplications, 4 divisions), 4 square roots, 1 trigonometric pair, 4 arc tangents, 8 guards, 2 negations, 88 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
-    pub fn actuator_positions(
-        pose: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6)])?;
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
+    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], Error> {
+        guard::within(&[("pose", pose, 1e6)])?;
         /// l_ab²
-        const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+        const L_AB_SQUARED: f64 = 0.0784;
         /// r_p
-        const R_P: ::core::primitive::f64 = 0.11;
-        let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        const R_P: f64 = 0.11;
+        let (s_phi, c_phi) = math::sin_cos(pose[2]);
         // --- leg1
         let p_y_leg1 = R_P * c_phi;
         let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
@@ -176,19 +170,19 @@ impl DualV {
         let d_x_leg1 = x_minus_p_x_leg3 - 0.3950502153918333;
         let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
         let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+        guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
         let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-        ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-        let h_leg1 = ::overact::math::sqrt(h_squared_leg1);
+        guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+        let h_leg1 = math::sqrt(h_squared_leg1);
         let l1_y_leg1 = half_d_y_leg1 - d_x_leg1 * h_leg1;
         let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
         // --- leg2
         let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
         let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-        ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+        guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
         let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-        ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-        let h_leg2 = ::overact::math::sqrt(h_squared_leg2);
+        guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+        let h_leg2 = math::sqrt(h_squared_leg2);
         let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
         let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
         // --- leg3
@@ -198,35 +192,35 @@ impl DualV {
         let d_x_leg3 = x_plus_p_x_leg3 + 0.3950502153918333;
         let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
         let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+        guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
         let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-        ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-        let h_leg3 = ::overact::math::sqrt(h_squared_leg3);
+        guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+        let h_leg3 = math::sqrt(h_squared_leg3);
         let l1_y_leg3 = half_d_y_leg3 - d_x_leg3 * h_leg3;
         let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
         // --- leg4
         let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
         let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-        ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+        guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
         let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-        ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-        let h_leg4 = ::overact::math::sqrt(h_squared_leg4);
+        guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+        let h_leg4 = math::sqrt(h_squared_leg4);
         let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
         let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
-        ::core::result::Result::Ok([
-            ::overact::math::atan2(
+        Ok([
+            math::atan2(
                 -(2.5175667811089752 * l1_y_leg1 + 2.533171834572799 * l1_x_leg1),
                 2.533171834572799 * l1_y_leg1 - 2.5175667811089752 * l1_x_leg1,
             ) + 2.353104842321743,
-            ::overact::math::atan2(
+            math::atan2(
                 2.517566781108974 * l1_y_leg2 - 2.5331718345728005 * l1_x_leg2,
                 2.517566781108974 * l1_x_leg2 + 2.5331718345728005 * l1_y_leg2,
             ) + 0.7884878112680508,
-            ::overact::math::atan2(
+            math::atan2(
                 2.517566781108974 * l1_y_leg3 + 2.5331718345728005 * l1_x_leg3,
                 2.517566781108974 * l1_x_leg3 - 2.5331718345728005 * l1_y_leg3,
             ) - 0.7884878112680508,
-            ::overact::math::atan2(
+            math::atan2(
                 2.5331718345727996 * l1_x_leg4 - 2.517566781108975 * l1_y_leg4,
                 -(2.517566781108975 * l1_x_leg4 + 2.5331718345727996 * l1_y_leg4),
             ) + 3.9300804648578436,
@@ -244,25 +238,25 @@ impl DualV {
     /// 479 operations (212 additions, 243 multiplications, 24 divisions), 4 square roots, 1 trigonometric pair, 12 signs, 17 guards, 1 negation, 481 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn inverse_dynamics(
-        pose: &[::core::primitive::f64; 3],
-        twist: &[::core::primitive::f64; 3],
-        acceleration: &[::core::primitive::f64; 3],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(
+        pose: &[f64; 3],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(
             &[
                 ("pose", pose, 1e6), ("twist", twist, 1e9), ("acceleration", acceleration, 1e12),
             ],
         )?;
-        ::overact::with_avx2(#[inline(always)] || {
+        with_avx2(#[inline(always)] || {
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
+            const R_P: f64 = 0.11;
             /// 2 l_ab²
-            const TWICE_L_AB_SQUARED: ::core::primitive::f64 = 0.1568;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const TWICE_L_AB_SQUARED: f64 = 0.1568;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -272,14 +266,14 @@ impl DualV {
             let d_y_leg1 = pose[1] + t1_leg3;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l1_x_leg1 = 0.5 * d_x_leg1 + d_y_leg1 * h_leg1;
             let l2_x_leg1 = d_x_leg1 - l1_x_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             let v_arm_y_leg3 = p_x_leg3 * twist[2];
@@ -309,15 +303,12 @@ impl DualV {
             let a_on_f2_leg1 = l1_x_leg1 * a_end_x_leg1 + l1_y_leg1 * a_end_y_leg1
                 + L_AB_SQUARED * rate_1_squared_leg1;
             let tau_1_leg1 = 0.029999722179847328 * rate_1_leg1
-                + ::overact::math::wide::signed(0.11985569222332705, rate_1_leg1)
+                + math::wide::signed(0.11985569222332705, rate_1_leg1)
                 + 0.004159752894756029;
             let minus_qd_2_leg1 = rate_1_leg1 + minus_rate_2_leg1;
             let tau_2_leg1 = 0.008535456014915175
                 - (0.00000006752479729920554 * minus_qd_2_leg1
-                    + ::overact::math::wide::signed(
-                        0.00991462620751174,
-                        minus_qd_2_leg1,
-                    ));
+                    + math::wide::signed(0.00991462620751174, minus_qd_2_leg1));
             let force_on_u1_leg1 = 0.04453048911420754 * rate_dot_1_leg1
                 + 0.000005168711019354161 * a_on_f2_leg1 + tau_1_leg1 - tau_2_leg1;
             let minus_rate_dot_2_leg1 = k1_leg1
@@ -326,19 +317,19 @@ impl DualV {
                 + 0.000005168711019354161 * minus_a_on_f1_leg1;
             let qd_3_leg1 = minus_rate_2_leg1 + twist[2];
             let tau_3_leg1 = 0.000000021460460841392392 * qd_3_leg1
-                + ::overact::math::wide::signed(0.009884749794732988, qd_3_leg1)
+                + math::wide::signed(0.009884749794732988, qd_3_leg1)
                 + 0.006299792724776336;
             let force_on_u2_leg1 = tau_2_leg1 - minus_moment2_z_leg1 - tau_3_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l1_x_leg2 = 0.5 * d_x_leg2 - d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let g2_vx_leg2 = l1_x_leg2 / det_leg2;
             let l1_y_leg2 = half_d_y_leg1 + d_x_leg2 * h_leg2;
             let l2_x_leg2 = d_x_leg2 - l1_x_leg2;
@@ -362,19 +353,17 @@ impl DualV {
                 - 0.00000335124576642444 * minus_a_on_f1_leg2;
             let qd_2_leg2 = minus_rate_1_leg2 + rate_2_leg2;
             let tau_2_leg2 = 0.00000006157814333318819 * qd_2_leg2
-                + ::overact::math::wide::signed(0.009944457993507957, qd_2_leg2)
+                + math::wide::signed(0.009944457993507957, qd_2_leg2)
                 + 0.0006559381634039045;
             let qd_3_leg2 = twist[2] - rate_2_leg2;
             let tau_3_leg2 = 0.00000001810735080471036 * qd_3_leg2
-                + ::overact::math::wide::signed(0.01038045756726188, qd_3_leg2);
+                + math::wide::signed(0.01038045756726188, qd_3_leg2);
             let force_on_u2_leg2 = moment2_z_leg2 + tau_2_leg2 - tau_3_leg2;
             let minus_rate_dot_1_leg2 = (minus_a_on_f1_leg2
                 + rate_1_squared_leg2 * t1_leg2) / det_leg2;
             let minus_tau_1_leg2 = 0.019974974613703813 * minus_rate_1_leg2
-                + ::overact::math::wide::signed(
-                    0.10056998680223246,
-                    minus_rate_1_leg2,
-                ) + 0.004134893087019274;
+                + math::wide::signed(0.10056998680223246, minus_rate_1_leg2)
+                + 0.004134893087019274;
             let force_on_u1_leg2 = 0.00000335124576642444 * a_on_f2_leg2
                 - 0.04811478221073617 * minus_rate_dot_1_leg2 - minus_tau_1_leg2
                 - tau_2_leg2;
@@ -384,14 +373,14 @@ impl DualV {
             let d_y_leg3 = pose[1] - t1_leg3;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l1_x_leg3 = 0.5 * d_x_leg3 + d_y_leg3 * h_leg3;
             let l2_x_leg3 = d_x_leg3 - l1_x_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             let a_end_x_leg3 = acceleration[0] - a_arm_x_leg1;
@@ -417,15 +406,12 @@ impl DualV {
             let a_on_f2_leg3 = l1_x_leg3 * a_end_x_leg3 + l1_y_leg3 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg3;
             let tau_1_leg3 = 0.039649798337018656 * rate_1_leg3
-                + ::overact::math::wide::signed(0.15060236311801395, rate_1_leg3)
+                + math::wide::signed(0.15060236311801395, rate_1_leg3)
                 + 0.0009640134986800234;
             let minus_qd_2_leg3 = rate_1_leg3 + minus_rate_2_leg3;
             let tau_2_leg3 = 0.002029804994654387
                 - (0.00000009637346970834657 * minus_qd_2_leg3
-                    + ::overact::math::wide::signed(
-                        0.0102077543876856,
-                        minus_qd_2_leg3,
-                    ));
+                    + math::wide::signed(0.0102077543876856, minus_qd_2_leg3));
             let force_on_u1_leg3 = 0.04805383494499909 * rate_dot_1_leg3
                 + 0.00008112715886872903 * a_on_f2_leg3 + tau_1_leg3 - tau_2_leg3;
             let minus_rate_dot_2_leg3 = k1_leg3
@@ -434,7 +420,7 @@ impl DualV {
                 - 0.00008112715886872903 * minus_a_on_f1_leg3;
             let qd_3_leg3 = minus_rate_2_leg3 + twist[2];
             let tau_3_leg3 = 0.000000017313663972054018 * qd_3_leg3
-                + ::overact::math::wide::signed(0.009789945271952191, qd_3_leg3);
+                + math::wide::signed(0.009789945271952191, qd_3_leg3);
             let force_on_u2_leg3 = moment2_z_leg3 + tau_2_leg3 - tau_3_leg3;
             let t3_leg3 = g1_vx_leg1 * force_on_u1_leg1
                 - minus_g2_vx_leg1 * force_on_u2_leg1 + g2_vx_leg2 * force_on_u2_leg2
@@ -443,14 +429,14 @@ impl DualV {
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l1_x_leg4 = 0.5 * d_x_leg4 - d_y_leg3 * h_leg4;
             let l2_x_leg4 = d_x_leg4 - l1_x_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let minus_g1_vx_leg4 = l2_x_leg4 / det_leg4;
             let l1_y_leg4 = half_d_y_leg3 + d_x_leg4 * h_leg4;
             let l2_y_leg4 = d_y_leg3 - l1_y_leg4;
@@ -462,7 +448,7 @@ impl DualV {
             let rate_2_leg4 = g2_vx_leg4 * v_end_x_leg3 + g2_vy_leg4 * v_end_y_leg3;
             let qd_2_leg4 = minus_rate_1_leg4 + rate_2_leg4;
             let tau_2_leg4 = 0.0000000955728788284811 * qd_2_leg4
-                + ::overact::math::wide::signed(0.01008072800356214, qd_2_leg4)
+                + math::wide::signed(0.01008072800356214, qd_2_leg4)
                 + 0.003040155469275262;
             let rate_2_squared_leg4 = rate_2_leg4 * rate_2_leg4;
             let minus_a_on_f1_leg4 = l2_x_leg4 * a_end_x_leg3
@@ -474,10 +460,8 @@ impl DualV {
             let a_on_f2_leg4 = l1_x_leg4 * a_end_x_leg3 + l1_y_leg4 * a_end_y_leg3
                 + L_AB_SQUARED * rate_1_squared_leg4;
             let minus_tau_1_leg4 = 0.030194364496588865 * minus_rate_1_leg4
-                + ::overact::math::wide::signed(
-                    0.10986887003468548,
-                    minus_rate_1_leg4,
-                ) + 0.001454029351535881;
+                + math::wide::signed(0.10986887003468548, minus_rate_1_leg4)
+                + 0.001454029351535881;
             let minus_force_on_u1_leg4 = tau_2_leg4
                 + 0.050666830508230606 * minus_rate_dot_1_leg4
                 + 0.000013210750116729909 * a_on_f2_leg4 + minus_tau_1_leg4;
@@ -487,7 +471,7 @@ impl DualV {
                 - 0.000029825765005556115 * rate_dot_2_leg4;
             let qd_3_leg4 = twist[2] - rate_2_leg4;
             let tau_3_leg4 = 0.000000017719161312588675 * qd_3_leg4
-                + ::overact::math::wide::signed(0.009981515921207268, qd_3_leg4);
+                + math::wide::signed(0.009981515921207268, qd_3_leg4);
             let force_on_u2_leg4 = moment2_z_leg4 + tau_2_leg4 - tau_3_leg4;
             let force_x_platform = 1.920521204934164 * acceleration[0]
                 - (0.00012218958751573095 * a_arm_y_leg3
@@ -496,7 +480,7 @@ impl DualV {
                 + g2_vx_leg4 * force_on_u2_leg4 + force_x_platform;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let s_1_2 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
                 + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
             let l_2_1 = s_1_2 / s_1_1;
@@ -513,11 +497,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let g1_wz_leg3 = p_x_leg3 * g1_vy_leg3 + p_y_leg1 * g1_vx_leg3;
             let minus_g1_wz_leg1 = p_x_leg3 * g1_vy_leg1 + p_y_leg1 * g1_vx_leg1;
             let g1_wz_leg2 = p_x_leg3 * minus_g1_vy_leg2
@@ -556,17 +536,13 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let t3 = t2 / pivot_3;
             let t4 = t1 / pivot_2 - l_3_2 * t3;
-            ::overact::guard::size(t4, 1e100)?;
+            guard::size(t4, 1e100)?;
             let t5 = t1_platform / s_1_1 - l_2_1 * t4 - l_3_1 * t3;
-            ::overact::guard::size(t5, 1e100)?;
-            ::core::result::Result::Ok([
+            guard::size(t5, 1e100)?;
+            Ok([
                 g1_vx_leg1 * t5 + g1_vy_leg1 * t4 - minus_g1_wz_leg1 * t3,
                 g1_wz_leg2 * t3 - (minus_g1_vx_leg2 * t5 + minus_g1_vy_leg2 * t4),
                 g1_vx_leg3 * t5 + g1_vy_leg3 * t4 + g1_wz_leg3 * t3,
@@ -586,18 +562,18 @@ impl DualV {
     /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pair, 16 guards, 1 negation, 193 intermediates.
     ///
     /// # Errors
-    /// An input is not finite or too large, the pose is out of reach, or the configuration is singular.
+    /// An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.
     pub fn project_torques(
-        pose: &[::core::primitive::f64; 3],
-        torques: &[::core::primitive::f64; 4],
-    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
-        ::overact::guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
-        ::overact::with_avx2(#[inline(always)] || {
+        pose: &[f64; 3],
+        torques: &[f64; 4],
+    ) -> Result<[f64; 4], Error> {
+        guard::within(&[("pose", pose, 1e6), ("torques", torques, 1e12)])?;
+        with_avx2(#[inline(always)] || {
             /// l_ab²
-            const L_AB_SQUARED: ::core::primitive::f64 = 0.0784;
+            const L_AB_SQUARED: f64 = 0.0784;
             /// r_p
-            const R_P: ::core::primitive::f64 = 0.11;
-            let (s_phi, c_phi) = ::overact::math::wide::sin_cos(pose[2]);
+            const R_P: f64 = 0.11;
+            let (s_phi, c_phi) = math::wide::sin_cos(pose[2]);
             // --- leg1
             let p_x_leg3 = R_P * s_phi;
             let x_minus_p_x_leg3 = pose[0] - p_x_leg3;
@@ -606,25 +582,25 @@ impl DualV {
             let d_y_leg1 = pose[1] + p_y_leg1 - 0.10970563941232059;
             let d_y_squared_leg1 = d_y_leg1 * d_y_leg1;
             let rho_squared_leg1 = d_x_leg1 * d_x_leg1 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
+            guard::leg(rho_squared_leg1, 0.1561, "leg1")?;
             let h_squared_leg1 = L_AB_SQUARED / rho_squared_leg1 - 0.25;
-            ::overact::guard::reach(h_squared_leg1, 0.2524, "leg1")?;
-            let h_leg1 = ::overact::math::wide::sqrt(h_squared_leg1);
+            guard::reach(h_squared_leg1, 0.2524, "leg1")?;
+            let h_leg1 = math::wide::sqrt(h_squared_leg1);
             let l2_x_leg1 = 0.5 * d_x_leg1 - d_y_leg1 * h_leg1;
             let det_leg1 = rho_squared_leg1 * h_leg1;
-            ::overact::guard::leg(det_leg1, 0.0784, "leg1")?;
+            guard::leg(det_leg1, 0.0784, "leg1")?;
             let k1_leg1 = 1.0 / det_leg1;
             let g1_vx_leg1 = l2_x_leg1 * k1_leg1;
             // --- leg2
             let d_x_leg2 = x_minus_p_x_leg3 + 0.3950502153918333;
             let rho_squared_leg2 = d_x_leg2 * d_x_leg2 + d_y_squared_leg1;
-            ::overact::guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
+            guard::leg(rho_squared_leg2, 0.1561, "leg2")?;
             let h_squared_leg2 = L_AB_SQUARED / rho_squared_leg2 - 0.25;
-            ::overact::guard::reach(h_squared_leg2, 0.2524, "leg2")?;
-            let h_leg2 = ::overact::math::wide::sqrt(h_squared_leg2);
+            guard::reach(h_squared_leg2, 0.2524, "leg2")?;
+            let h_leg2 = math::wide::sqrt(h_squared_leg2);
             let l2_x_leg2 = 0.5 * d_x_leg2 + d_y_leg1 * h_leg2;
             let det_leg2 = rho_squared_leg2 * h_leg2;
-            ::overact::guard::leg(det_leg2, 0.0784, "leg2")?;
+            guard::leg(det_leg2, 0.0784, "leg2")?;
             let k1_leg2 = 1.0 / det_leg2;
             let minus_g1_vx_leg2 = l2_x_leg2 * k1_leg2;
             // --- leg3
@@ -633,30 +609,30 @@ impl DualV {
             let d_y_leg3 = pose[1] - p_y_leg1 + 0.10970563941232059;
             let d_y_squared_leg3 = d_y_leg3 * d_y_leg3;
             let rho_squared_leg3 = d_x_leg3 * d_x_leg3 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
+            guard::leg(rho_squared_leg3, 0.1561, "leg3")?;
             let h_squared_leg3 = L_AB_SQUARED / rho_squared_leg3 - 0.25;
-            ::overact::guard::reach(h_squared_leg3, 0.2524, "leg3")?;
-            let h_leg3 = ::overact::math::wide::sqrt(h_squared_leg3);
+            guard::reach(h_squared_leg3, 0.2524, "leg3")?;
+            let h_leg3 = math::wide::sqrt(h_squared_leg3);
             let l2_x_leg3 = 0.5 * d_x_leg3 - d_y_leg3 * h_leg3;
             let det_leg3 = rho_squared_leg3 * h_leg3;
-            ::overact::guard::leg(det_leg3, 0.0784, "leg3")?;
+            guard::leg(det_leg3, 0.0784, "leg3")?;
             let k1_leg3 = 1.0 / det_leg3;
             let g1_vx_leg3 = l2_x_leg3 * k1_leg3;
             // --- leg4
             let d_x_leg4 = x_plus_p_x_leg3 - 0.3950502153918333;
             let rho_squared_leg4 = d_x_leg4 * d_x_leg4 + d_y_squared_leg3;
-            ::overact::guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
+            guard::leg(rho_squared_leg4, 0.1561, "leg4")?;
             let h_squared_leg4 = L_AB_SQUARED / rho_squared_leg4 - 0.25;
-            ::overact::guard::reach(h_squared_leg4, 0.2524, "leg4")?;
-            let h_leg4 = ::overact::math::wide::sqrt(h_squared_leg4);
+            guard::reach(h_squared_leg4, 0.2524, "leg4")?;
+            let h_leg4 = math::wide::sqrt(h_squared_leg4);
             let l2_x_leg4 = 0.5 * d_x_leg4 + d_y_leg3 * h_leg4;
             let det_leg4 = rho_squared_leg4 * h_leg4;
-            ::overact::guard::leg(det_leg4, 0.0784, "leg4")?;
+            guard::leg(det_leg4, 0.0784, "leg4")?;
             let k1_leg4 = 1.0 / det_leg4;
             let minus_g1_vx_leg4 = l2_x_leg4 * k1_leg4;
             let s_1_1 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
                 + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-            ::overact::guard::platform(s_1_1, 25.43, ::overact::ActuatorGroup::All)?;
+            guard::platform(s_1_1, 25.43, ActuatorGroup::All)?;
             let inv_pivot_1 = 1.0 / s_1_1;
             let t1 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
                 + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
@@ -676,11 +652,7 @@ impl DualV {
             let s_2_2 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
                 + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4;
             let pivot_2 = s_2_2 - s_1_2 * l_2_1;
-            ::overact::guard::platform(
-                pivot_2,
-                25.59,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_2, 25.59, ActuatorGroup::All)?;
             let inv_pivot_2 = 1.0 / pivot_2;
             let t2 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
                 + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3]
@@ -706,16 +678,12 @@ impl DualV {
             let s_3_3 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
                 + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4;
             let pivot_3 = s_3_3 - s_1_3 * l_3_1 - schur_2_3 * l_3_2;
-            ::overact::guard::platform(
-                pivot_3,
-                0.3077,
-                ::overact::ActuatorGroup::All,
-            )?;
+            guard::platform(pivot_3, 0.3077, ActuatorGroup::All)?;
             let t4 = t3 / pivot_3;
-            ::overact::guard::size(t4, 1e60)?;
+            guard::size(t4, 1e60)?;
             let t5 = inv_pivot_2 * t2 - l_3_2 * t4;
             let t6 = inv_pivot_1 * t1 - l_2_1 * t5 - l_3_1 * t4;
-            ::core::result::Result::Ok([
+            Ok([
                 g1_vx_leg1 * t6 + g1_vy_leg1 * t5 - minus_g1_wz_leg1 * t4,
                 g1_wz_leg2 * t4 - (minus_g1_vx_leg2 * t6 + minus_g1_vy_leg2 * t5),
                 g1_vx_leg3 * t6 + g1_vy_leg3 * t5 + g1_wz_leg3 * t4,
@@ -725,3 +693,4 @@ impl DualV {
         })
     }
 }
+};

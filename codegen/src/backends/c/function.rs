@@ -221,7 +221,7 @@ fn documented(
         shapes.join(" x "),
         table.unwrap_or_default()
     ));
-    lines.push(if outline.can_fail { "@return 0, or an error: an input is not finite or too large, the pose is out of reach, or the configuration is singular." } else { "@return 0, or an error: an input is not finite or too large." }.to_owned());
+    lines.push(if outline.can_fail { "@return 0, or an error: an input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular." } else { "@return 0, or an error: an input is infinite, NaN or too large." }.to_owned());
     lines.push(String::new());
     let operations = operations::of_function(&model.cost(function));
     lines.extend(operations.iter().map(|line| line.trim_start().to_owned()));

@@ -154,7 +154,7 @@ pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
             "@param actuators q, positions of the actuated joints (m, rad) (ROB_ACTUATORS)".to_owned(),
             "@param start a pose near the wanted one, in its assembly mode (m, rad) (ROB_POSE)".to_owned(),
             "@param[out] output [ROB_POSE]".to_owned(),
-            "@return 0, or an error: an input that is not finite or too large, no convergence, or a singular or unreachable configuration on the way.".to_owned(),
+            "@return 0, or an error: an input that is infinite, NaN or too large, no convergence, or a singular or unreachable configuration on the way.".to_owned(),
         ];
         out += &naming.apply(&documentation(&lines));
         let signature = signature("pose_from_actuators", &forward_arguments(model), naming);

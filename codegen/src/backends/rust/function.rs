@@ -296,9 +296,9 @@ fn documentation(
     lines.push(String::new());
     lines.push(" # Errors".to_owned());
     lines.push(if outline.can_fail {
-        " An input is not finite or too large, the pose is out of reach, or the configuration is singular.".to_owned()
+        " An input is infinite, NaN or too large, the pose is out of reach, or the configuration is singular.".to_owned()
     } else {
-        " An input is not finite or too large.".to_owned()
+        " An input is infinite, NaN or too large.".to_owned()
     });
     lines
 }

@@ -29,7 +29,7 @@ pub fn item(model: &RobotModel) -> TokenStream {
         #[doc = " Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration; by Newton's method."]
         #[doc = ""]
         #[doc = " # Errors"]
-        #[doc = " An input is not finite or too large, the pose is out of reach, or a configuration on the way from home is singular."]
+        #[doc = " An input is infinite, NaN or too large, the pose is out of reach, or a configuration on the way from home is singular."]
         pub fn joints(
             pose: &[#kind; Self::POSE],
         ) -> ::core::result::Result<[#kind; Self::JOINTS], ::overact::Error> {

@@ -4,7 +4,8 @@
 //! block with constants and flat functions, and one `impl overact::Model`. The latter is missing if
 //! the parameters are known, or if functions that it needs were left out. The code does not
 //! allocate, does not panic and has no unsafe code. A singular configuration is an error that names
-//! the leg. Paths are absolute, because the code may be in any scope.
+//! the leg. The code may be in any scope: it is in a block that imports what it uses by absolute
+//! paths ([`short_paths`]).
 //!
 //! The code follows the paper: `writing` names its values and explains the names in the type's
 //! documentation, and `layout` adds headings to the sections of a body.
@@ -19,6 +20,7 @@ mod inverse;
 mod layout;
 mod model_impl;
 mod runtime;
+mod short_paths;
 mod simd;
 
 use crate::backends::writing::{labels::Labels, legend, operations, text};
@@ -28,14 +30,15 @@ use function::Item;
 use layout::Sections;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
+use short_paths::ShortPaths;
 
 /// A robot as Rust.
 pub struct Robot {
     /// Lines of documentation for its type: sizes, and a legend of the names in the functions'
     /// bodies.
     pub documentation: Vec<String>,
-    /// The items after the type.
-    pub items: TokenStream,
+    /// Imports and `impl` blocks.
+    items: TokenStream,
     /// Starts of the sections of the functions' bodies.
     sections: Vec<Sections>,
 }
@@ -56,14 +59,6 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     let is_model = model.selection.values.is_none() && model.is_model && is_long;
     let model_impl = is_model.then(|| model_impl::item(model, name));
     let items = quote! {
-        #[allow(
-            clippy::all,
-            clippy::pedantic,
-            nonstandard_style,
-            unused,
-            unused_qualifications,
-            reason = "straight-line code with the names of the derivation, in any scope"
-        )]
         impl #name {
             #constants
             #(#tokens)*
@@ -72,6 +67,7 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
 
         #model_impl
     };
+    let ShortPaths { imports, items } = short_paths::shortened(items, name);
     let names = functions.iter().flat_map(|f| f.names.iter().cloned());
     let mut documentation = vec![String::new(), sizes(model)];
     documentation.extend(is_short(model).map(str::to_owned));
@@ -87,41 +83,62 @@ pub fn robot(model: &RobotModel, name: &Ident) -> Robot {
     }
     Robot {
         documentation,
-        items: runtime::renamed(items, &model.runtime),
+        items: runtime::renamed(quote!(#imports #items), &model.runtime),
         sections: functions.into_iter().map(|f| f.sections).collect(),
+    }
+}
+
+impl Robot {
+    /// The items after the type: a block with imports and `impl` blocks.
+    #[must_use]
+    pub fn items(&self) -> TokenStream {
+        let (allowed, items) = (allowed(), &self.items);
+        quote!(#allowed const _: () = { #items };)
     }
 }
 
 /// The items of a robot whose type is called `name`.
 #[must_use]
 pub fn items(model: &RobotModel, name: &Ident) -> TokenStream {
-    robot(model, name).items
+    robot(model, name).items()
 }
 
 /// The documented type and its items: the content of a generated file.
 #[must_use]
 pub fn module(model: &RobotModel) -> TokenStream {
-    module_and_sections(model).0
+    let name = Ident::new(&model.mechanism.name, Span::call_site());
+    let robot = robot(model, &name);
+    let (kind, items) = (documented_type(model, &robot), robot.items());
+    quote!(#kind #items)
 }
 
-fn module_and_sections(model: &RobotModel) -> (TokenStream, Vec<Sections>) {
+/// The robot's type with its documentation.
+fn documented_type(model: &RobotModel, robot: &Robot) -> TokenStream {
     let name = Ident::new(&model.mechanism.name, Span::call_site());
-    let Robot {
-        documentation,
-        items,
-        sections,
-    } = robot(model, &name);
     let (summary, derives) = (summary(model), derives());
+    let documentation = &robot.documentation;
     // A trailing comma, as in lists on several lines.
-    let module = quote! {
+    quote! {
         #[doc = #summary]
         #(#[doc = #documentation])*
         #[derive(#(#derives,)*)]
         pub struct #name;
+    }
+}
 
-        #items
-    };
-    (module, sections)
+/// The lints that generated code violates, in any scope.
+fn allowed() -> TokenStream {
+    quote! {
+        #[allow(
+            clippy::all,
+            clippy::pedantic,
+            non_local_definitions,
+            nonstandard_style,
+            unused,
+            unused_qualifications,
+            reason = "straight-line code with the names of the derivation, in any scope"
+        )]
+    }
 }
 
 /// The first line of documentation of a robot's type.
@@ -197,19 +214,26 @@ fn source(text: &str) -> Option<String> {
 }
 
 /// A formatted source file. `label` is the description's path in the header.
+///
+/// The content of the block around the items is not indented.
 #[must_use]
 pub fn file(model: &RobotModel, label: &str) -> String {
     let label = text::plain(label);
-    let (tokens, sections) = module_and_sections(model);
+    let name = Ident::new(&model.mechanism.name, Span::call_site());
+    let robot = robot(model, &name);
+    let (kind, allowed) = (documented_type(model, &robot), allowed());
     // The tokens are our own: every test that compiles them proves that they parse.
-    let code = match syn::parse2(tokens.clone()) {
-        Ok(file) => layout::with_comments(
-            &layout::pack_arrays(&layout::join_closures(&prettyplease::unparse(&file))),
-            &sections,
-        ),
+    let written = |tokens: TokenStream| match syn::parse2(tokens.clone()) {
+        Ok(file) => prettyplease::unparse(&file),
         Err(_) => tokens.to_string(),
     };
+    let head = written(quote!(#kind #allowed const _: () = {};));
+    let head = head.trim_end().trim_end_matches("};");
+    let items = layout::with_comments(
+        &layout::pack_arrays(&layout::join_closures(&written(robot.items))),
+        &robot.sections,
+    );
     format!(
-        "// @generated by overact from {label}; do not edit; run `overact generate {label}`\n\n{code}"
+        "// @generated by overact from {label}; do not edit; run `overact generate {label}`\n\n{head}\n{items}}};\n"
     )
 }

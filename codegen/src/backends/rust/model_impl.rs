@@ -143,7 +143,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             #[doc = #doc]
             #[doc = ""]
             #[doc = " # Errors"]
-            #[doc = " An input is not finite or too large. The pose of a robot without loops is its joint positions."]
+            #[doc = " An input is infinite, NaN or too large. The pose of a robot without loops is its joint positions."]
             pub fn pose_from_actuators(
                 actuators: &[#kind; Self::ACTUATORS],
                 start: &[#kind; Self::POSE],
@@ -248,7 +248,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         #[doc = #doc]
         #[doc = ""]
         #[doc = " # Errors"]
-        #[doc = " An input is not finite or too large, the iteration does not converge, or a configuration on the way is singular or out of reach."]
+        #[doc = " An input is infinite, NaN or too large, the iteration does not converge, or a configuration on the way is singular or out of reach."]
         pub fn pose_from_actuators(
             actuators: &[#kind; Self::ACTUATORS],
             start: &[#kind; Self::POSE],

@@ -10,7 +10,7 @@ use super::names::Names;
 use super::places::{Place, Places};
 use super::statement::{Call, Expression, Operator, Pair, Statement};
 use crate::lowering::{Entry, Operand, Operation, Program, schedule_min_live};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Largest number of operations in one expression.
 const LONGEST: usize = 10;
@@ -98,6 +98,10 @@ struct Writer<'p> {
     inlined: Vec<Option<Sized>>,
     statements: Vec<Statement>,
     taken: HashSet<String>,
+    /// Names of the input elements that are bound to a name.
+    bound: HashMap<(usize, usize), String>,
+    /// Section of the step that is being written.
+    section: String,
     /// Steps that are already written.
     written: Vec<bool>,
     /// Number of guards written.
@@ -128,6 +132,8 @@ impl<'p> Writer<'p> {
             inlined: vec![None; count],
             statements: Vec::new(),
             taken: program.inputs.iter().map(|a| a.name.clone()).collect(),
+            bound: HashMap::new(),
+            section: String::new(),
             written: vec![false; count],
             guarded: 0,
             places: None,
@@ -228,6 +234,7 @@ impl<'p> Writer<'p> {
         if self.written[at] {
             return 1;
         }
+        self.section.clone_from(&self.program.steps[at].scope);
         if let Some(angle) = self.pair(at) {
             return self.sine_and_cosine(at, angle);
         }
@@ -315,7 +322,7 @@ impl<'p> Writer<'p> {
     fn operand(&mut self, operand: Operand) -> Sized {
         let expression = match operand {
             Operand::Constant(value) => self.constant(value),
-            Operand::Input { array, index } => Expression::Input { array, index },
+            Operand::Input { array, index } => self.input(array, index),
             Operand::Step(at) => match (&self.names[at], self.inlined[at].take()) {
                 (Some(name), _) => Expression::Value(name.clone()),
                 (None, Some(text)) => return text,
@@ -326,6 +333,39 @@ impl<'p> Writer<'p> {
             expression,
             size: 0,
         }
+    }
+
+    /// An element of an input: by its own name if it is a parameter, which its first use assigns.
+    fn input(&mut self, array: usize, index: usize) -> Expression {
+        let element = Expression::Input { array, index };
+        let Some(label) = self.labels.bound(array, index) else {
+            return element;
+        };
+        let name = self.bound.get(&(array, index)).cloned();
+        let name = name.unwrap_or_else(|| {
+            let name = self.unique(&label.name());
+            self.bound.insert((array, index), name.clone());
+            self.sections.push((name.clone(), self.section.clone()));
+            self.statements.push(Statement::Assign {
+                name: name.clone(),
+                value: element,
+            });
+            name
+        });
+        Expression::Value(name)
+    }
+
+    /// This name, or one with a suffix if it is taken; it is taken then.
+    fn unique(&mut self, name: &str) -> String {
+        let is_free = |name: &String| !self.taken.contains(name) && !(self.reserved)(name);
+        let mut count = 1;
+        let mut unique = name.to_owned();
+        while !is_free(&unique) {
+            count += 1;
+            unique = format!("{name}_{count}");
+        }
+        self.taken.insert(unique.clone());
+        unique
     }
 
     /// A number, or its named constant.

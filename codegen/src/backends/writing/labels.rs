@@ -1,7 +1,7 @@
 //! Labels of a function's inputs and outputs, for use in names.
 
 use super::dimensions::{Dimension, Dimensions};
-use crate::lowering::{Column, LaneOutput, Lanes, Program};
+use crate::lowering::{Array, Column, Elements, LaneOutput, Lanes, Program};
 use crate::mechanism::TwistCoordinate;
 use crate::model::{CompiledFunction, RobotModel};
 use overact_core::Function;
@@ -12,6 +12,8 @@ use std::collections::BTreeSet;
 pub struct Labels {
     /// Labels of the elements of every input.
     inputs: Vec<Vec<Label>>,
+    /// Inputs whose elements are assigned to names before use.
+    bound: Vec<bool>,
     /// Labels of the output's entries, row by row; empty for entries without a name.
     outputs: Vec<String>,
     /// Names of the legs.
@@ -41,6 +43,15 @@ impl Label {
             format!("{}_{}", self.what, self.place)
         }
     }
+
+    /// The same quantity of any leg.
+    fn of_any_leg(self) -> Self {
+        let place = if self.place.is_empty() { "" } else { "leg" };
+        Self {
+            place: place.to_owned(),
+            ..self
+        }
+    }
 }
 
 impl Labels {
@@ -61,15 +72,42 @@ impl Labels {
     /// Labels of a robot's function.
     #[must_use]
     pub fn new(model: &RobotModel, function: &CompiledFunction) -> Self {
+        let mut labels = Self::of_robot(model);
         let inputs = &function.program.inputs;
-        Self {
-            inputs: inputs
-                .iter()
-                .map(|array| input(model, &array.name, array.len()))
-                .collect(),
-            outputs: outputs(model, function),
-            ..Self::of_robot(model)
+        labels.bound = inputs.iter().map(are_parameters).collect();
+        labels.inputs = inputs
+            .iter()
+            .map(|array| labels.of_elements(model, array))
+            .collect();
+        labels.outputs = outputs(model, function);
+        labels
+    }
+
+    /// Labels of a program whose only inputs with a label are the robot's parameters.
+    #[must_use]
+    pub fn of_parameters(model: &RobotModel, program: &Program) -> Self {
+        let mut labels = Self::of_robot(model);
+        labels.bound = program.inputs.iter().map(are_parameters).collect();
+        let inputs = program.inputs.iter();
+        let inputs = inputs.map(|array| {
+            if are_parameters(array) {
+                labels.of_elements(model, array)
+            } else {
+                Vec::new()
+            }
+        });
+        labels.inputs = inputs.collect();
+        labels
+    }
+
+    /// Labels of the elements of an input; the leg in the name of a parameter is split off.
+    fn of_elements(&self, model: &RobotModel, array: &Array) -> Vec<Label> {
+        let labels = input(model, &array.name, array.len());
+        if !are_parameters(array) {
+            return labels;
         }
+        let labels = labels.iter().map(|label| self.parsed(&label.name()));
+        labels.collect()
     }
 
     /// Labels of one input's elements and a leg.
@@ -88,6 +126,13 @@ impl Labels {
     #[must_use]
     pub fn input(&self, array: usize, index: usize) -> Option<&Label> {
         self.inputs.get(array)?.get(index)
+    }
+
+    /// Label of an input's element that is assigned to a name before use.
+    #[must_use]
+    pub fn bound(&self, array: usize, index: usize) -> Option<&Label> {
+        let is_bound = self.bound.get(array).copied().unwrap_or_default();
+        self.input(array, index).filter(|_| is_bound)
     }
 
     /// Names of all joints.
@@ -125,10 +170,30 @@ impl Labels {
         }
     }
 
-    /// Labels of a program in lanes, whose columns have other places: a leg's lack the leg's
-    /// number.
+    /// Labels of a program in lanes, where all legs share the name `leg`.
     #[must_use]
-    pub(crate) fn in_lanes(mut self, lanes: &Lanes) -> Self {
+    pub(crate) fn in_lanes(mut self, model: &RobotModel, lanes: &Lanes) -> Self {
+        let arrays = &lanes.program.inputs;
+        let elements = arrays.iter().zip(&lanes.inputs);
+        let elements = elements.map(|(array, elements)| match elements {
+            Elements::Shared => self.of_elements(model, array),
+            Elements::Constants => Vec::new(),
+            Elements::InTurn(_) => {
+                let labels = self.of_elements(model, array).into_iter();
+                labels.map(Label::of_any_leg).collect()
+            }
+            Elements::Scattered { of, places } => {
+                let labels = self.of_elements(model, &arrays[*of]);
+                let labels = places.iter().map(|place| labels[place.first].clone());
+                labels.map(Label::of_any_leg).collect()
+            }
+        });
+        self.inputs = elements.collect();
+        let elements = arrays.iter().zip(&lanes.inputs);
+        let bound = elements.map(|(array, elements)| {
+            are_parameters(array) || matches!(elements, Elements::Scattered { .. })
+        });
+        self.bound = bound.collect();
         let LaneOutput::Columns(columns) = &lanes.gathered else {
             self.outputs.clear();
             return self;
@@ -169,6 +234,11 @@ impl Labels {
     }
 }
 
+/// Whether an input has the robot's parameters.
+fn are_parameters(input: &Array) -> bool {
+    matches!(input.name.as_str(), "parameters" | "base_parameters")
+}
+
 /// A coordinate's name as part of a word; joints of branches include the leg, `foot.pitch`.
 fn word(name: &str) -> String {
     name.replace('.', "_")
@@ -189,7 +259,7 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
     let joints = |prefix: &str, all: &[usize]| -> Vec<Label> {
         let indices = model.mechanism.joints();
         let label = |&at: &usize| Label {
-            what: format!("{prefix}{}", model.mechanism.joint(indices[at]).name),
+            what: format!("{prefix}{}", model.mechanism.joint(indices[at]).suffix()),
             place: if model.is_tree() {
                 String::new()
             } else {
@@ -269,7 +339,7 @@ fn row(model: &RobotModel, function: Function, row: usize) -> String {
     let joints = model.mechanism.joints();
     let joint = |at: usize| {
         let index = joints[at];
-        let joint = &model.mechanism.joint(index).name;
+        let joint = model.mechanism.joint(index).suffix();
         if model.is_tree() {
             format!("q{joint}")
         } else {

@@ -104,7 +104,7 @@ const KINDS: &[Kind] = &[
     kind(
         "k",
         "k",
-        "common factor of the leg's wrenches, up to sign: a constant by the determinant",
+        "common factor of the leg's wrenches, up to sign: a constant divided by the determinant",
     ),
     kind("k#", "k_i", "common factor of one of the leg's wrenches"),
     kind(
@@ -355,6 +355,7 @@ pub fn lines(labels: &Labels, names: &BTreeSet<String>) -> Vec<String> {
         " Compound names: `minus_a` -a; `a_b` product; `a_plus_b`, `a_minus_b` sums; `a_per_b` quotient; `inv_a` 1/a;",
         " `a_squared` a². `zz_1_leg1_on_vx` is the entry of IDM_red in the column of `zz_1_leg1` and the row of `vx`.",
         " `t1_leg1` is an unnamed intermediate value. Names of the platform have no leg, or `platform`.",
+        " Parameters have the names in `PARAMETERS` and `BASE_PARAMETERS`; those of any leg end in `_leg`.",
     ];
     let head = head.iter().map(ToString::to_string);
     head.chain(rows)
@@ -372,7 +373,11 @@ fn fits(pattern: &str, name: &str, joints: &[String]) -> bool {
     let is_axis = |c: char| matches!(c, 'x' | 'y' | 'z');
     match first {
         '#' => joints.iter().any(|joint| {
-            let behind = name.strip_prefix(joint.as_str());
+            // `force2`, `force_elbow`.
+            let is_number = joint.starts_with(|c: char| c.is_ascii_digit());
+            let separator = if is_number { "" } else { "_" };
+            let word = name.strip_prefix(separator).unwrap_or(name);
+            let behind = word.strip_prefix(joint.as_str());
             behind.is_some_and(|left| {
                 let offset = left.strip_prefix('o');
                 let ends =
@@ -414,7 +419,7 @@ mod tests {
         assert_eq!(first("c_phi"), Some("c_phi"));
         assert_eq!(first("c12"), Some("c#"));
         assert_eq!(first("c12o"), Some("c#"));
-        assert_eq!(first("selbow"), Some("s#"));
+        assert_eq!(first("s_elbow"), Some("s#"));
         assert_eq!(first("g1_vx"), Some("g#_%"));
         assert_eq!(first("g1_a2"), Some("g#_a$"));
         assert_eq!(first("wz"), Some("%"));

@@ -148,7 +148,7 @@ impl<'a> Chain<'_, 'a> {
             let whole = behind.fold(link.own, |sum, c| c.turned.moved_onto(&sum, c.at));
             let turned = whole.turned_back(&link.turn);
             let mut names = Names::default();
-            whole.name(&mut names, &self.leg.joints[j].name, &self.leg.name);
+            whole.name(&mut names, &self.leg.joints[j].suffix(), &self.leg.name);
             names.give();
             self.links[j].whole = whole;
             self.links[j].turned = turned;
@@ -357,7 +357,7 @@ impl<'a> Chain<'_, 'a> {
     fn name_wrench(&self, wrench: &Wrench<'a>, j: usize, k: usize) {
         let of = self.leg.independent().nth(k).unwrap_or(k);
         let by = &self.leg.joints[of].name;
-        let body = &self.leg.joints[j].name;
+        let body = self.leg.joints[j].suffix();
         let mut names = Names::default();
         let place = joined(&["by", by, &self.leg.name]);
         names.vector(wrench.force, &format!("force{body}"), &place);

@@ -46,7 +46,7 @@ impl<'a> Robot<'a> {
         for (index, (leg, mut forces)) in self.mechanism.legs.iter().zip(of_legs).enumerate() {
             self.arena.enter(&leg.name);
             for (joint, force) in leg.independent().zip(&forces) {
-                let what = format!("force_on_u{}", leg.joints[joint].name);
+                let what = format!("force_on_u{}", leg.joints[joint].suffix());
                 let _ = force.named(&joined(&[&what, &leg.name]));
             }
             actuators.take(index, &mut forces);
@@ -147,7 +147,7 @@ impl<'a> Robot<'a> {
         for j in (0..count).rev() {
             let joint = &leg.joints[j];
             let wrench = wrenches[j];
-            self.name_wrench(&wrench, &joint.name, &leg.name);
+            self.name_wrench(&wrench, &joint.suffix(), &leg.name);
             if let Some(before) = joint.antecedent {
                 let onto = chain.on_antecedent(j, &wrench);
                 about_axes[before] = about_axes[before] + onto.lever_moment.z();

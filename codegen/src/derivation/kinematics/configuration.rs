@@ -25,7 +25,7 @@ pub struct Configuration<'a> {
     known: Vec<(Direction, CosineSine<'a>)>,
     /// Positions of prismatic joints that the closure gives, by joint index in q_t.
     positions: Vec<(usize, Expr<'a>)>,
-    /// Names of the leg and the joint, for every joint of q_t.
+    /// Name of the leg and suffix of the joint, for every joint of q_t.
     names: Vec<(String, String)>,
     /// The joints of q_t in the pose, in its order: those of a skeleton and of branches.
     in_pose: Vec<usize>,
@@ -41,7 +41,7 @@ impl<'a> Configuration<'a> {
         let names = joints.iter().map(|&index| {
             (
                 mechanism.legs[index.leg].name.clone(),
-                mechanism.joint(index).name.clone(),
+                mechanism.joint(index).suffix(),
             )
         });
         Self {
@@ -284,18 +284,13 @@ impl<'a> Configuration<'a> {
                     leg = Some(of);
                     label += joint;
                 }
-                None => label += "phi",
+                None => label += "_phi",
             }
         }
         if label.is_empty() {
             return;
         }
         let suffix = leg.map_or(String::new(), |l| format!("_{l}"));
-        let separator = if label.starts_with(|c: char| c.is_ascii_digit()) {
-            ""
-        } else {
-            "_"
-        };
         // Names refer to the joints' own angles: offsets by right angles are removed, others are
         // marked.
         let (co, so) = angle.offset().cosine_and_sine();
@@ -309,8 +304,8 @@ impl<'a> Configuration<'a> {
         } else {
             label += "o";
         }
-        let _ = cosine.named(&format!("c{separator}{label}{suffix}"));
-        let _ = sine.named(&format!("s{separator}{label}{suffix}"));
+        let _ = cosine.named(&format!("c{label}{suffix}"));
+        let _ = sine.named(&format!("s{label}{suffix}"));
     }
 }
 

@@ -31,7 +31,7 @@ impl<'a> Robot<'a> {
         for (l, leg) in self.mechanism.legs.iter().enumerate() {
             let mut forces = self.leg_forces(motion, values, l, &mut on_twist);
             for (joint, force) in leg.independent().zip(&forces) {
-                let what = format!("force_on_u{}", leg.joints[joint].name);
+                let what = format!("force_on_u{}", leg.joints[joint].suffix());
                 let _ = force.named(&joined(&[&what, &leg.name]));
             }
             actuators.take(l, &mut forces);
@@ -82,7 +82,7 @@ impl<'a> Robot<'a> {
                 None => {
                     let body = &motion.bodies[l][j];
                     let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
-                    self.name_wrench(&wrench, &leg.joints[j].name, &leg.name);
+                    self.name_wrench(&wrench, &leg.joints[j].suffix(), &leg.name);
                     add_to(&mut forces, body.project(wrench));
                 }
             }

@@ -46,7 +46,7 @@ impl<'a> Robot<'a> {
         for (index, joint) in leg.joints.iter().enumerate() {
             let row = state.rates.joint[index].row(self.arena, &state.rows);
             for (entry, coordinate) in row.iter().zip(&self.twist) {
-                let what = format!("gq{}_{}", joint.name, coordinate_label(coordinate));
+                let what = format!("gq{}_{}", joint.suffix(), coordinate_label(coordinate));
                 names.one(*entry, joined(&[&what, &leg.name]));
             }
         }
@@ -71,7 +71,7 @@ impl<'a> Robot<'a> {
         for (leg, rows) in self.mechanism.legs.iter().zip(legs) {
             for (joint, row) in leg.independent().zip(rows) {
                 for (entry, actuator) in row.iter().zip(&kept) {
-                    let what = format!("g{}_{actuator}", leg.joints[joint].name);
+                    let what = format!("g{}_{actuator}", leg.joints[joint].suffix());
                     names.one(*entry, joined(&[&what, &leg.name]));
                 }
             }
@@ -128,7 +128,7 @@ impl<'a> Robot<'a> {
                 names.one(acceleration, joined(&[&dot("qdd"), &joint.name, &leg.name]));
             }
             for (joint, body) in leg.joints.iter().zip(&motion.bodies[index]) {
-                let of = |what: &str| format!("{what}{}", joint.name);
+                let of = |what: &str| format!("{what}{}", joint.suffix());
                 names.vector(body.omega, &of("w"), &leg.name);
                 names.vector(body.alpha, &dot(&of("wd")), &leg.name);
                 names.vector(body.acceleration, &dot(&of("a")), &leg.name);
@@ -172,7 +172,7 @@ fn name_wrenches<'a>(names: &mut Names<'a>, leg: &Leg, closure: &LegClosure<'a>)
         .zip(&closure.forces)
         .zip(&closure.moments);
     for (joint, ((wrench, force), moment)) in leg.independent().zip(all) {
-        let label = &leg.joints[joint].name;
+        let label = leg.joints[joint].suffix();
         let factor = if is_one {
             "k".to_owned()
         } else {

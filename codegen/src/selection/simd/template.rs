@@ -104,7 +104,7 @@ fn signs(mechanism: &Mechanism, constants: &mut Vec<Constant>) -> Vec<Option<Inp
             constants.push(Constant {
                 number: None,
                 values,
-                name: format!("sign of a root in the closed form, beside that of `{leg}`"),
+                name: format!("sign of a root in the closed form, relative to that of `{leg}`"),
             });
             InputElement {
                 array: ARRAY,

@@ -48,7 +48,7 @@ pub(super) fn write(
     name: &str,
 ) -> Loop {
     let kept = between(lanes);
-    let labels = Labels::new(model, function).in_lanes(lanes);
+    let labels = Labels::new(model, function).in_lanes(model, lanes);
     let is_reserved = |name: &str| RESERVED.contains(&name);
     let body = Body::write_with(&lanes.program, &labels, &is_reserved, &|at| kept[at]);
     let mut split = Split::new(lanes);
@@ -127,12 +127,9 @@ fn headings(
     let arrays = inputs.filter_map(|((input, elements), is_used)| {
         let text = match elements {
             _ if !is_used => return None,
-            Elements::Shared => return None,
-            Elements::Constants => "numbers in which the legs differ, for the legs of this turn",
-            Elements::InTurn(_) => "the legs' own",
-            Elements::Scattered { .. } => {
-                "the legs' own: where the first leg's stands, and how far the next leg's is from it"
-            }
+            Elements::Shared | Elements::Scattered { .. } => return None,
+            Elements::Constants => "constants of the legs in this batch",
+            Elements::InTurn(_) => "inputs of the legs in this batch",
         };
         Some((input.name.as_str(), text))
     });
@@ -211,7 +208,7 @@ fn arrays(lanes: &Lanes) -> TokenStream {
         let name = ident(&inputs[at].name);
         match elements {
             _ if !used[at] => TokenStream::new(),
-            Elements::Shared => TokenStream::new(),
+            Elements::Shared | Elements::Scattered { .. } => TokenStream::new(),
             Elements::Constants => {
                 let rows = rows(&quote!(OF_LEG), inputs[at].len());
                 quote!(let #name = #rows;)
@@ -219,20 +216,6 @@ fn arrays(lanes: &Lanes) -> TokenStream {
             Elements::InTurn(count) => {
                 let count = unsuffixed(*count);
                 quote!(let #name = ::overact::simd::elements::<#count, _, _, _>(#name, at);)
-            }
-            Elements::Scattered { of, places } => {
-                let of = ident(&inputs[*of].name);
-                let places = places.iter().map(|place| {
-                    let [first, stride, count] =
-                        [place.first, place.stride, place.count].map(unsuffixed);
-                    let from = quote!(#of, [#first, #stride]);
-                    if place.count == lanes.legs.len() {
-                        quote!(::overact::simd::scattered(#from, at))
-                    } else {
-                        quote!(::overact::simd::scattered_of_first(#from, #count, at))
-                    }
-                });
-                quote!(let #name = [#(#places),*];)
             }
         }
     });

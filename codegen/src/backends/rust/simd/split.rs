@@ -1,7 +1,7 @@
 //! Splits statements of a program in lanes into shared ones and those of a leg.
 
 use super::{Parts, home, unsuffixed};
-use crate::backends::rust::expression::{Writer, magnitude, number};
+use crate::backends::rust::expression::{Writer, ident, magnitude, number};
 use crate::backends::writing::statement::{Expression, Pair, Statement};
 use crate::float::Float;
 use crate::lowering::{Column, Condition, Elements, Lanes, OfLegs};
@@ -43,7 +43,13 @@ impl<'a> Split<'a> {
         match statement {
             Statement::Assign { name, value } => {
                 let own = self.is_own(value);
-                self.push(own, statement);
+                match self.scattered(value) {
+                    Some(value) => {
+                        let name = ident(name);
+                        self.own.push(quote!(let #name = #value;));
+                    }
+                    None => self.push(own, statement),
+                }
                 if own {
                     self.own_names.insert(name.clone());
                 }
@@ -64,6 +70,24 @@ impl<'a> Split<'a> {
             // Columns are written to their places after all other statements.
             Statement::Place { .. } => {}
         }
+    }
+
+    /// The elements of an input that are scattered over the legs: the position of the first leg's,
+    /// and the distance to the next leg's.
+    fn scattered(&self, value: &Expression) -> Option<TokenStream> {
+        let Expression::Input { array, index } = value else {
+            return None;
+        };
+        let Elements::Scattered { of, places } = &self.lanes.inputs[*array] else {
+            return None;
+        };
+        let (of, place) = (ident(&self.lanes.program.inputs[*of].name), places[*index]);
+        let [first, stride, count] = [place.first, place.stride, place.count].map(unsuffixed);
+        Some(if place.count == self.lanes.legs.len() {
+            quote!(::overact::simd::scattered(#of, [#first, #stride], at))
+        } else {
+            quote!(::overact::simd::scattered_of_first(#of, [#first, #stride], #count, at))
+        })
     }
 
     fn push(&mut self, own: bool, statement: &Statement) {

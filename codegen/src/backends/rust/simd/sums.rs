@@ -16,15 +16,15 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 /// The heading of the sums.
-pub(super) const SUMS: (&str, &str) = ("sums", "what all share and what the legs add, added up");
+pub(super) const SUMS: (&str, &str) = ("sums", "sums of the shared terms and those of all legs");
 
 /// The headings of the tables that the legs fill.
 pub(super) fn tables(sums: &Sums) -> Vec<(&'static str, &'static str)> {
     let added = (
         "added",
-        "what the legs add: a row for each number, in it one for each leg",
+        "terms of the sums: one row for each sum, one column for each leg",
     );
-    let own = ("own", "what the legs need again when the sums are known");
+    let own = ("own", "values of the legs that are used after the sums");
     match sums.rows {
         LegRows::None => vec![added],
         LegRows::Given(_) | LegRows::Times(_) => vec![added, own],
@@ -123,7 +123,7 @@ fn kept(
 /// The computation from the sums, as a block.
 fn following(model: &RobotModel, split: &Split<'_>, sums: &Sums) -> TokenStream {
     let program = &sums.program;
-    let body = Body::write(program, &Labels::of_robot(model), &|_| false);
+    let body = Body::write(program, &Labels::of_parameters(model, program), &|_| false);
     let output = match sums.rows {
         LegRows::Times(_) => &program.output,
         _ => &split.lanes.output,

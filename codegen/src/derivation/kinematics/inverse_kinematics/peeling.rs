@@ -222,7 +222,7 @@ fn unknown_label(
     let joint = |index: usize| {
         let local = index.checked_sub(task.first_joint)?;
         let joint = task.leg.independent().nth(local)?;
-        Some(task.leg.joints[joint].name.clone())
+        Some(task.leg.joints[joint].suffix())
     };
     let label: Option<String> = match unknown {
         Unknown::Slide(index) => joint(*index),
