@@ -1,8 +1,9 @@
-//! Runs the tutorials and the page on rejected results, and compares the output of commands.
+//! Runs the commands of the README, of the tutorials and of the page on rejected results, and
+//! compares their output.
 //!
-//! TOML blocks are appended to `rrr.toml` in order; an XML block is `ankle.xml`. Commands of a
-//! console block run in a shell in the same folder. A line `…` matches any lines, and numbers may
-//! differ in their last digits between machines.
+//! Other blocks are files: TOML is appended to the page's TOML file, XML and Rust are written to
+//! theirs. Commands of a console block run in a shell in the same folder. A line `…` matches any
+//! lines, and numbers may differ in their last digits between machines.
 #![cfg(unix)]
 
 mod common;
@@ -51,6 +52,8 @@ fn run(bench: &Bench, command: &str) -> String {
         .args(["-c", &format!("{command} 2>&1")])
         .current_dir(bench.path("."))
         .env("PATH", format!("{}:{path}", folder.display()))
+        .env("CARGO_NET_OFFLINE", "true")
+        .env_remove("CARGO_TARGET_DIR")
         .output()
         .expect("a shell");
     String::from_utf8(output.stdout).expect("UTF-8")
@@ -84,17 +87,27 @@ fn matches(shown: &[&str], printed: &[&str]) -> bool {
     }
 }
 
+/// Names of the files that the blocks of a page are written to.
+#[derive(Default)]
+struct Files<'n> {
+    /// TOML blocks are appended.
+    toml: &'n str,
+    xml: &'n str,
+    rust: &'n str,
+}
+
 /// Runs the blocks of a document; returns the number of commands.
-fn follow(bench: &Bench, text: &str) -> usize {
-    let mut robot = String::new();
+fn follow(bench: &Bench, text: &str, files: &Files<'_>) -> usize {
     let mut commands = 0;
     for block in blocks(text) {
+        let content = block.lines.join("\n") + "\n";
         match block.language {
             "toml" => {
-                robot += &(block.lines.join("\n") + "\n");
-                bench.write("rrr.toml", &robot);
+                let before = fs::read_to_string(bench.path(files.toml)).unwrap_or_default();
+                bench.write(files.toml, &(before + &content));
             }
-            "xml" => bench.write("ankle.xml", &(block.lines.join("\n") + "\n")),
+            "xml" => bench.write(files.xml, &content),
+            "rust" => bench.write(files.rust, &content),
             "console" => {
                 for part in block.lines.join("\n").split("$ ").skip(1) {
                     let (command, shown) = part.split_once('\n').unwrap_or((part, ""));
@@ -118,7 +131,11 @@ fn follow(bench: &Bench, text: &str) -> usize {
 #[test]
 fn answers_that_are_not_to_be_trusted_are_those_that_are_shown() {
     let text = fs::read_to_string(docs().join("untrusted.md")).expect("the page");
-    assert_eq!(follow(&Bench::new(), &text), 9);
+    let files = Files {
+        toml: "rrr.toml",
+        ..Files::default()
+    };
+    assert_eq!(follow(&Bench::new(), &text, &files), 9);
 }
 
 #[test]
@@ -129,7 +146,11 @@ fn the_tutorial_does_what_it_says() {
     }
     let text = fs::read_to_string(docs().join("tutorial.md")).expect("the tutorial");
     let bench = Bench::new();
-    let commands = follow(&bench, &text);
+    let files = Files {
+        toml: "rrr.toml",
+        ..Files::default()
+    };
+    let commands = follow(&bench, &text, &files);
     assert!(commands > 10, "{commands} commands");
     let drawing = fs::read_to_string(docs().join("tutorial.svg")).unwrap_or_default();
     assert!(
@@ -148,7 +169,72 @@ fn the_ankle_is_imported_identified_and_exported_as_shown() {
         return;
     }
     let text = fs::read_to_string(docs().join("tutorial-ankle.md")).expect("the page");
-    assert_eq!(follow(&Bench::new(), &text), 15);
+    let files = Files {
+        xml: "ankle.xml",
+        ..Files::default()
+    };
+    assert_eq!(follow(&Bench::new(), &text, &files), 15);
+}
+
+#[test]
+fn the_arm_is_imported_and_identified_from_a_log_as_shown() {
+    // It is identified three times.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let text = fs::read_to_string(docs().join("tutorial-serial.md")).expect("the page");
+    let files = Files {
+        toml: "arm.toml",
+        xml: "arm.urdf",
+        ..Files::default()
+    };
+    assert_eq!(follow(&Bench::new(), &text, &files), 11);
+}
+
+#[test]
+fn the_controller_is_generated_compiled_and_run_as_shown() {
+    // It is identified, generated and compiled.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let text = fs::read_to_string(docs().join("tutorial-controller.md")).expect("the page");
+    let bench = Bench::new();
+    std::os::unix::fs::symlink(docs().join(".."), bench.path("overact")).expect("a link");
+    let files = Files {
+        toml: "controller/Cargo.toml",
+        rust: "controller/src/main.rs",
+        ..Files::default()
+    };
+    assert_eq!(follow(&bench, &text, &files), 5);
+}
+
+#[test]
+fn the_commands_of_the_readme_run() {
+    // The first one simulates and identifies.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let text = fs::read_to_string(docs().join("../README.md")).expect("the README");
+    let bench = Bench::new();
+    std::os::unix::fs::symlink(docs().join("../robots"), bench.path("robots")).expect("a link");
+    let commands = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("$ cargo run --release -- "));
+    let printed: Vec<String> = commands
+        .map(|command| run(&bench, &format!("overact {command}")))
+        .collect();
+    assert_eq!(printed.len(), 2);
+    assert_eq!(
+        printed[0].matches(": USE IT\n").count(),
+        2,
+        "{}",
+        printed[0]
+    );
+    assert!(
+        printed[1].contains("Base parameters: 49 of 64"),
+        "{}",
+        printed[1]
+    );
 }
 
 #[test]

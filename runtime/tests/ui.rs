@@ -46,6 +46,22 @@ const FEW: [&str; 7] = [
     "stretched_leg.rs",
 ];
 
+/// The program in the README, as a file next to its description.
+fn readme() -> Result<PathBuf, Box<dyn Error>> {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = user_crate()?;
+    fs::copy(
+        repository.join("robots/dualv.toml"),
+        folder.join("dualv.toml"),
+    )?;
+    let text = fs::read_to_string(repository.join("README.md"))?;
+    let (_, rest) = text.split_once("```rust\n").ok_or("no program")?;
+    let (program, _) = rest.split_once("```").ok_or("no end of the program")?;
+    let file = folder.join("readme.rs");
+    fs::write(&file, program)?;
+    Ok(file)
+}
+
 #[test]
 fn wrong_uses_are_explained_and_right_ones_compile() -> Result<(), Box<dyn Error>> {
     copy_descriptions()?;
@@ -63,6 +79,9 @@ fn wrong_uses_are_explained_and_right_ones_compile() -> Result<(), Box<dyn Error
         } else {
             cases.compile_fail(path)
         }
+    }
+    if is_full() {
+        cases.pass(readme()?);
     }
     Ok(())
 }
