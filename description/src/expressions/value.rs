@@ -260,7 +260,7 @@ fn scaled(terms: &[(usize, Ratio)], factor: &Value) -> Result<Vec<(usize, Ratio)
     factor.no_variables("the factor of a joint variable")?;
     let Some(ratio) = factor.scalar.as_ratio() else {
         let fault = Fault::new("the factor of a joint variable must be a fraction");
-        return Err(fault.help("roots and multiples of pi are not fractions"));
+        return Err(fault.help("roots and multiples of pi are not fractions; write the number, for instance `314.1593 rad/m`"));
     };
     let product = |(joint, f): &(usize, Ratio)| Some((*joint, f.times(ratio)?));
     let products: Option<Vec<_>> = terms.iter().map(product).collect();

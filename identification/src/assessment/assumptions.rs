@@ -44,7 +44,7 @@ pub(crate) fn assumptions(
             "the clock is right: if all times are wrong by one factor, masses and inertias are wrong by its square and viscous friction by the factor; only gravity reveals it",
         ),
         String::from(
-            "time is in seconds, positions are in rad and m after `position_scale`, torques in N m and N after `torque_gain`: physical scales reveal a unit that is wrong by a factor of thirty or more, but no smaller factor",
+            "time is in seconds, positions are in rad and m after `position_scale`, torques in N m and N after `torque_gain`: the motion reveals a unit of time or positions that is wrong by a factor of thirty or more; a wrong unit of all torques is certain to be found only with `torque_limit`, `[prior.values]` or a known mass",
         ),
         String::from("the common scale of all lengths is right: angles do not determine it"),
         String::from(

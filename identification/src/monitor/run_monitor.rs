@@ -347,13 +347,23 @@ impl Monitor {
 
     /// Largest range of a position by its RMS step; the step is noise at standstill.
     fn travel(&self) -> f64 {
+        self.travels_in_steps().fold(0.0, f64::max)
+    }
+
+    /// Range of each actuator's positions by its RMS step.
+    fn travels_in_steps(&self) -> impl Iterator<Item = f64> {
         let steps = self.samples.saturating_sub(1).max(1) as f64;
-        let travel = |one: &Position| {
+        self.positions.iter().map(move |one| {
             let step = (one.steps / steps).sqrt();
             let range = one.high - one.low;
             if range > 0.0 { range / step } else { 0.0 }
-        };
-        self.positions.iter().map(travel).fold(0.0, f64::max)
+        })
+    }
+
+    /// Whether each actuator's position changes by no more than its noise.
+    pub(crate) fn at_rest(&self) -> Vec<bool> {
+        let travels = self.travels_in_steps();
+        travels.map(|travel| travel <= STILL_STEPS).collect()
     }
 
     /// Duration for which an encoder is stuck (s), with a description.

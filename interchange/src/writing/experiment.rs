@@ -9,6 +9,8 @@ use std::fmt::Write as _;
 
 /// Number of harmonics of a run.
 const HARMONICS: f64 = 5.0;
+/// Sampling frequency, Hz.
+const SAMPLING: f64 = 1000.0;
 
 /// Writes the settings of experiment and identification, and the runs.
 pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
@@ -21,10 +23,11 @@ pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
         }
     };
     let highest = HARMONICS * FASTER * experiment.fundamental;
+    let cutoff = (10.0 * highest).ceil();
     let _ = writeln!(
         text,
-        "\n[identification]\nfilter_cutoff = \"{} Hz\"\ndecimation = 10",
-        (10.0 * highest).ceil()
+        "\n[identification]\nfilter_cutoff = \"{cutoff} Hz\"\ndecimation = {}",
+        decimation(cutoff)
     );
     text.push('\n');
     comment(
@@ -38,7 +41,8 @@ pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
     }
     let _ = writeln!(
         text,
-        "[experiment]\nsampling = \"1 kHz\"\nduration = \"{} s\"\nbandwidth = \"20 Hz\"\nderivative_cutoff = \"80 Hz\"",
+        "[experiment]\nsampling = \"{} kHz\"\nduration = \"{} s\"\nbandwidth = \"20 Hz\"\nderivative_cutoff = \"80 Hz\"",
+        SAMPLING / 1000.0,
         experiment.duration
     );
     let _ = writeln!(text, "encoder = {}", list(&experiment.encoders));
@@ -60,6 +64,11 @@ pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
         }
         text.push_str("]\n");
     }
+}
+
+/// Decimation at which the equations keep frequencies up to twice the cutoff of the positions.
+fn decimation(cutoff: f64) -> f64 {
+    (SAMPLING / (2.0 * 2.0 * cutoff)).round().max(1.0)
 }
 
 fn term(text: &mut String, term: &Term) {

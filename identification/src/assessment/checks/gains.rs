@@ -103,15 +103,17 @@ fn passed_check(found: &[Tested], detectable: &[Detectable]) -> Check {
 /// The failed check of one drive.
 fn failed_check(worst: &Tested, harm: &Harm, actuator: &str) -> Check {
     let size = worst.wald.size();
-    let by = match size {
+    let others = "those of the other drives";
+    let by = if size.abs() > LARGEST {
         // The first-order test has no valid size for large errors.
-        size if size.abs() > LARGEST => String::from("differently from"),
-        size if size < 0.0 => format!("{} % too small compared with", percent(-size)),
-        size => format!("{} % too large compared with", percent(size)),
+        format!("differently from {others}, by an undetermined factor")
+    } else {
+        let direction = if size < 0.0 { "small" } else { "large" };
+        let [size, deviation] = [size.abs(), worst.wald.deviation].map(percent);
+        format!("{size} % too {direction} compared with {others} (standard deviation {deviation} %)")
     };
     let words = format!(
-        "the torque of `{actuator}` is measured {by} those of the other drives (standard deviation {} %); {}. Check its gain, its motor constant, its gear ratio and whether it is filtered differently from the others",
-        percent(worst.wald.deviation),
+        "the torque of `{actuator}` is measured {by}; {}. Check its gain, its motor constant, its gear ratio and whether it is filtered differently from the others",
         harm.words()
     );
     Check::new(CheckKind::WrongGain, About::Model, words)

@@ -18,6 +18,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let mut checks: Vec<Check> = context.runs().flat_map(of_run).collect();
     checks.extend(rotation::checks(context)?);
+    checks.extend(unmoved(context));
     let stands = |run: &crate::data::Log| {
         let mut own = checks
             .iter()
@@ -49,6 +50,36 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         ));
     }
     Ok(checks)
+}
+
+/// Actuators of a robot without loops that stand still in all training runs while others move.
+///
+/// Nothing in the data distinguishes a locked joint from a dead encoder, with which all estimates
+/// may be wrong.
+fn unmoved(context: &Context<'_>) -> Vec<Check> {
+    let names = context.model.info().actuators;
+    let training = context.watched.iter().take(context.dataset.runs.len());
+    let mut unmoved = vec![!couples(context.model); names.len()];
+    for run in training {
+        for (unmoved, at_rest) in unmoved.iter_mut().zip(run.monitor.at_rest()) {
+            *unmoved &= at_rest;
+        }
+    }
+    // The check of standstill reports a robot that does not move at all.
+    if unmoved.iter().all(|unmoved| *unmoved) {
+        return Vec::new();
+    }
+    let names = names.iter().zip(unmoved).filter(|(_, unmoved)| *unmoved);
+    let check = |(name, _): (&&str, bool)| {
+        let message = format!(
+            "the position of `{name}` does not change in any training run: the joint is locked, or its encoder is dead. Repair the encoder, or move the joint; describe a locked joint as `type = \"fixed\"`"
+        );
+        Check::new(CheckKind::StuckEncoder, About::Data, message)
+            .of_actuator(name)
+            .found()
+            .with_grade(Grade::DoNotUse)
+    };
+    names.map(check).collect()
 }
 
 /// Names of base parameters of dry friction and offsets, which a standstill does not separate.

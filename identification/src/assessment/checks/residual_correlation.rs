@@ -49,7 +49,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     );
     let words = match most_significant {
         Some(_) => format!(
-            "{found}. The model lacks an effect on both: a force on the platform, a cable, crosstalk between current measurements, or an error of the geometry"
+            "{found}. The model lacks an effect on both: an external force, a cable, crosstalk between current measurements, or an error of the geometry. Joint torques that are sums of the same motor currents are correlated, too"
         ),
         None => String::from("the residuals of the actuators are uncorrelated"),
     };

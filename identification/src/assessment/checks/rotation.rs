@@ -59,12 +59,13 @@ pub(super) fn degrees(model: &dyn Model, run: &str, monitor: &Monitor) -> Option
     if couples(model) {
         return None;
     }
-    let revolute = model.info().actuator_is_revolute;
-    let angles = monitor.magnitudes().into_iter().zip(revolute);
-    let angles = angles.filter(|(_, revolute)| **revolute);
-    let largest = angles.map(|(angle, _)| angle).fold(0.0, f64::max);
+    let info = model.info();
+    let kinds = info.actuators.iter().zip(info.actuator_is_revolute);
+    let angles = monitor.magnitudes().into_iter().zip(kinds);
+    let angles = angles.filter(|(_, (_, revolute))| **revolute);
+    let (largest, (name, _)) = angles.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let so = format!(
-        "an angle of {largest:.0} rad would be {:.1} turns",
+        "an angle of {largest:.0} rad of `{name}` would be {:.1} turns",
         largest / TAU
     );
     let check = || {

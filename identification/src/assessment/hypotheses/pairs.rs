@@ -158,14 +158,20 @@ impl Scores {
 
     /// Variance that periodic residuals add to the mean of a product of two actuators.
     ///
-    /// The second value is its square by its degrees of freedom.
+    /// The second value is its square by its degrees of freedom. Both are zero unless the lines are
+    /// the actuators' equations. The residuals of the lines are weighted, the product is not.
     fn periodic_variance(&self, first: usize, second: usize) -> [f64; 2] {
-        // If all actuators are kept, the lines are those of the actuators.
+        let Some(weights) = &self.actuator_weights else {
+            return [0.0; 2];
+        };
+        let weight = |line: usize| weights.get(line).copied().unwrap_or(1.0);
+        let weight = weight(first) * weight(second);
         let lines = self.runs.first().map_or(0, |run| run.lines);
         let equations: usize = self.runs.iter().map(|run| run.equations).sum();
         let instants = equations as f64 / lines.max(1) as f64;
         let products = self.means.iter().map(|own| own.mean.product(first, second));
         let [sum, scatter] = products.fold([0.0; 2], |all, own| [all[0] + own[0], all[1] + own[1]]);
-        [sum / instants.powi(2), scatter / instants.powi(4)]
+        let scale = (weight * instants).powi(2);
+        [sum / scale, scatter / scale.powi(2)]
     }
 }

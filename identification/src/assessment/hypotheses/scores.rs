@@ -23,6 +23,7 @@ use crate::{
     regression::{
         columns::ColumnSet,
         fold::{self, Folds, Phases},
+        projection::ModelKind,
     },
     result::Estimate,
     settings::Settings,
@@ -56,6 +57,8 @@ pub(crate) struct Scores {
     pub(super) runs: Vec<RunScores>,
     /// Periodic motions.
     pub(super) means: Vec<MotionMean>,
+    /// Weight of each actuator's equation, if each line is the equation of an actuator.
+    pub(super) actuator_weights: Option<Vec<f64>>,
     /// Ratio of the estimate's band to that of the equations.
     pub(crate) narrower: usize,
     /// Cached tests with the estimate's own columns.
@@ -148,6 +151,8 @@ impl ScoreTest<'_> {
             layout,
             selected,
             means: means(&scores),
+            actuator_weights: (estimate.model != ModelKind::Platform)
+                .then(|| estimate.weights.clone()),
             narrower,
             runs: scores,
             hypotheses,
