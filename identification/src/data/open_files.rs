@@ -32,7 +32,7 @@ impl Files {
         problems.extend(tables.iter().filter_map(Table::without_lines));
         problems.extend(twice(files));
         Error::check(problems)?;
-        Self::of_tables(name, (tables, numbers), mapping)
+        Self::of_tables(name, tables, numbers, mapping)
     }
 
     /// The run `name` of tables, each with the number of its file.
@@ -41,17 +41,20 @@ impl Files {
     /// An invalid mapping, missing columns.
     pub(super) fn of_tables(
         name: String,
-        (mut tables, mut numbers): (Vec<Table>, Vec<usize>),
+        mut tables: Vec<Table>,
+        mut numbers: Vec<usize>,
         mapping: &Mapping,
     ) -> Result<Self, Error> {
         mapping.check()?;
         if tables.iter().any(Table::is_part) {
-            (tables, numbers) = used(&name, (tables, numbers), mapping)?;
+            let used = used(&name, &tables, &numbers, mapping)?;
+            numbers = used.iter().map(|table| numbers[*table]).collect();
+            tables = used.iter().map(|table| tables[*table].clone()).collect();
         }
         if let Some(origin) = tables.iter().find_map(Table::origin) {
             tables.iter_mut().for_each(|table| table.set_origin(origin));
         }
-        let signals = Signals::new(&name, (&tables, &numbers), mapping)?;
+        let signals = Signals::new(&name, &tables, &numbers, mapping)?;
         let mut files = Self {
             rotations: signals.rotations(&mapping.rotating),
             rotating_values: signals.rotating_values(&mapping.rotating),
@@ -232,23 +235,22 @@ fn round(rate: f64) -> f64 {
     (rate * 1e6).round() / 1e6
 }
 
-/// Removes parts of files, such as topics, without signals of the run.
+/// Indices of the tables without parts of files, such as topics, that have no signals of the run.
 ///
-/// The remaining parts are in the order of the mapping, with the number of their file.
+/// The parts of a file are in the order of the mapping.
 fn used(
     name: &str,
-    (tables, numbers): (Vec<Table>, Vec<usize>),
+    tables: &[Table],
+    numbers: &[usize],
     mapping: &Mapping,
-) -> Result<(Vec<Table>, Vec<usize>), Error> {
-    let used = Signals::used(name, (&tables, &numbers), mapping)?;
+) -> Result<Vec<usize>, Error> {
+    let used = Signals::used(name, tables, numbers, mapping)?;
     let place = |table: usize| used.iter().position(|own| *own == table);
     let is_kept = |table: usize| !tables[table].is_part() || place(table).is_some();
     let mut order: Vec<usize> = (0..tables.len()).filter(|table| is_kept(*table)).collect();
     // Files keep their order.
     order.sort_by_key(|table| (numbers[*table], place(*table)));
-    let numbers = order.iter().map(|table| numbers[*table]).collect();
-    let tables = order.iter().map(|table| tables[*table].clone()).collect();
-    Ok((tables, numbers))
+    Ok(order)
 }
 
 #[cfg(all(test, not(target_family = "wasm")))]

@@ -59,7 +59,8 @@ impl Files {
                 self.name.clone(),
                 clock,
                 self.width(),
-                (step, rate),
+                step,
+                rate,
             ));
         };
         // The first file keeps its own times, unless the run is resampled.
@@ -78,7 +79,8 @@ impl Files {
             file,
             Expression::Column(*place),
             width,
-            (*step, rate),
+            *step,
+            rate,
         ))
     }
 

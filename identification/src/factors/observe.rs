@@ -18,7 +18,7 @@ use crate::{
     prior::Prior,
     regression::{
         columns::ColumnSet,
-        observation::{Observer, RunObservation},
+        observation::{MeasuredRun, Observer, RunObservation},
         projection::Projection,
         system::Observed,
     },
@@ -228,8 +228,14 @@ impl Columns {
         };
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
-        let (systems, observation) =
-            observer.run(0, (log, None), (about.budget.unwrap_or(0), None), &report)?;
+        let measured = MeasuredRun {
+            number: 0,
+            log,
+            instruments: None,
+            budget: about.budget.unwrap_or(0),
+            returns: None,
+        };
+        let (systems, observation) = observer.run(&measured, &report)?;
         let models = projections.iter().zip(systems);
         let models = models.map(|(projection, observed)| {
             let lines = projection.line_names(&info);

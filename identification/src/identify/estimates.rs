@@ -13,9 +13,12 @@ use crate::{
         correlation::Noise,
         essential::{Removal, essential},
         estimate::{Estimation, estimate},
-        instruments::{Instrumental, regressor::ErrorsInRegressor},
+        instruments::{
+            Instrumental,
+            regressor::{ErrorsInRegressor, EstimatePair},
+        },
         intervals::Intervals,
-        recommended::recommended,
+        recommended::{BaseEstimate, recommended},
     },
     regression::{
         elimination::eliminate,
@@ -74,7 +77,7 @@ pub fn estimate_projection(
     let mut warnings = Vec::new();
     let (selected, names) = on_data(prepared, system, &mut warnings)?;
     let base = estimate(system, &selected, settings)?;
-    let more = covariance_before(prepared, projection, (&selected, &base.weights));
+    let more = covariance_before(prepared, projection, &selected, &base.weights);
     let (rest, intervals) = rayon::join(
         || essential(system, &selected, &names, &base, settings),
         || Intervals::new(system, &selected, &base).widened(more.as_ref()),
@@ -82,8 +85,13 @@ pub fn estimate_projection(
     let rest = rest?;
     warnings.extend(quality_warnings(system, &base));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
-    let told = (&intervals, rest.folds.as_ref());
-    let chosen = recommended(system, (&selected, &names), &base, told, settings)?;
+    let start = BaseEstimate {
+        selected: &selected,
+        names: &names,
+        estimation: &base,
+        intervals: &intervals,
+    };
+    let chosen = recommended(system, &start, rest.folds.as_ref(), settings)?;
     let chosen_noise = Noise::new(system, &chosen.selected, &chosen.estimation);
     let context = Context {
         prepared,
@@ -220,7 +228,8 @@ impl Context<'_> {
         let more = covariance_before(
             self.prepared,
             self.projection,
-            (selected, &estimation.weights),
+            selected,
+            &estimation.weights,
         );
         let intervals = Intervals::new(self.system, selected, &estimation);
         let intervals = intervals.widened(more.as_ref());
@@ -262,16 +271,18 @@ impl Context<'_> {
                 return (None, ErrorsInRegressor { missing, ..told });
             }
         };
-        let named: Vec<(String, String)> = selected
-            .iter()
-            .zip(names)
-            .map(|(column, name)| (name.clone(), self.unit(*column).to_owned()))
-            .collect();
-        let honest = self.intervals.deviations();
-        let told = told.compared((self.system, selected), (base, &honest), &found, &named);
+        let units: Vec<&str> = selected.iter().map(|column| self.unit(*column)).collect();
+        let estimates = EstimatePair {
+            system: self.system,
+            selected,
+            least_squares: base,
+            deviations: &self.intervals.deviations(),
+            instrumental: &found,
+        };
+        let told = told.compared(&estimates, names, &units);
         let estimation = found.estimation.clone();
         // Both estimates are close, so the effect of gains is that on least squares.
-        let more = covariance_before(self.prepared, self.projection, (selected, &base.weights));
+        let more = covariance_before(self.prepared, self.projection, selected, &base.weights);
         let own = found.intervals.clone();
         let own = own.map(|own| own.widened(more.as_ref()));
         let intervals = own.as_ref().unwrap_or(&self.intervals);
@@ -305,8 +316,9 @@ impl Context<'_> {
             || self.without_noise(estimation, selected),
             |noise| noise.deviations(selected, estimation),
         );
-        let place = (selected, estimation.weights.as_slice());
-        let Some(more) = covariance_before(self.prepared, self.projection, place) else {
+        let weights = &estimation.weights;
+        let more = covariance_before(self.prepared, self.projection, selected, weights);
+        let Some(more) = more else {
             return own;
         };
         let more = more.diagonal();
@@ -382,12 +394,13 @@ impl Context<'_> {
 fn covariance_before(
     prepared: &Prepared,
     projection: usize,
-    estimate: (&[usize], &[f64]),
+    selected: &[usize],
+    weights: &[f64],
 ) -> Option<DMatrix<f64>> {
     prepared
         .propagated_uncertainty
         .as_ref()?
-        .covariance(projection, estimate)
+        .covariance(projection, selected, weights)
 }
 
 /// Base parameters that the data separate, with their names; warns of the others.

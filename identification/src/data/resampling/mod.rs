@@ -77,12 +77,7 @@ struct LowPass {
 
 impl Resampled {
     /// Rows of `width` numbers with a usual `step`, s, for a new `rate`, Hz.
-    pub(super) fn new(
-        file: String,
-        clock: Expression,
-        width: usize,
-        (step, rate): (f64, f64),
-    ) -> Self {
+    pub(super) fn new(file: String, clock: Expression, width: usize, step: f64, rate: f64) -> Self {
         let ratio = 1.0 / (step * rate);
         // A NaN step gets no low-pass filter; its times are rejected later.
         let low_pass = is_lower(step, rate).then(|| LowPass {

@@ -5,17 +5,17 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::scores::Context;
+use super::scores::{Context, Covariance};
 use crate::{
     estimation::periodic_variance::{Mean, SumVariance},
     regression::system::System,
 };
 
-/// Ratio of each parameter's variance to `variances`, with its degrees of freedom.
+/// Ratio of each parameter's variance to that of `covariance`, with its degrees of freedom.
 pub(super) fn ratios(
     system: &System,
     context: &Context<'_>,
-    (variances, freedoms): (&[f64], &[f64]),
+    covariance: &Covariance,
 ) -> Vec<(f64, f64)> {
     let p = context.selected.len();
     let influence = context.influence();
@@ -47,10 +47,10 @@ pub(super) fn ratios(
     if system.folds.is_empty() {
         return vec![(1.0, f64::INFINITY); p];
     }
-    let squares = context.inverse.diagonal();
-    let each = sum_variances.iter().zip(variances).zip(squares.iter());
+    let (variances, squares) = (covariance.matrix.diagonal(), context.inverse.diagonal());
+    let each = sum_variances.iter().zip(&variances).zip(&squares);
     let ratios = each
-        .zip(freedoms)
+        .zip(&covariance.freedoms)
         .map(|(((sum_variance, variance), square), own)| {
             let (ratio, freedom) = sum_variance.by(*variance, *square);
             VarianceRatio::new(ratio, freedom, *own)
