@@ -35,7 +35,7 @@ pub(super) type Source<'a> = dyn FnMut(&mut [f64]) -> Result<bool, Error> + 'a;
 /// Position of a time relative to the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
-    PriorStage,
+    Before,
     Inside,
     Behind,
 }
@@ -169,9 +169,9 @@ impl Resampled {
             match self.between(source, origin + next as f64 * low_pass.step, &mut row)? {
                 Place::Inside => low_pass.values.push_back(row),
                 // Times before the first sample are not requested again.
-                Place::PriorStage => {
+                Place::Before => {
                     low_pass.values.clear();
-                    return Ok(Place::PriorStage);
+                    return Ok(Place::Before);
                 }
                 Place::Behind => return Ok(Place::Behind),
             }
@@ -212,7 +212,7 @@ impl Resampled {
             }
         }
         match self.range {
-            Some((first, _)) if time < first => return Ok(Place::PriorStage),
+            Some((first, _)) if time < first => return Ok(Place::Before),
             Some((_, last)) if time <= last => {}
             _ => return Ok(Place::Behind),
         }
