@@ -90,6 +90,7 @@ pub use regression::{
     columns::{Column, ColumnSet, Direction, is_carried},
     factor::Factor,
     projection::{ModelKind, Projection},
+    states::SampledStates,
     system::{Part, PartitionCondition, Stretch, System},
 };
 pub use result::{

@@ -11,7 +11,7 @@ use overact::{Function, Model};
 use overact_codegen::{Source, compile};
 use overact_identification::Factor;
 use overact_identification::filters::{Decimator, ZeroPhase, butterworth};
-use overact_identification::{ColumnSet, Error};
+use overact_identification::{ColumnSet, Error, Load, SampledStates};
 use overact_robot::InterpretedRobot;
 use std::{env, fs, process::ExitCode};
 
@@ -93,12 +93,17 @@ impl Work<'_> {
         let twist = part(&motion.twist, sizes.dof);
         let acceleration = part(&motion.acceleration, sizes.dof);
         let torques = part(&self.torques, sizes.actuators);
-        let states: [&[f64]; 3] = [&pose, &twist, &acceleration];
-        let sampling = (count, 1.0 / self.frequency);
-        let picked = (&self.picked[..], 1);
+        let states = SampledStates {
+            samples: count,
+            interval: 1.0 / self.frequency,
+            pose: &pose,
+            twist: &twist,
+            acceleration: &acceleration,
+            carried: Load::Nothing,
+        };
         let mut lines = self
             .columns
-            .evaluate(self.model, &states, sampling, false, picked)?;
+            .evaluate(self.model, &states, &self.picked, 1)?;
         let mut measured = vec![0.0; count * sizes.dof];
         self.model
             .evaluate(Function::ProjectPlatform, &[&pose, &torques], &mut measured)?;

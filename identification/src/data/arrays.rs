@@ -52,7 +52,7 @@ impl Arrays {
     /// Adds an array of `rows` × `columns` with column-major `values`.
     ///
     /// Samples run along its longer side.
-    pub(super) fn push(&mut self, name: &str, (rows, columns): (usize, usize), values: &[f64]) {
+    pub(super) fn push(&mut self, name: &str, rows: usize, columns: usize, values: &[f64]) {
         self.names.push(name.to_owned());
         let mut add = |name: String, values: Arc<[f64]>| self.series.push(Series { name, values });
         if rows <= 1 || columns <= 1 {

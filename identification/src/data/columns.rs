@@ -22,15 +22,12 @@ pub(super) struct RequestedColumns {
     pub(super) places: Vec<usize>,
 }
 
-/// The tables of a run, and the file of each, counted from 1; a file may have several tables.
-pub(super) type Tables<'a> = (&'a [Table], &'a [usize]);
-
 /// Columns requested so far.
 pub(super) struct Columns<'a> {
     /// The run as the caller named it.
     run: &'a str,
     tables: &'a [Table],
-    /// File of each table, counted from 1.
+    /// File of each table, counted from 1; a file may have several tables.
     numbers: &'a [usize],
     /// Columns found, each with the name of the first request.
     found: Vec<(Place, String)>,
@@ -40,7 +37,7 @@ pub(super) struct Columns<'a> {
 
 impl<'a> Columns<'a> {
     /// No columns requested.
-    pub(super) const fn new(run: &'a str, (tables, numbers): Tables<'a>) -> Self {
+    pub(super) const fn new(run: &'a str, tables: &'a [Table], numbers: &'a [usize]) -> Self {
         Self {
             run,
             tables,
@@ -343,7 +340,7 @@ impl<'a> Columns<'a> {
         } else {
             format!("the files have {}", quoted(full.iter().copied()))
         };
-        let problem = no_columns(self.run, (missing, what), &existing);
+        let problem = no_columns(self.run, missing, what, &existing);
         if missing.iter().any(|name| name.starts_with('$')) {
             problem.help(format!(
                 "columns have the numbers `$1` to `${columns}`; if others are in another file of this run, join both files, `a.csv+b.csv`"

@@ -50,7 +50,7 @@ fn push(arrays: &mut Arrays, name: &str, array: &Array) {
     let rows = array.size().first().copied().unwrap_or(0);
     let values = values(array.data());
     let columns = values.len().checked_div(rows).unwrap_or(0);
-    arrays.push(name, (rows, columns), &values);
+    arrays.push(name, rows, columns, &values);
 }
 
 /// Real parts of an array, in MATLAB's column-major order.

@@ -128,10 +128,11 @@ pub fn read_arrays(
 ) -> Result<Log, Error> {
     let mut table = Arrays::new(name.to_owned());
     for array in arrays {
-        table.push(array.name, array.shape, array.values);
+        let (rows, columns) = array.shape;
+        table.push(array.name, rows, columns, array.values);
     }
-    let tables = (vec![Table::Arrays(table)], vec![1]);
-    let files = Files::of_tables(name.to_owned(), tables, mapping)?;
+    let tables = vec![Table::Arrays(table)];
+    let files = Files::of_tables(name.to_owned(), tables, vec![1], mapping)?;
     first_pass(files, mapping, payload, &|_| {})
 }
 

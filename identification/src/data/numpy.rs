@@ -112,7 +112,7 @@ fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
         .chunks_exact(header.number.size)
         .map(|bytes| header.number.value(bytes))
         .collect();
-    let shape = match header.shape[..] {
+    let (rows, columns) = match header.shape[..] {
         [] => (1, 1),
         [rows] => (rows, 1),
         [rows, columns] => (rows, columns),
@@ -120,11 +120,10 @@ fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
     };
     if values.is_empty() {
         // An empty array, of any other size.
-        arrays.push(name, (0, 0), &values);
-    } else if header.is_by_columns || shape.1 <= 1 {
-        arrays.push(name, shape, &values);
+        arrays.push(name, 0, 0, &values);
+    } else if header.is_by_columns || columns <= 1 {
+        arrays.push(name, rows, columns, &values);
     } else {
-        let (rows, columns) = shape;
         let column = |column: usize| {
             values
                 .iter()
@@ -134,7 +133,7 @@ fn push(arrays: &mut Arrays, name: &str, file: &[u8]) -> Result<(), String> {
                 .copied()
         };
         let values: Vec<f64> = (0..columns).flat_map(column).collect();
-        arrays.push(name, shape, &values);
+        arrays.push(name, rows, columns, &values);
     }
     Ok(())
 }

@@ -3,8 +3,15 @@
 use overact::Code;
 
 use super::{
-    byte_source::ByteSource, mapping::Mapping, problems::shown, resampling, rows::Joined,
-    signals::Signals, source::Files, table::Table, transmission::Transmission,
+    byte_source::ByteSource,
+    mapping::Mapping,
+    problems::shown,
+    resampling,
+    rows::Joined,
+    signals::Signals,
+    source::{FileClock, Files, Resampling},
+    table::Table,
+    transmission::Transmission,
 };
 use crate::error::{Error, Problem};
 
@@ -32,7 +39,7 @@ impl Files {
         problems.extend(tables.iter().filter_map(Table::without_lines));
         problems.extend(twice(files));
         Error::check(problems)?;
-        Self::of_tables(name, (tables, numbers), mapping)
+        Self::of_tables(name, tables, numbers, mapping)
     }
 
     /// The run `name` of tables, each with the number of its file.
@@ -41,17 +48,20 @@ impl Files {
     /// An invalid mapping, missing columns.
     pub(super) fn of_tables(
         name: String,
-        (mut tables, mut numbers): (Vec<Table>, Vec<usize>),
+        mut tables: Vec<Table>,
+        mut numbers: Vec<usize>,
         mapping: &Mapping,
     ) -> Result<Self, Error> {
         mapping.check()?;
         if tables.iter().any(Table::is_part) {
-            (tables, numbers) = used(&name, (tables, numbers), mapping)?;
+            let used = used(&name, &tables, &numbers, mapping)?;
+            numbers = used.iter().map(|table| numbers[*table]).collect();
+            tables = used.iter().map(|table| tables[*table].clone()).collect();
         }
         if let Some(origin) = tables.iter().find_map(Table::origin) {
             tables.iter_mut().for_each(|table| table.set_origin(origin));
         }
-        let signals = Signals::new(&name, (&tables, &numbers), mapping)?;
+        let signals = Signals::new(&name, &tables, &numbers, mapping)?;
         let mut files = Self {
             rotations: signals.rotations(&mapping.rotating),
             rotating_values: signals.rotating_values(&mapping.rotating),
@@ -62,12 +72,13 @@ impl Files {
             has_velocities: !mapping.velocities.is_empty(),
             clocks: Vec::new(),
             transmission: Transmission::new(&mapping.transmission, mapping.positions.len())?,
-            resample: None,
+            resampling: None,
             spill: None,
         };
         files.clocks = files.differing_clocks()?;
         if let Some(rate) = mapping.resample {
-            files.resample = Some((rate, files.usual_step()?));
+            let step = files.usual_step()?;
+            files.resampling = Some(Resampling { rate, step });
         }
         Error::check(files.unfit_rates())?;
         Ok(files)
@@ -75,8 +86,8 @@ impl Files {
 
     /// Usual step of the run's samples, s: that of the first file if clocks differ.
     fn usual_step(&self) -> Result<f64, Error> {
-        if let Some((_, _, step)) = self.clocks.first() {
-            return Ok(*step);
+        if let Some(clock) = self.clocks.first() {
+            return Ok(clock.step);
         }
         let mut joined = Joined::new(self)?;
         let mut row = vec![0.0; self.width()];
@@ -91,21 +102,21 @@ impl Files {
     /// The problems of rates too far from those of the samples, and of files without times.
     fn unfit_rates(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
-        let run = (self.name.clone(), self.resample.map(|(_, step)| step));
-        let rate = match (self.resample, self.clocks.first()) {
-            (Some((rate, _)), _) => rate,
-            (None, Some((_, _, step))) => 1.0 / step,
+        let run = (self.name.clone(), self.resampling.map(|own| own.step));
+        let rate = match (self.resampling, self.clocks.first()) {
+            (Some(own), _) => own.rate,
+            (None, Some(clock)) => 1.0 / clock.step,
             (None, None) => return problems,
         };
         let followers = self
             .clocks
             .iter()
-            .map(|(table, _, step)| (self.tables[*table].label(), Some(*step)));
+            .map(|clock| (self.tables[clock.table].label(), Some(clock.step)));
         for (name, step) in followers.chain([run]) {
             let step = step.filter(|step| *step > 0.0);
             let ratio = step.map_or(1.0, |step| rate * step);
             let what = match ratio {
-                _ if ratio > resampling::MOST_HIGHER && self.resample.is_some() => {
+                _ if ratio > resampling::MOST_HIGHER && self.resampling.is_some() => {
                     "more than ten times"
                 }
                 _ if ratio < 1.0 / resampling::MOST_LOWER => "less than a thousandth of",
@@ -125,10 +136,10 @@ impl Files {
             );
             break;
         }
-        if self.resample.is_some() && !self.clocks.is_empty() {
-            for (table, columns) in self.tables.iter().zip(self.signals.columns()) {
-                let number = self.tables.iter().position(|own| std::ptr::eq(own, table));
-                let has_clock = self.clocks.iter().any(|(own, ..)| Some(*own) == number);
+        if self.resampling.is_some() && !self.clocks.is_empty() {
+            let tables = self.tables.iter().zip(self.signals.columns());
+            for (number, (table, columns)) in tables.enumerate() {
+                let has_clock = self.clocks.iter().any(|own| own.table == number);
                 if !has_clock && !columns.is_empty() {
                     let message = format!(
                         "{} has no times, while those of the other files differ",
@@ -145,11 +156,11 @@ impl Files {
     }
 
     /// Clocks of the files; empty if they agree.
-    fn differing_clocks(&self) -> Result<Vec<(usize, usize, f64)>, Error> {
+    fn differing_clocks(&self) -> Result<Vec<FileClock>, Error> {
         let columns: Vec<_> = self.signals.columns().collect();
-        let open = |&(file, place): &(usize, usize)| {
-            let clock = columns[file].get(place..=place).unwrap_or_default();
-            self.tables[file].rows(clock)
+        let open = |&(table, column): &(usize, usize)| {
+            let clock = columns[table].get(column..=column).unwrap_or_default();
+            self.tables[table].rows(clock)
         };
         let clocks = self.signals.clocks();
         let all: Result<Vec<_>, Error> = clocks.iter().map(open).collect();
@@ -157,16 +168,21 @@ impl Files {
             return Ok(Vec::new());
         }
         let with_step = |clock: &(usize, usize)| {
+            let &(table, column) = clock;
             let step = resampling::usual_step(resampling::times(open(clock)?));
-            Ok((clock.0, clock.1, step))
+            Ok(FileClock {
+                table,
+                column,
+                step,
+            })
         };
         clocks.iter().map(with_step).collect()
     }
 
     /// Note on resampling, and on files joined by time.
     pub(super) fn note(&self, samples: usize, left_out: usize) -> Option<String> {
-        let labels = |clocks: &[(usize, usize, f64)]| {
-            let labels = clocks.iter().map(|(table, ..)| self.tables[*table].label());
+        let labels = |clocks: &[FileClock]| {
+            let labels = clocks.iter().map(|own| self.tables[own.table].label());
             labels.collect::<Vec<_>>().join(", ")
         };
         let passed = |rate: f64, is_lower: bool| {
@@ -176,8 +192,8 @@ impl Files {
                 String::new()
             }
         };
-        if let Some((rate, step)) = self.resample {
-            let mut steps = self.clocks.iter().map(|(_, _, step)| *step).chain([step]);
+        if let Some(Resampling { rate, step }) = self.resampling {
+            let mut steps = self.clocks.iter().map(|own| own.step).chain([step]);
             let low_pass = passed(rate, steps.any(|step| resampling::is_lower(step, rate)));
             let (what, from) = match &self.clocks[..] {
                 [] => (
@@ -191,7 +207,7 @@ impl Files {
                 round(rate)
             ));
         }
-        let (&(first, _, step), others) = self.clocks.split_first()?;
+        let (first, others) = self.clocks.split_first()?;
         let left = match left_out {
             0 => String::new(),
             _ => format!(
@@ -199,14 +215,14 @@ impl Files {
                 samples + left_out
             ),
         };
-        let rate = 1.0 / step;
+        let rate = 1.0 / first.step;
         let is_lower = others
             .iter()
-            .any(|(_, _, own)| resampling::is_lower(*own, rate));
+            .any(|own| resampling::is_lower(own.step, rate));
         Some(format!(
             "{} was interpolated onto the times of {}{}, since the clocks differ{left}",
             labels(others),
-            self.tables[first].label(),
+            self.tables[first.table].label(),
             passed(rate, is_lower)
         ))
     }
@@ -232,23 +248,22 @@ fn round(rate: f64) -> f64 {
     (rate * 1e6).round() / 1e6
 }
 
-/// Removes parts of files, such as topics, without signals of the run.
+/// Indices of the tables without parts of files, such as topics, that have no signals of the run.
 ///
-/// The remaining parts are in the order of the mapping, with the number of their file.
+/// The parts of a file are in the order of the mapping.
 fn used(
     name: &str,
-    (tables, numbers): (Vec<Table>, Vec<usize>),
+    tables: &[Table],
+    numbers: &[usize],
     mapping: &Mapping,
-) -> Result<(Vec<Table>, Vec<usize>), Error> {
-    let used = Signals::used(name, (&tables, &numbers), mapping)?;
+) -> Result<Vec<usize>, Error> {
+    let used = Signals::used(name, tables, numbers, mapping)?;
     let place = |table: usize| used.iter().position(|own| *own == table);
     let is_kept = |table: usize| !tables[table].is_part() || place(table).is_some();
     let mut order: Vec<usize> = (0..tables.len()).filter(|table| is_kept(*table)).collect();
     // Files keep their order.
     order.sort_by_key(|table| (numbers[*table], place(*table)));
-    let numbers = order.iter().map(|table| numbers[*table]).collect();
-    let tables = order.iter().map(|table| tables[*table].clone()).collect();
-    Ok((tables, numbers))
+    Ok(order)
 }
 
 #[cfg(all(test, not(target_family = "wasm")))]

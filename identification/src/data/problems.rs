@@ -180,7 +180,8 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
     } = existing;
     let problem = no_columns(
         file,
-        (missing, what),
+        missing,
+        what,
         &match (names.is_empty(), columns) {
             (false, _) => format!("the file has {}", quoted(names.iter().copied())),
             (true, 0) => String::from("the file has none"),
@@ -204,7 +205,7 @@ pub(super) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
 }
 
 /// The problem of missing columns, with the text `existing`.
-pub(super) fn no_columns(file: &str, (missing, what): (&[&str], &str), existing: &str) -> Problem {
+pub(super) fn no_columns(file: &str, missing: &[&str], what: &str, existing: &str) -> Problem {
     let (is, s) = match missing.len() {
         1 => ("is", ""),
         _ => ("are", "s"),

@@ -142,9 +142,9 @@ impl<'a> Joined<'a> {
                 }
             }
             let clock =
-                clock.filter(|(file, ..)| *file == number && ended.is_none() && given.is_none());
-            if let Some(&(_, place, _)) = clock {
-                time = own.get(place).copied();
+                clock.filter(|own| own.table == number && ended.is_none() && given.is_none());
+            if let Some(clock) = clock {
+                time = own.get(clock.column).copied();
             }
         }
         if let (Some(time), None) = (time, given) {
@@ -187,10 +187,10 @@ impl<'a> Joined<'a> {
 
     /// The problem of files without a common time.
     fn apart(&self) -> Option<Problem> {
-        let (first, ..) = self.files.clocks.first()?;
+        let first = self.files.clocks.first()?.table;
         let name = |number: usize| self.files.tables[number].file();
-        let own = self.parts[*first].resampled.as_ref();
-        let first = (name(*first), own.map_or(self.range, Resampled::range)?);
+        let own = self.parts[first].resampled.as_ref();
+        let first = (name(first), own.map_or(self.range, Resampled::range)?);
         let parts = self.parts.iter().enumerate();
         let mut ranges =
             parts.filter_map(|(file, part)| Some((name(file), part.resampled.as_ref()?.range()?)));
@@ -276,9 +276,9 @@ impl<'a> Rows<'a> {
     /// that ends before the others.
     pub(super) fn next(&mut self, samples: &mut Samples) -> Result<bool, Error> {
         loop {
-            let step = match self.files.resample {
+            let step = match self.files.resampling {
                 None => self.joined.advance(&mut self.values, None),
-                Some((rate, _)) => self.uniform(rate),
+                Some(own) => self.uniform(own.rate),
             };
             match step? {
                 Step::End => return Ok(false),
@@ -324,7 +324,7 @@ impl<'a> Rows<'a> {
         let place = resampled.at(&mut |row| joined.next(row), time, &mut self.values);
         Ok(match place? {
             Place::Inside => Step::Row,
-            Place::PriorStage => Step::Outside,
+            Place::Before => Step::Outside,
             Place::Behind => Step::End,
         })
     }
@@ -409,7 +409,7 @@ impl<'a> Rows<'a> {
     /// Line of the last sample, if the run is one file with lines.
     pub(super) fn line(&self) -> Option<usize> {
         match &self.joined.parts[..] {
-            [part] if self.files.resample.is_none() => part.rows.logged().line(),
+            [part] if self.files.resampling.is_none() => part.rows.logged().line(),
             _ => None,
         }
     }

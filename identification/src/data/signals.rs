@@ -1,7 +1,7 @@
 //! Signals of a mapping: requested columns, and their conversion to time and SI units.
 
 use super::{
-    columns::{Columns, RequestedColumns, Tables},
+    columns::{Columns, RequestedColumns},
     expression::Expression,
     mapping::{Gain, Mapping, Time},
     problems::missing_columns,
@@ -46,13 +46,18 @@ pub(super) struct Signals {
 }
 
 impl Signals {
-    /// Finds the columns of the mapping in the files of `run`.
+    /// Finds the columns of the mapping in the tables of `run`, each with the number of its file.
     ///
     /// # Errors
     /// All missing columns, invalid expressions and gains that are no numbers.
-    pub(super) fn new(run: &str, tables: Tables<'_>, mapping: &Mapping) -> Result<Self, Error> {
-        let gains = gains(run, tables.0, mapping)?;
-        let mut columns = Columns::new(run, tables);
+    pub(super) fn new(
+        run: &str,
+        tables: &[Table],
+        numbers: &[usize],
+        mapping: &Mapping,
+    ) -> Result<Self, Error> {
+        let gains = gains(run, tables, mapping)?;
+        let mut columns = Columns::new(run, tables, numbers);
         let mut times = match &mapping.time {
             Time::Column(name) => columns.all(name),
             Time::Frequency(_) => Vec::new(),
@@ -87,10 +92,11 @@ impl Signals {
     /// All missing columns.
     pub(super) fn used(
         run: &str,
-        tables: Tables<'_>,
+        tables: &[Table],
+        numbers: &[usize],
         mapping: &Mapping,
     ) -> Result<Vec<usize>, Error> {
-        let mut columns = Columns::new(run, tables);
+        let mut columns = Columns::new(run, tables, numbers);
         let signals = [&mapping.positions, &mapping.torques, &mapping.velocities];
         for text in signals.into_iter().flatten() {
             columns.ask(text);

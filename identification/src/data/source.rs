@@ -20,6 +20,26 @@ pub(super) enum WrapSource {
     Position,
 }
 
+/// Clock of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FileClock {
+    /// Number of the table.
+    pub(super) table: usize,
+    /// Index of the time column among the requested columns of the table.
+    pub(super) column: usize,
+    /// Usual step, s.
+    pub(super) step: f64,
+}
+
+/// Resampling of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Resampling {
+    /// New rate, Hz.
+    pub(super) rate: f64,
+    /// Usual step before, s.
+    pub(super) step: f64,
+}
+
 /// Files of a run, with the meaning of their columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Files {
@@ -29,17 +49,17 @@ pub(super) struct Files {
     pub(super) signals: Signals,
     pub(super) actuators: usize,
     pub(super) has_velocities: bool,
-    /// For files with different clocks: table, index of its clock, and usual step, s.
+    /// Clocks of the files if they differ.
     ///
     /// The times of the first one are those of the run. Empty if clocks agree.
-    pub(super) clocks: Vec<(usize, usize, f64)>,
+    pub(super) clocks: Vec<FileClock>,
     /// Transformation from motors to joints, if the columns are those of motors.
     pub(super) transmission: Option<Transmission>,
     /// Columns, and computed positions, that may be wrapped angles.
     pub(super) rotations: Vec<Rotation>,
     pub(super) rotating_values: Vec<Rotation>,
-    /// Resampling rate, Hz, and usual step before, s.
-    pub(super) resample: Option<(f64, f64)>,
+    /// Resampling of the run, if requested.
+    pub(super) resampling: Option<Resampling>,
     /// Cached samples of a large run whose files are slow to read.
     pub(super) spill: Option<TemporaryStore>,
 }
@@ -53,32 +73,32 @@ impl Files {
     /// Resampling state of a table if clocks differ, or of the whole run.
     pub(super) fn resampled(&self, table: Option<usize>) -> Option<Resampled> {
         let Some(table) = table else {
-            let (rate, step) = self.resample.filter(|_| self.clocks.is_empty())?;
+            let Resampling { rate, step } = self.resampling.filter(|_| self.clocks.is_empty())?;
             let clock = self.signals.first_time()?.clone();
             return Some(Resampled::new(
                 self.name.clone(),
                 clock,
                 self.width(),
-                (step, rate),
+                step,
+                rate,
             ));
         };
         // The first file keeps its own times, unless the run is resampled.
-        let mut clocks = self
-            .clocks
-            .iter()
-            .skip(usize::from(self.resample.is_none()));
-        let (_, place, step) = clocks.find(|(own, ..)| *own == table)?;
-        let rate = match (self.resample, self.clocks.first()) {
-            (Some((rate, _)), _) => rate,
-            (None, first) => 1.0 / first?.2,
+        let skipped = usize::from(self.resampling.is_none());
+        let mut clocks = self.clocks.iter().skip(skipped);
+        let clock = clocks.find(|own| own.table == table)?;
+        let rate = match self.resampling {
+            Some(own) => own.rate,
+            None => 1.0 / self.clocks.first()?.step,
         };
         let width = self.signals.columns().nth(table)?.len();
         let file = self.tables[table].file().to_owned();
         Some(Resampled::new(
             file,
-            Expression::Column(*place),
+            Expression::Column(clock.column),
             width,
-            (*step, rate),
+            clock.step,
+            rate,
         ))
     }
 

@@ -88,23 +88,23 @@ pub(super) fn arrays(
                 let packed = Decoder::new(element.data).map_err(|_| String::from(BROKEN))?;
                 let unpacked = budget.unpack(packed)?;
                 if let Some(element) = order.elements(&unpacked).next() {
-                    order.collect((header, ""), element.data, 0, &mut fields);
+                    order.collect("", element.data, 0, &mut fields);
                 }
             }
             (ArrayKind::Structure, _) => {
-                order.collect((header, ""), element.data, 0, &mut fields);
+                order.collect("", element.data, 0, &mut fields);
             }
             (ArrayKind::Other, _) => {}
         }
         for (name, field) in &fields {
             // Fields that are not numeric are skipped like other variables.
-            let beginning = &field[HEADER..field.len().min(HEADER + BEGINNING)];
+            let beginning = &field[..field.len().min(BEGINNING)];
             if matches!(order.kind(beginning), Ok(ArrayKind::Numbers)) {
-                let (name, file) = (Some(name.as_str()), &mut field.as_slice());
+                let mut file = header.chain(field.as_slice());
                 take(OneArray {
-                    name,
+                    name: Some(name.as_str()),
                     is_packed,
-                    file,
+                    file: &mut file,
                 })?;
             }
         }
@@ -215,7 +215,7 @@ impl Order {
     /// Collects the fields of an array if it is a single structure.
     fn collect(
         self,
-        (header, outer): (&[u8], &str),
+        outer: &str,
         array: &[u8],
         depth: usize,
         fields: &mut Vec<(String, Vec<u8>)>,
@@ -241,10 +241,10 @@ impl Order {
             let end = field.iter().position(|byte| *byte == 0);
             let field = String::from_utf8_lossy(&field[..end.unwrap_or(length)]);
             let path = format!("{name}.{field}");
-            let inside = self.collect((header, &path), element.data, depth + 1, fields);
+            let inside = self.collect(&path, element.data, depth + 1, fields);
             if inside.is_none() && element.kind == MATRIX {
                 let named = self.named(element.data).into_iter();
-                fields.extend(named.map(|array| (path.clone(), [header, &array].concat())));
+                fields.extend(named.map(|array| (path.clone(), array)));
             }
         }
         Some(())

@@ -64,7 +64,7 @@ impl Files {
             match rows.next(&mut samples) {
                 Ok(true) => {
                     let time = self.signals.times(&rows.values).next();
-                    if let Some(time) = time.filter(|_| self.resample.is_none()) {
+                    if let Some(time) = time.filter(|_| self.resampling.is_none()) {
                         clock.push(time, rows.line());
                         problems.extend(last.and_then(|last| rows.other_time(time - last)));
                     }
@@ -101,10 +101,10 @@ impl Files {
             problems.extend(rows.apart());
         }
         Error::check(problems.told())?;
-        let frequency = match (time, self.resample) {
+        let frequency = match (time, self.resampling) {
             (Time::Column(_), None) => clock.frequency(&self.name)?,
             (Time::Frequency(rate), None) => *rate,
-            (_, Some((rate, _))) => rate,
+            (_, Some(own)) => own.rate,
         };
         Clock::check_count(rows.samples, &self.name)?;
         Ok(Summary {

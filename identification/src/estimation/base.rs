@@ -21,7 +21,7 @@ use crate::{
     regression::{
         columns::{Column, ColumnSet, Direction, has_payload},
         elimination::{Elimination, eliminate},
-        states::{States, random_states},
+        states::random_states,
     },
 };
 
@@ -195,7 +195,8 @@ pub(crate) type Combination = Option<Vec<usize>>;
 /// A model that cannot be evaluated near its home pose.
 pub(crate) fn base_parameters_with_known(
     model: &dyn Model,
-    (columns, payload): (&ColumnSet, PayloadUse),
+    columns: &ColumnSet,
+    payload: PayloadUse,
     known: &[usize],
     seed: u64,
 ) -> Result<(BaseParameters, Vec<Combination>), Error> {
@@ -218,12 +219,14 @@ pub(crate) fn base_parameters_with_known(
             let place = known.iter().position(|one| *one == column);
             if let Some(place) = place.and_then(|place| combinations.get_mut(place)) {
                 let is_load = columns.indices(true).contains(&column);
-                *place = match found.zero.contains(&column) {
-                    true => Some(Vec::new()),
+                *place = if found.zero.contains(&column) {
+                    Some(Vec::new())
+                } else if several && is_load {
                     // It is relative to the payload that is always present, which has no column of
                     // its own.
-                    false if several && is_load => Some(columns.loads().concat()),
-                    false => others,
+                    Some(columns.loads().concat())
+                } else {
+                    others
                 };
             }
         }
@@ -339,17 +342,11 @@ fn random_regressor(
 ) -> Result<DMatrix<f64>, Error> {
     let r = model.info().sizes.dof.max(1);
     let count = (3 * columns.len()).div_ceil(r) + 20;
-    let States {
-        samples,
-        pose,
-        twist,
-        acceleration,
-    } = random_states(model, count, seed)?;
-    let width = columns.len();
+    let states = random_states(model, count, seed)?;
+    let (samples, width) = (states.samples, columns.len());
     let all: Vec<usize> = (0..width).collect();
-    let states = [&pose[..], &twist, &acceleration];
     let lines = columns
-        .evaluate(model, &states, (samples, 0.0), true, (&all, 0))
+        .evaluate(model, &states.sampled(), &all, 0)
         .map_err(|error| Error::from(Problem::new(Code::NO_EFFECT, error.to_string())))?;
     let mut regressor = DMatrix::zeros(samples * r, width);
     for sample in 0..samples {

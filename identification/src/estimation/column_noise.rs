@@ -21,7 +21,7 @@ use crate::{
     error::Error,
     regression::{
         factor::Factor,
-        observation::Observer,
+        observation::{MeasuredRun, Observer},
         system::{Observed, System},
     },
 };
@@ -69,9 +69,15 @@ impl ColumnNoise {
             let used = SAMPLES.max(EQUATIONS * settings.decimation);
             let piece = log.beginning(settings.samples_needed() + used)?;
             let noisy = with_added_noise(&piece)?;
+            let measured = MeasuredRun {
+                number,
+                log: &piece,
+                instruments: Some(&noisy),
+                budget: 0,
+                returns: None,
+            };
             // Skip this run if the noise leaves the workspace.
-            let both = (&piece, Some(&noisy));
-            let Ok((observed, _)) = observer.run(number, both, (0, None), &|_, _| {}) else {
+            let Ok((observed, _)) = observer.run(&measured, &|_, _| {}) else {
                 continue;
             };
             for (own, observed) in all.iter_mut().zip(observed) {

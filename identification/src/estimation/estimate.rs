@@ -166,7 +166,8 @@ pub(crate) fn fit(
     fit_with(
         system,
         selected,
-        (settings.weighted, settings.normalisation),
+        settings.weighted,
+        settings.normalisation,
         settings.decimation,
     )
 }
@@ -177,7 +178,8 @@ pub(crate) fn fit(
 pub(crate) fn fit_with(
     system: &System,
     selected: &[usize],
-    (weighted, normalisation): (bool, Normalisation),
+    weighted: bool,
+    normalisation: Normalisation,
     decimation: usize,
 ) -> Result<Estimation, Error> {
     let unknowns = selected.len();
@@ -210,12 +212,8 @@ pub(crate) fn fit_with(
     } = solve(&system.lines, &weights, selected)?;
     let sums = system.lines.iter().zip(&weights);
     let sum = sums.map(|(line, weight)| weight * line.residual_sum(selected, &values));
-    let deviation = residual_deviation(
-        (equations, unknowns),
-        residual_norm,
-        sum.sum(),
-        normalisation,
-    );
+    let deviation =
+        residual_deviation(equations, unknowns, residual_norm, sum.sum(), normalisation);
     let standard_deviations: Vec<f64> = inverse
         .row_iter()
         .map(|row| deviation * row.norm())
@@ -277,7 +275,8 @@ fn solve(lines: &[Factor], weights: &[f64], selected: &[usize]) -> Result<Soluti
 ///
 /// Either (46), or the sample variance.
 fn residual_deviation(
-    (equations, unknowns): (usize, usize),
+    equations: usize,
+    unknowns: usize,
     norm: f64,
     sum: f64,
     normalisation: Normalisation,

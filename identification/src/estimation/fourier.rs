@@ -168,9 +168,13 @@ impl Fourier {
 
     /// cos and sin of π k/half for k < half.
     #[inline(always)]
-    fn turns(&self, half: usize) -> [&[f64]; 2] {
+    fn turns(&self, half: usize) -> Turns<'_> {
         // The half - 1 angles of the smaller steps come first.
-        [&self.cosines, &self.sines].map(|parts| &parts[half - 1..2 * half - 1])
+        let range = half - 1..2 * half - 1;
+        Turns {
+            cosines: &self.cosines[range.clone()],
+            sines: &self.sines[range],
+        }
     }
 
     /// In-place radix-2 transform.
@@ -203,6 +207,13 @@ impl Fourier {
     }
 }
 
+/// cos and sin of the angles of a step.
+#[derive(Clone, Copy)]
+struct Turns<'a> {
+    cosines: &'a [f64],
+    sines: &'a [f64],
+}
+
 /// Steps of a transform after bit reversal.
 struct Butterflies<'a> {
     fourier: &'a Fourier,
@@ -233,24 +244,22 @@ impl Butterflies<'_> {
         } = self;
         let steps = (fourier.size / half).trailing_zeros();
         if steps % 2 == 1 {
-            let parts = [&mut *real, &mut *imaginary];
             match half {
-                1 => step(fourier.turns(1), parts, 1),
-                2 => step(fourier.turns(2), parts, 2),
-                _ => step(fourier.turns(half), parts, half),
+                1 => step(fourier.turns(1), real, imaginary, 1),
+                2 => step(fourier.turns(2), real, imaginary, 2),
+                _ => step(fourier.turns(half), real, imaginary, half),
             }
             half *= 2;
         }
         // Two steps in one pass over the memory.
         while half < fourier.size {
-            let turns = [fourier.turns(half), fourier.turns(2 * half)];
-            let parts = [&mut *real, &mut *imaginary];
+            let (inner, outer) = (fourier.turns(half), fourier.turns(2 * half));
             // Constant lengths let the compiler unroll short loops.
             match half {
-                1 => two_steps(turns, parts, 1),
-                2 => two_steps(turns, parts, 2),
-                4 => two_steps(turns, parts, 4),
-                _ => two_steps(turns, parts, half),
+                1 => two_steps(inner, outer, real, imaginary, 1),
+                2 => two_steps(inner, outer, real, imaginary, 2),
+                4 => two_steps(inner, outer, real, imaginary, 4),
+                _ => two_steps(inner, outer, real, imaginary, half),
             }
             half *= 4;
         }
@@ -259,8 +268,8 @@ impl Butterflies<'_> {
 
 /// Combines pairs of transforms of `half` values.
 #[inline(always)]
-fn step([cosines, sines]: [&[f64]; 2], [real, imaginary]: [&mut [f64]; 2], half: usize) {
-    let (cosines, sines) = (&cosines[..half], &sines[..half]);
+fn step(turns: Turns<'_>, real: &mut [f64], imaginary: &mut [f64], half: usize) {
+    let (cosines, sines) = (&turns.cosines[..half], &turns.sines[..half]);
     let parts = real.chunks_exact_mut(2 * half);
     for (real, imaginary) in parts.zip(imaginary.chunks_exact_mut(2 * half)) {
         let (x, u) = real.split_at_mut(half);
@@ -278,12 +287,16 @@ fn step([cosines, sines]: [&[f64]; 2], [real, imaginary]: [&mut [f64]; 2], half:
 
 /// Combines four transforms of `half` values, equivalent to two steps.
 #[inline(always)]
-fn two_steps([inner, outer]: [[&[f64]; 2]; 2], [real, imaginary]: [&mut [f64]; 2], half: usize) {
-    let [inner_cosines, inner_sines] = inner.map(|turns| &turns[..half]);
-    let [[cosines, more_cosines], [sines, more_sines]] = outer.map(|turns| {
-        let (first, second) = turns.split_at(half);
-        [first, &second[..half]]
-    });
+fn two_steps(
+    inner: Turns<'_>,
+    outer: Turns<'_>,
+    real: &mut [f64],
+    imaginary: &mut [f64],
+    half: usize,
+) {
+    let (inner_cosines, inner_sines) = (&inner.cosines[..half], &inner.sines[..half]);
+    let (cosines, more_cosines) = outer.cosines[..2 * half].split_at(half);
+    let (sines, more_sines) = outer.sines[..2 * half].split_at(half);
     let parts = real.chunks_exact_mut(4 * half);
     for (real, imaginary) in parts.zip(imaginary.chunks_exact_mut(4 * half)) {
         let [x, u, p, q] = quarters(real, half);

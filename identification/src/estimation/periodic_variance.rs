@@ -187,6 +187,22 @@ fn folded(place: isize, last: usize) -> (usize, f64) {
     }
 }
 
+/// Estimated ratio of two variances.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct VarianceRatio {
+    pub(crate) ratio: f64,
+    /// Its degrees of freedom.
+    pub(crate) freedom: f64,
+}
+
+impl VarianceRatio {
+    /// Ratio of equal variances.
+    pub(crate) const ONE: Self = Self {
+        ratio: 1.0,
+        freedom: f64::INFINITY,
+    };
+}
+
 impl SumVariance {
     /// Sum over independent motions.
     pub(crate) fn and(self, other: Self) -> Self {
@@ -201,10 +217,12 @@ impl SumVariance {
     ///
     /// `other` is the variance estimate of all equations, and `total` their Σ z². The part of the
     /// equations without periodic motion keeps the variance `other`.
-    pub(crate) fn by(self, other: f64, total: f64) -> (f64, f64) {
+    pub(crate) fn by(self, other: f64, total: f64) -> VarianceRatio {
         let rest = (1.0 - self.square / total).clamp(0.0, 1.0);
-        let freedom = self.variance.powi(2) / self.scatter;
-        (self.variance / other + rest, freedom)
+        VarianceRatio {
+            ratio: self.variance / other + rest,
+            freedom: self.variance.powi(2) / self.scatter,
+        }
     }
 }
 
@@ -265,7 +283,7 @@ mod tests {
                 let (sum_variance, sum) = drawn(seed, periods, returning);
                 estimated += sum_variance.variance / DRAWS as f64;
                 squares += sum * sum / DRAWS as f64;
-                freedom = sum_variance.by(1.0, sum_variance.square).1;
+                freedom = sum_variance.by(1.0, sum_variance.square).freedom;
             }
             // Σ z² over all periods with independent noise; the periodic error adds up before
             // squaring.

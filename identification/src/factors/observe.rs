@@ -18,7 +18,7 @@ use crate::{
     prior::Prior,
     regression::{
         columns::ColumnSet,
-        observation::{Observer, RunObservation},
+        observation::{MeasuredRun, Observer, RunObservation},
         projection::Projection,
         system::Observed,
     },
@@ -149,8 +149,15 @@ impl<'a> Factory<'a> {
         };
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
+        let measured = MeasuredRun {
+            number: 0,
+            log,
+            instruments: None,
+            budget: budget.unwrap_or(0),
+            returns: None,
+        };
         let (systems, observation) = observer
-            .run(0, (log, None), (budget.unwrap_or(0), None), &report)
+            .run(&measured, &report)
             .map_err(|error| assessment::explained(self.model, log, error))?;
         let models = projections
             .iter()

@@ -177,7 +177,7 @@ impl Kind {
         let dependent = found.dependent.iter().map(|(place, _)| *place);
         let missing = found.zero.iter().copied().chain(dependent);
         told.not_determined = missing.map(name).collect();
-        let estimation = fit_with(&system, &found.kept, (true, Normalisation::Unbiased), 1)?;
+        let estimation = fit_with(&system, &found.kept, true, Normalisation::Unbiased, 1)?;
         let intervals = Intervals::new(&system, &found.kept, &estimation);
         told.relative_error_percent = estimation.relative_error_percent;
         told.parameters = parameters(

@@ -308,8 +308,7 @@ impl Grouped {
             }
             let told = &mut self.pending[self.waiting * size..][..size];
             self.waiting += 1;
-            let group = (group, self.width);
-            filter.groups.pass(group, (&before, &mut after), told);
+            filter.groups.pass(group, &before, &mut after, told);
             std::mem::swap(&mut before, &mut after);
         }
         self.before = Some(before);

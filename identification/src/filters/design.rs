@@ -91,7 +91,7 @@ fn multiply(x: &[f64], y: &[f64]) -> Vec<f64> {
 /// An order of 0 or above 50, or a cutoff outside ]0, 1\[.
 pub fn butterworth(order: usize, cutoff: f64) -> Result<LowPass, Error> {
     check(order, cutoff)?;
-    Ok(low_pass(order, cutoff, (1.0, 1.0), 1.0))
+    Ok(low_pass(order, cutoff, 1.0, 1.0, 1.0))
 }
 
 /// Chebyshev type I low-pass of `order` with `ripple_db` of ripple in the pass band.
@@ -117,7 +117,7 @@ pub fn chebyshev1(order: usize, ripple_db: f64, cutoff: f64) -> Result<LowPass, 
     } else {
         1.0
     };
-    Ok(low_pass(order, cutoff, (mu.sinh(), mu.cosh()), gain))
+    Ok(low_pass(order, cutoff, mu.sinh(), mu.cosh(), gain))
 }
 
 /// Checks the parameters common to both designs.
@@ -150,15 +150,15 @@ fn check(order: usize, cutoff: f64) -> Result<(), Error> {
 
 /// Digital filter from the prototype with poles on an ellipse.
 ///
-/// `axes` are its half axes, and `gain` is the static gain.
-fn low_pass(order: usize, cutoff: f64, axes: (f64, f64), gain: f64) -> LowPass {
+/// `real` and `imaginary` are its half axes, and `gain` is the static gain.
+fn low_pass(order: usize, cutoff: f64, real: f64, imaginary: f64, gain: f64) -> LowPass {
     let t = (PI * cutoff / 2.0).tan();
     let mut sections = Vec::with_capacity(order.div_ceil(2));
     // The overall gain makes the response at z = 1 equal to `gain`. The factor per pair is |1 -
     // z|²/4, with 1 - z = -2 p t/(1 - p t), which is accurate at low cutoff frequencies.
     let mut product = gain;
     if !order.is_multiple_of(2) {
-        let p = -axes.0 * t;
+        let p = -real * t;
         let z = (1.0 + p) / (1.0 - p);
         product *= -p / (1.0 - p);
         sections.push(Section {
@@ -168,7 +168,7 @@ fn low_pass(order: usize, cutoff: f64, axes: (f64, f64), gain: f64) -> LowPass {
     }
     for k in (0..order / 2).rev() {
         let theta = PI * (2 * k + 1) as f64 / (2 * order) as f64;
-        let p = Complex::new(-axes.0 * theta.sin(), axes.1 * theta.cos()) * t;
+        let p = Complex::new(-real * theta.sin(), imaginary * theta.cos()) * t;
         let one = Complex::new(1.0, 0.0);
         let z = (one + p) / (one - p);
         product *= p.norm_sqr() / (one - p).norm_sqr();

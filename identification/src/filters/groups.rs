@@ -64,21 +64,22 @@ impl Groups {
         }
     }
 
-    /// Runs a group forwards: `rows` of `width` signals.
+    /// Runs a group forwards: `rows` of all signals.
     ///
     /// `before` is X, and `after` receives that of the next group. `partial` receives F, then the
     /// partial kept values. All contain the real parts of a mode for all signals, then the
     /// imaginary ones.
     pub(super) fn pass(
         &self,
-        (rows, width): (&[f64], usize),
-        (before, after): (&[f64], &mut [f64]),
+        rows: &[f64],
+        before: &[f64],
+        after: &mut [f64],
         partial: &mut [f64],
     ) {
         Arch::new().dispatch(Pass {
             groups: self,
             rows,
-            width,
+            width: before.len() / PARTS,
             before,
             after,
             partial,
@@ -192,7 +193,7 @@ impl Pass<'_> {
             |near, far| simd.sub_f64s(near, far),
         );
         for (place, (even, odd)) in even.iter().zip(&odd).enumerate() {
-            self.put(simd, column + place * S::F64_LANES, (even, odd));
+            self.put(simd, column + place * S::F64_LANES, even, odd);
         }
     }
 
@@ -228,7 +229,8 @@ impl Pass<'_> {
         &mut self,
         simd: S,
         column: usize,
-        (even, odd): (&[S::f64s; PARTS], &[S::f64s; PARTS]),
+        even: &[S::f64s; PARTS],
+        odd: &[S::f64s; PARTS],
     ) {
         let (groups, width) = (self.groups, self.width);
         let direct = simd.splat_f64s(groups.modes.direct);
@@ -239,12 +241,12 @@ impl Pass<'_> {
             let (a, b) = (even[2 * mode], odd[2 * mode]);
             let (c, d) = (even[2 * mode + 1], odd[2 * mode + 1]);
             let share = 2.0 * groups.modes.shares[mode];
-            kept = simd.add_f64s(kept, times(simd, share, [x, y])[0]);
+            kept = simd.add_f64s(kept, times(simd, share, x, y)[0]);
             *vector_mut::<S>(self.partial, places[0]) = simd.add_f64s(a, b);
             *vector_mut::<S>(self.partial, places[1]) = simd.add_f64s(c, d);
-            let late = [simd.sub_f64s(a, b), simd.sub_f64s(c, d)];
-            let late = times(simd, groups.modes.poles[mode], late);
-            let old = times(simd, groups.powers[mode], [x, y]);
+            let (late, turned) = (simd.sub_f64s(a, b), simd.sub_f64s(c, d));
+            let late = times(simd, groups.modes.poles[mode], late, turned);
+            let old = times(simd, groups.powers[mode], x, y);
             for part in 0..2 {
                 let new = simd.add_f64s(old[part], late[part]);
                 *vector_mut::<S>(self.after, places[part]) = new;
@@ -270,9 +272,9 @@ fn add<S: Simd, const N: usize>(
     }
 }
 
-/// A complex factor times a vector of complex numbers.
+/// A complex factor times a vector of complex numbers x + i y, as real and imaginary parts.
 #[inline(always)]
-fn times<S: Simd>(simd: S, factor: Mode, [x, y]: [S::f64s; 2]) -> [S::f64s; 2] {
+fn times<S: Simd>(simd: S, factor: Mode, x: S::f64s, y: S::f64s) -> [S::f64s; 2] {
     let [a, b] = [factor.re, factor.im].map(|part| simd.splat_f64s(part));
     [
         simd.sub_f64s(simd.mul_f64s(a, x), simd.mul_f64s(b, y)),
@@ -330,11 +332,11 @@ impl WithSimd for Backwards<'_> {
             let ((f, last), (g, end)) = (S::as_simd_f64s(f), S::as_simd_f64s(g));
             let mut kept = self.kept.as_deref_mut().map(S::as_mut_simd_f64s);
             for k in 0..real.len().min(imaginary.len()).min(f.len()).min(g.len()) {
-                let [x, y] = times(simd, *power, [real[k], imaginary[k]]);
-                let both = [simd.add_f64s(f[k], x), simd.add_f64s(g[k], y)];
-                [real[k], imaginary[k]] = both;
+                let [x, y] = times(simd, *power, real[k], imaginary[k]);
+                (real[k], imaginary[k]) = (simd.add_f64s(f[k], x), simd.add_f64s(g[k], y));
                 if let Some((kept, _)) = &mut kept {
-                    kept[k] = simd.add_f64s(kept[k], times(simd, share, both)[0]);
+                    let own = times(simd, share, real[k], imaginary[k]);
+                    kept[k] = simd.add_f64s(kept[k], own[0]);
                 }
             }
             for k in 0..more.len().min(rest.len()).min(last.len()).min(end.len()) {

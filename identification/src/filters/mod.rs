@@ -18,5 +18,5 @@ mod zero_phase;
 pub(crate) use cascade::settling;
 pub use decimation::{DECIMATION_ORDER, DECIMATION_PADDING, Decimation, Decimator, decimate};
 pub use design::{LowPass, Section, butterworth, chebyshev1};
-pub(crate) use differences::central_differences;
+pub(crate) use differences::SampledSignals;
 pub use zero_phase::{ZeroPhase, filtfilt};

@@ -30,8 +30,10 @@ pub(super) struct Modes {
     pub(super) shares: Vec<Mode>,
     /// c.
     pub(super) direct: f64,
-    /// ρ_i and h of the forward pass: H(z) = h + 2 Re Σ ρ_i/(1 - p_i z^-1).
-    forward: (Vec<Mode>, f64),
+    /// ρ_i of the forward pass: H(z) = h + 2 Re Σ ρ_i/(1 - p_i z^-1).
+    forward_shares: Vec<Mode>,
+    /// h of the forward pass.
+    forward_direct: f64,
     /// H(1/p_i).
     mirrored: Vec<Mode>,
 }
@@ -77,7 +79,8 @@ impl Modes {
                 .map(|(own, h)| own * h)
                 .collect(),
             direct: first * last,
-            forward: (forward, last),
+            forward_shares: forward,
+            forward_direct: last,
             mirrored: mirror,
             sections,
             poles,
@@ -102,12 +105,12 @@ impl Modes {
 
     /// Runs the forward pass over a signal after `past`, in place.
     pub(super) fn pass(&self, past: &[Mode], signal: &mut [f64]) {
-        let (shares, direct) = &self.forward;
         let mut modes = past.to_vec();
         for value in signal {
             let own = *value;
-            let mut sum = direct * own;
-            for ((mode, pole), share) in modes.iter_mut().zip(&self.poles).zip(shares) {
+            let mut sum = self.forward_direct * own;
+            let shares = self.poles.iter().zip(&self.forward_shares);
+            for (mode, (pole, share)) in modes.iter_mut().zip(shares) {
                 *mode += own;
                 sum += 2.0 * (share * *mode).re;
                 *mode *= pole;
@@ -124,7 +127,7 @@ impl Modes {
         let all = self.poles.iter().zip(&behind).zip(&self.mirrored);
         all.map(|((p, behind), mirrored)| {
             // Remove the decay of the forward pass, which is no input.
-            let modes = self.poles.iter().zip(past).zip(&self.forward.0);
+            let modes = self.poles.iter().zip(past).zip(&self.forward_shares);
             let decay = modes.map(|((other, past), share)| {
                 let own = past * share;
                 let one = Complex::new(1.0, 0.0);

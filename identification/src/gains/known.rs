@@ -64,8 +64,8 @@ impl Split {
         .with_payloads(&payload_names(runs));
         let known = found(model, &columns, settings)?;
         let places: Vec<usize> = known.iter().map(|own| own.column).collect();
-        let all = (&columns, payload);
-        let (base, combinations) = base_parameters_with_known(model, all, &places, settings.seed)?;
+        let (base, combinations) =
+            base_parameters_with_known(model, &columns, payload, &places, settings.seed)?;
         let fixes = known
             .iter()
             .zip(&combinations)

@@ -17,6 +17,7 @@ use crate::{
     regression::{
         projection::Projection,
         sink::{LineSink, Plan, observed},
+        states::SampledStates,
         system::System,
     },
     settings::Settings,
@@ -109,8 +110,7 @@ impl Observer<'_> {
         let sink = |line: usize| {
             let limit = self.settings.standstill_velocity.get(line).copied();
             let stream = |width| decimator.stream(width, samples);
-            let columns = (self.columns(), false);
-            LineSink::new(&plan, stream, columns, limit)
+            LineSink::new(&plan, stream, self.columns(), false, limit)
         };
         let mut sinks: Vec<LineSink> = (0..r).map(sink).collect::<Result<_, Error>>()?;
         while let Some(motion) = motions.next()? {
@@ -122,7 +122,7 @@ impl Observer<'_> {
                 for (place, chunk) in chunks.iter().enumerate() {
                     let velocities = motion.velocities.iter().copied();
                     let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
-                    sink.push(&plan, (&chunk.lines[line], None), velocities);
+                    sink.push(&plan, &chunk.lines[line], None, velocities);
                 }
             });
             for chunk in &chunks {
@@ -146,8 +146,7 @@ impl Observer<'_> {
             motion.outside(first + error.sample, error.error)
         };
         let pose = slice(&motion.pose, sizes.pose, first, count);
-        let twist = slice(&motion.twist, r, first, count);
-        let acceleration = slice(&motion.acceleration, r, first, count);
+        let states = SampledStates::of_motion(motion, first, count);
         let torques = slice(&motion.torques, n, first, count);
         let mut jacobians = vec![0.0; count * n * r];
         self.model
@@ -159,13 +158,7 @@ impl Observer<'_> {
         let evaluated = self
             .split
             .columns
-            .evaluate(
-                self.model,
-                &[pose, twist, acceleration],
-                (count, 1.0 / motion.sampling_frequency),
-                motion.carried(),
-                (&picked, 0),
-            )
+            .evaluate(self.model, &states, &picked, 0)
             .map_err(at)?;
         let line = |(line, rows): (usize, Vec<f64>)| {
             let drives = jacobians

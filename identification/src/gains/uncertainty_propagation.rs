@@ -73,7 +73,7 @@ fn run(
     let sink = |place: usize| {
         let limit = settings.standstill_velocity.get(place % r).copied();
         let stream = |width| decimator.stream(width, samples);
-        LineSink::new(&plan, stream, (width - 1, false), limit)
+        LineSink::new(&plan, stream, width - 1, false, limit)
     };
     let sinks = (0..r * systems.len()).map(sink);
     let mut sinks = sinks.collect::<Result<Vec<LineSink>, Error>>()?;
@@ -91,7 +91,7 @@ fn run(
                 let rows = joined(&chunk.lines[projection][line], &drives[projection][line], n);
                 let velocities = motion.velocities.iter().copied();
                 let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
-                sink.push(&plan, (&rows, None), velocities);
+                sink.push(&plan, &rows, None, velocities);
             }
         }
     }

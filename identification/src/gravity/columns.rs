@@ -16,7 +16,7 @@ use crate::{
     regression::{
         columns::ColumnSet,
         elimination::{Elimination, eliminate},
-        states::{States, random_states},
+        states::{SampledStates, random_states},
     },
     settings::Settings,
 };
@@ -205,13 +205,9 @@ fn random_regressor(
 ) -> Result<DMatrix<f64>, Error> {
     let r = model.info().sizes.dof.max(1);
     let count = (STATES * places.len()).div_ceil(r) + 20;
-    let States {
-        samples,
-        pose,
-        twist,
-        acceleration,
-    } = random_states(model, count, seed)?;
-    let rest = vec![0.0; twist.len()];
+    let states = random_states(model, count, seed)?;
+    let samples = states.samples;
+    let rest = vec![0.0; states.twist.len()];
     let [x, y, z] = fields.along;
     let mut regressor = DMatrix::zeros(samples * r, places.len());
     for (set, model) in [model, x, y, z].into_iter().enumerate() {
@@ -219,11 +215,15 @@ fn random_regressor(
         let picked: Vec<usize> = places.iter().filter(mine).map(|place| place.1).collect();
         let first = places.iter().position(|place| place.0 == set).unwrap_or(0);
         let states = match set {
-            0 => [&pose[..], &twist, &acceleration],
-            _ => [&pose[..], &rest, &rest],
+            0 => states.sampled(),
+            _ => SampledStates {
+                twist: &rest,
+                acceleration: &rest,
+                ..states.sampled()
+            },
         };
         let lines = sets[set]
-            .evaluate(model, &states, (samples, 0.0), true, (&picked, 0))
+            .evaluate(model, &states, &picked, 0)
             .map_err(|error| Error::from(Problem::new(Code::NO_EFFECT, error.to_string())))?;
         for (line, rows) in lines.iter().enumerate() {
             for (index, value) in rows.iter().enumerate() {

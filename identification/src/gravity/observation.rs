@@ -19,6 +19,7 @@ use crate::{
         observation,
         projection::Projection,
         sink::{LineSink, Plan, observed},
+        states::SampledStates,
         system::System,
     },
     settings::Settings,
@@ -96,7 +97,7 @@ impl Observer<'_> {
         let sink = |place: usize| {
             let limit = self.settings.standstill_velocity.get(place % r).copied();
             let stream = |width| decimator.stream(width, samples);
-            LineSink::new(&plan, stream, (columns, false), limit)
+            LineSink::new(&plan, stream, columns, false, limit)
         };
         let sinks = (0..r * systems.len()).map(sink);
         let mut sinks = sinks.collect::<Result<Vec<LineSink>, Error>>()?;
@@ -119,7 +120,7 @@ impl Observer<'_> {
                     let rows = joined(rows, fields, chunk.samples());
                     let velocities = motion.velocities.iter().copied();
                     let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
-                    sink.push(&plan, (&rows, None), velocities);
+                    sink.push(&plan, &rows, None, velocities);
                 }
             });
             progress(log.name(), motions.done(), log.samples());
@@ -154,17 +155,14 @@ impl Observer<'_> {
         let mut lines: Vec<Vec<f64>> = vec![Vec::new(); r];
         let mut parts: Vec<(usize, Vec<Vec<f64>>)> = Vec::new();
         for (field, own) in self.fields.along.iter().zip(&self.extended.along) {
-            let states = [pose, &rest[..], &rest[..]];
-            let interval = 1.0 / motion.sampling_frequency;
+            let states = SampledStates {
+                twist: &rest,
+                acceleration: &rest,
+                ..SampledStates::of_motion(motion, first, count)
+            };
             let rows = own
                 .columns
-                .evaluate(
-                    *field,
-                    &states,
-                    (count, interval),
-                    motion.carried(),
-                    (&own.picked, 0),
-                )
+                .evaluate(*field, &states, &own.picked, 0)
                 .map_err(outside)?;
             parts.push((own.picked.len(), rows));
         }

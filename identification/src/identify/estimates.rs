@@ -12,9 +12,12 @@ use crate::{
         correlation::Noise,
         essential::essential,
         estimate::{Estimation, estimate},
-        instruments::{Instrumental, regressor::ErrorsInRegressor},
+        instruments::{
+            Instrumental,
+            regressor::{ErrorsInRegressor, EstimatePair},
+        },
         intervals::Intervals,
-        recommended::recommended,
+        recommended::{BaseEstimate, recommended},
     },
     regression::{
         elimination::eliminate,
@@ -82,8 +85,13 @@ pub fn estimate_projection(
     let rest = rest?;
     warnings.extend(quality_warnings(system, &base));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
-    let told = (&intervals, rest.folds.as_ref());
-    let chosen = recommended(system, (columns, names), &base, told, settings)?;
+    let start = BaseEstimate {
+        selected: columns,
+        names,
+        estimation: &base,
+        intervals: &intervals,
+    };
+    let chosen = recommended(system, &start, rest.folds.as_ref(), settings)?;
     let chosen_noise = Noise::new(system, &chosen.selected, &chosen.estimation);
     let context = Context {
         prepared,
@@ -272,13 +280,15 @@ impl Context<'_> {
                 return (None, ErrorsInRegressor { missing, ..told });
             }
         };
-        let named: Vec<(String, String)> = selected
-            .iter()
-            .zip(&selection.names)
-            .map(|(column, name)| (name.clone(), self.unit(*column).to_owned()))
-            .collect();
-        let honest = self.intervals.deviations();
-        let told = told.compared((self.system, selected), (base, &honest), &found, &named);
+        let units: Vec<&str> = selected.iter().map(|column| self.unit(*column)).collect();
+        let estimates = EstimatePair {
+            system: self.system,
+            selected,
+            least_squares: base,
+            deviations: &self.intervals.deviations(),
+            instrumental: &found,
+        };
+        let told = told.compared(&estimates, &selection.names, &units);
         let estimation = found.estimation.clone();
         // Both estimates are close, so the effect of gains is that on least squares.
         let more = self

@@ -23,7 +23,7 @@ use crate::{
     regression::{
         columns::ColumnSet,
         factor::Factor,
-        observation::{Observer, RunObservation},
+        observation::{MeasuredRun, Observer, RunObservation},
         projection::Projection,
         system::{Observed, System},
         uncertainty_propagation::PropagatedUncertainty,
@@ -116,7 +116,7 @@ impl Prepared {
         weights: &[f64],
     ) -> Option<DMatrix<f64>> {
         let propagated_uncertainty = self.propagated_uncertainty.as_ref()?;
-        propagated_uncertainty.covariance(projection, (selected, weights))
+        propagated_uncertainty.covariance(projection, selected, weights)
     }
 
     /// Effect of position noise on the columns of each projection.
@@ -264,9 +264,14 @@ pub fn prepare(
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
         let budget = LARGEST_STRETCHES / runs.len();
-        let both = (log, instrument_runs.of(number));
-        let kept = (budget, returns[number]);
-        match observer.run(number, both, kept, &report) {
+        let measured = MeasuredRun {
+            number,
+            log,
+            instruments: instrument_runs.of(number),
+            budget,
+            returns: returns[number],
+        };
+        match observer.run(&measured, &report) {
             Ok((equations, told)) => {
                 instrument_runs.missing = instrument_runs.missing.or_else(|| told.unusable.clone());
                 observations.push(told);

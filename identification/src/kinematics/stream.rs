@@ -3,7 +3,7 @@
 use crate::{
     data::{Log, Reader},
     error::Error,
-    filters::{ZeroPhase, butterworth, central_differences},
+    filters::{SampledSignals, ZeroPhase, butterworth},
     monitor::Monitor,
     settings::Settings,
 };
@@ -125,15 +125,20 @@ impl<'a> Stream<'a> {
 
     /// Returns the samples up to `end`.
     fn take(&mut self, end: usize) -> Derivatives {
-        let (first, n, last) = (self.next, self.width, self.samples - 1);
+        let (first, n) = (self.next, self.width);
+        let signals = |values, start| SampledSignals {
+            values,
+            width: n,
+            start,
+            last: self.samples - 1,
+        };
         // Accelerations need additional samples on either side.
         let before = first.saturating_sub(self.reach);
         let behind = (end + self.reach).min(self.samples);
         let around: Vec<f64> = if self.velocity_filter.is_some() {
             self.velocities[(before - self.start) * n..(behind - self.start) * n].to_vec()
         } else {
-            let (run, own) = ((n, last), before..behind);
-            central_differences(&self.positions, self.start, own, run, self.reach)
+            signals(&self.positions, self.start).central_differences(before..behind, self.reach)
         };
         let per_second = |mut steps: Vec<f64>| {
             steps.iter_mut().for_each(|step| *step *= self.frequency);
@@ -144,8 +149,7 @@ impl<'a> Stream<'a> {
         } else {
             per_second(around)
         };
-        let run = (n, last);
-        let accelerations = central_differences(&around, before, first..end, run, self.reach);
+        let accelerations = signals(&around, before).central_differences(first..end, self.reach);
         let accelerations = per_second(accelerations);
         let inside = |values: &[f64], start: usize| -> Vec<f64> {
             values[(first - start) * n..(end - start) * n].to_vec()

@@ -20,8 +20,9 @@ use std::cell::Cell;
 use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
 
 use super::{
-    collect_rows::collect_rows,
+    collect_rows::{RowSource, collect_rows},
     friction::{Rate, friction_rates},
+    states::SampledStates,
 };
 use crate::{data::Load, error::Error, settings::Settings};
 use StandardParameter as P;
@@ -390,28 +391,35 @@ impl ColumnSet {
             .collect()
     }
 
-    /// Evaluates the columns `picked` of Γ¹ at samples one sampling `interval` (s) apart.
+    /// Evaluates the columns `picked` of Γ¹.
     ///
     /// For each of the r lines, the result is samples × (picked + `more`), row-major, with zeros in
-    /// the additional columns. The payload's columns are zero without this payload, eq. (49).
+    /// the additional columns. Columns of payloads that are not carried are zero, eq. (49).
     ///
     /// # Errors
     /// The first sample at which the model has no value.
-    pub fn evaluate<'l>(
+    pub fn evaluate(
         &self,
         model: &dyn Model,
-        states: &[&[f64]; 3],
-        (samples, interval): (usize, f64),
-        carried: impl Into<Load<'l>>,
-        (picked, more): (&[usize], usize),
+        states: &SampledStates<'_>,
+        picked: &[usize],
+        more: usize,
     ) -> Result<Vec<Vec<f64>>, SampleError> {
         let sizes = model.info().sizes;
-        let carried = carried.into();
+        let &SampledStates {
+            samples,
+            interval,
+            pose,
+            twist,
+            acceleration,
+            carried,
+        } = states;
+        let inputs = [pose, twist, acceleration];
         let fill = |function: Function, mut output: Vec<f64>| -> Result<Vec<f64>, SampleError> {
             let (rows, columns) = function.shape(&sizes);
             output.resize(samples * rows * columns, 0.0);
             if !output.is_empty() {
-                let inputs = &states[..function.inputs().len()];
+                let inputs = &inputs[..function.inputs().len()];
                 model.evaluate(function, inputs, &mut output)?;
             }
             Ok(output)
@@ -448,11 +456,19 @@ impl ColumnSet {
             }
         }
         let sources = [
-            (&robot[..], sizes.parameters, own),
-            (&payload[..], sizes.payload_parameters, load),
+            RowSource {
+                numbers: &robot,
+                count: sizes.parameters,
+                places: own,
+            },
+            RowSource {
+                numbers: &payload,
+                count: sizes.payload_parameters,
+                places: load,
+            },
         ];
         let mut lines: Vec<Vec<f64>> = (0..sizes.dof)
-            .map(|line| collect_rows(&sources, (line, sizes.dof), (samples, width)))
+            .map(|line| collect_rows(&sources, line, sizes.dof, samples, width))
             .collect();
         NUMBERS.set(robot);
         for (place, column) in columns().enumerate() {

@@ -4,7 +4,10 @@ use std::ops::Range;
 
 use overact::{Code, Model};
 
-use super::{chunk::Chunk, observation::Observer};
+use super::{
+    chunk::Chunk,
+    observation::{Conditioning, Observer},
+};
 use crate::{
     data::Log,
     error::{Error, Problem},
@@ -31,7 +34,8 @@ impl<'a> InstrumentRun<'a> {
     /// As [`Motions::new`], or another number of samples.
     pub(crate) fn new(
         model: &'a dyn Model,
-        (log, samples): (&'a Log, usize),
+        log: &'a Log,
+        samples: usize,
         settings: &Settings,
     ) -> Result<Self, Error> {
         if log.samples() != samples {
@@ -77,7 +81,11 @@ impl<'a> InstrumentRun<'a> {
             return Vec::new();
         };
         let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
-        let chunks = observer.chunks_with(motion, blocks, &mut failed, (scales, false));
+        let conditioning = Conditioning {
+            scales,
+            is_recorded: false,
+        };
+        let chunks = observer.chunks_with(motion, blocks, &mut failed, conditioning);
         let error = failed.into_iter().flatten().next();
         match (chunks, error) {
             (Ok(chunks), None) => chunks,

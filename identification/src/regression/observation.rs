@@ -16,6 +16,7 @@ use super::{
     points::Points,
     projection::Projection,
     sink::{LineSink, Plan, observed},
+    states::SampledStates,
     system::{Observed, singular},
 };
 use crate::{
@@ -42,6 +43,28 @@ pub(crate) struct Observer<'a> {
     pub(crate) settings: &'a Settings,
 }
 
+/// A run to observe.
+pub(crate) struct MeasuredRun<'a> {
+    /// Its number among the runs.
+    pub(crate) number: usize,
+    pub(crate) log: &'a Log,
+    /// Its instruments, if it has some.
+    pub(crate) instruments: Option<&'a Log>,
+    /// Largest number of values in stretches.
+    pub(crate) budget: usize,
+    /// Its periodic motion, if it has one.
+    pub(crate) returns: Option<Return>,
+}
+
+/// Conditioning of the kept actuators.
+#[derive(Clone, Copy)]
+pub(super) struct Conditioning<'a> {
+    /// Scales of the platform's coordinates.
+    pub(super) scales: &'a [f64],
+    /// Whether chunks contain the conditions.
+    pub(super) is_recorded: bool,
+}
+
 /// Other results of a pass over a run.
 #[derive(Debug, Clone)]
 pub(crate) struct RunObservation {
@@ -63,23 +86,19 @@ pub(crate) struct RunObservation {
 impl Observer<'_> {
     /// Reads a run, with its instruments if it has some.
     ///
-    /// Returns the equations for each projection, or the error, and the other results. `budget` is
-    /// the largest number of values in stretches. `returns` is the run's periodic motion, if it has
-    /// one.
+    /// Returns the equations for each projection, or the error, and the other results.
     ///
     /// # Errors
     /// A run that does not fit, a sample outside the workspace, a file that cannot be read.
     pub(crate) fn run(
         &self,
-        number: usize,
-        (log, instruments): (&Log, Option<&Log>),
-        (budget, returns): (usize, Option<Return>),
+        run: &MeasuredRun<'_>,
         progress: &dyn Fn(usize, usize),
     ) -> Result<(Vec<Result<Observed, Error>>, RunObservation), Error> {
-        let info = self.model.info();
+        let (info, log) = (self.model.info(), run.log);
         let instrument_run =
-            |own| InstrumentRun::new(self.model, (own, log.samples()), self.settings);
-        let mut instrument_run = instruments.map(instrument_run).transpose()?;
+            |own| InstrumentRun::new(self.model, own, log.samples(), self.settings);
+        let mut instrument_run = run.instruments.map(instrument_run).transpose()?;
         let mut motions = Motions::new(self.model, log, self.settings)?;
         let samples = motions.samples();
         let decimator = self
@@ -91,22 +110,23 @@ impl Observer<'_> {
         let equations = decimator.kept(samples);
         let plan = Plan::new(
             equations,
-            budget / (lines * width * self.projections.len()).max(1),
+            run.budget / (lines * width * self.projections.len()).max(1),
         )
-        .with_phases(returns.and_then(|motion| Phases::new(motion, self.settings.decimation)));
-        let mut sinks = self.sinks(&plan, (&decimator, samples), instrument_run.is_some())?;
+        .with_phases(
+            run.returns
+                .and_then(|motion| Phases::new(motion, self.settings.decimation)),
+        );
+        let mut sinks = self.sinks(&plan, &decimator, samples, instrument_run.is_some())?;
         let mut torques = decimator.stream(info.sizes.actuators, samples)?;
         let mut decimated_torques = Vec::new();
-        let mut points = Points::new(
-            (self.model, self.projections, self.settings),
-            log,
-            &decimator,
-            samples,
-            &plan,
-        );
+        let mut points = Points::new(self, log, &decimator, samples, &plan);
         let mut failed: Vec<Option<Error>> = self.projections.iter().map(|_| None).collect();
         let mut closure_residual = 0.0_f64;
         let scales = home_scales(self.model);
+        let conditioning = Conditioning {
+            scales: &scales,
+            is_recorded: true,
+        };
         while let Some(motion) = motions.next()? {
             closure_residual = closure_residual.max(motion.closure_residual);
             if let Some(own) = &mut instrument_run {
@@ -117,8 +137,7 @@ impl Observer<'_> {
             let together = rayon::current_num_threads().max(1);
             for first in (0..blocks).step_by(together) {
                 let range = first..(first + together).min(blocks);
-                let told = (&scales[..], true);
-                let chunks = self.chunks_with(&motion, range.clone(), &mut failed, told)?;
+                let chunks = self.chunks_with(&motion, range.clone(), &mut failed, conditioning)?;
                 let own = instrument_run.as_mut();
                 let own = own.map(|own| own.chunks(self, range, &scales));
                 let instrument_chunks = own.unwrap_or_default();
@@ -134,7 +153,7 @@ impl Observer<'_> {
                         let before = (first + place) * BLOCK * n;
                         let velocities = velocities.skip(before + line).step_by(n);
                         let rows = &chunk.lines[projection][line];
-                        sink.push(&plan, (rows, instruments), velocities);
+                        sink.push(&plan, rows, instruments, velocities);
                     }
                 });
                 conditions.extend(chunks.into_iter().map(|chunk| chunk.conditions));
@@ -150,7 +169,7 @@ impl Observer<'_> {
         let mut sinks = sinks.into_iter();
         let system = |(failure, partition): (Option<Error>, _)| {
             let own: Vec<LineSink> = sinks.by_ref().take(lines).collect();
-            let mut observed = observed(number, &plan, own, partition);
+            let mut observed = observed(run.number, &plan, own, partition);
             if unusable.is_some() {
                 observed.instruments.clear();
             }
@@ -173,7 +192,8 @@ impl Observer<'_> {
     fn sinks(
         &self,
         plan: &Plan,
-        (decimator, samples): (&Decimator, usize),
+        decimator: &Decimator,
+        samples: usize,
         instruments: bool,
     ) -> Result<Vec<LineSink>, Error> {
         let (lines, parameters) = (self.model.info().sizes.dof, self.base.len());
@@ -182,7 +202,7 @@ impl Observer<'_> {
         let sink = |number: usize| {
             let limit = limits.get(number % lines).copied();
             let stream = |width| decimator.stream(width, samples);
-            LineSink::new(plan, stream, (parameters, instruments), limit)
+            LineSink::new(plan, stream, parameters, instruments, limit)
         };
         (0..lines * self.projections.len()).map(sink).collect()
     }
@@ -200,10 +220,14 @@ impl Observer<'_> {
         failed: &mut [Option<Error>],
     ) -> Result<Vec<Chunk>, Error> {
         let scales = home_scales(self.model);
-        self.chunks_with(motion, blocks, failed, (&scales, true))
+        let conditioning = Conditioning {
+            scales: &scales,
+            is_recorded: true,
+        };
+        self.chunks_with(motion, blocks, failed, conditioning)
     }
 
-    /// The same with the scales of the platform's coordinates, with or without conditions.
+    /// The same with given scales of the platform's coordinates, with or without conditions.
     ///
     /// # Errors
     /// A sample at which the model has no value.
@@ -212,12 +236,12 @@ impl Observer<'_> {
         motion: &Motion,
         blocks: Range<usize>,
         failed: &mut [Option<Error>],
-        told: (&[f64], bool),
+        conditioning: Conditioning<'_>,
     ) -> Result<Vec<Chunk>, Error> {
         let wanted: Vec<bool> = failed.iter().map(Option::is_none).collect();
         let chunks: Vec<(Chunk, Vec<Option<usize>>)> = blocks
             .into_par_iter()
-            .map(|index| self.chunk(motion, index * BLOCK, told, &wanted))
+            .map(|index| self.chunk(motion, index * BLOCK, conditioning, &wanted))
             .collect::<Result<_, _>>()?;
         for (projection, failed) in failed.iter_mut().enumerate() {
             let first = chunks.iter().find_map(|(_, singular)| singular[projection]);
@@ -235,7 +259,7 @@ impl Observer<'_> {
         &self,
         motion: &Motion,
         first: usize,
-        (scales, conditions): (&[f64], bool),
+        conditioning: Conditioning<'_>,
         wanted: &[bool],
     ) -> Result<(Chunk, Vec<Option<usize>>), Error> {
         let info = self.model.info();
@@ -258,8 +282,8 @@ impl Observer<'_> {
         for (projection, wanted) in self.projections.iter().zip(wanted) {
             let all = || (0..n).collect();
             let kept = projection.kept(&info).unwrap_or_else(all);
-            let choice = KeptActuators::new(kept, scales);
-            if conditions {
+            let choice = KeptActuators::new(kept, conditioning.scales);
+            if conditioning.is_recorded {
                 chunk.conditions.push(choice.conditions(&jacobians, n * r));
             }
             if *projection == Projection::Platform || !*wanted {
@@ -293,25 +317,16 @@ impl Observer<'_> {
         let at = |error: overact::SampleError| {
             Error::from(motion.outside(first + error.sample, error.error))
         };
-        let pose = slice(&motion.pose, sizes.pose, first, count);
-        let twist = slice(&motion.twist, r, first, count);
-        let acceleration = slice(&motion.acceleration, r, first, count);
+        let states = SampledStates::of_motion(motion, first, count);
         let torques = slice(&motion.torques, n, first, count);
-        let states = [pose, twist, acceleration];
         let mut platform = self
             .columns
-            .evaluate(
-                self.model,
-                &states,
-                (count, 1.0 / motion.sampling_frequency),
-                motion.carried(),
-                (self.base, 1),
-            )
+            .evaluate(self.model, &states, self.base, 1)
             .map_err(at)?;
         let width = self.base.len() + 1;
         let mut y = vec![0.0; count * r];
         self.model
-            .evaluate(Function::ProjectPlatform, &[pose, torques], &mut y)
+            .evaluate(Function::ProjectPlatform, &[states.pose, torques], &mut y)
             .map_err(at)?;
         for (line, rows) in platform.iter_mut().enumerate() {
             let measured = y[line..].iter().step_by(r);

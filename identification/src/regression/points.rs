@@ -1,8 +1,8 @@
 //! Motion data for plots, and the worst condition of the kept actuators along a run.
 
-use overact::Model;
-
-use super::{projection::Projection, sink::Plan, system::PartitionCondition};
+use super::{
+    observation::Observer, projection::Projection, sink::Plan, system::PartitionCondition,
+};
 use crate::{
     blocks::BLOCK,
     data::Log,
@@ -41,14 +41,14 @@ struct Track {
 impl<'a> Points<'a> {
     /// Points of a run with `samples` used samples, by the plan for its equations.
     pub(crate) fn new(
-        (model, projections, settings): (&dyn Model, &[Projection], &'a Settings),
+        observer: &Observer<'a>,
         log: &Log,
         decimator: &Decimator,
         samples: usize,
         plan: &Plan,
     ) -> Self {
-        let info = model.info();
-        let tracks = projections.iter().map(|projection| {
+        let info = observer.model.info();
+        let tracks = observer.projections.iter().map(|projection| {
             let all = || (0..info.sizes.actuators).collect();
             let kept: Vec<usize> = projection.kept(&info).unwrap_or_else(all);
             let names = kept
@@ -76,7 +76,7 @@ impl<'a> Points<'a> {
             first: decimator.first(samples),
             stride: plan.stride() * decimator.factor(),
             last: plan.points().saturating_sub(1),
-            settings,
+            settings: observer.settings,
             frequency: log.sampling_frequency(),
         }
     }

@@ -144,7 +144,7 @@ impl InstrumentSink {
     }
 
     /// Adds the instruments of equation number `taken`, whose columns and Y are `own`.
-    fn push(&mut self, plan: &Plan, taken: usize, (own, instruments): (&[f64], &[f64])) {
+    fn push(&mut self, plan: &Plan, taken: usize, own: &[f64], instruments: &[f64]) {
         let (y, columns) = own.split_last().unwrap_or((&0.0, &[]));
         self.rows.extend_from_slice(columns);
         self.rows.extend_from_slice(instruments);
@@ -174,7 +174,8 @@ impl LineSink {
     pub(crate) fn new(
         plan: &Plan,
         stream: impl Fn(usize) -> Result<Decimation, Error>,
-        (parameters, instruments): (usize, bool),
+        parameters: usize,
+        instruments: bool,
         standstill: Option<f64>,
     ) -> Result<Self, Error> {
         let width = parameters + 1;
@@ -217,7 +218,8 @@ impl LineSink {
     pub(crate) fn push(
         &mut self,
         plan: &Plan,
-        (rows, instruments): (&[f64], Option<&[f64]>),
+        rows: &[f64],
+        instruments: Option<&[f64]>,
         velocities: impl Iterator<Item = f64>,
     ) {
         let (width, mut kept) = (self.width, Vec::new());
@@ -241,7 +243,7 @@ impl LineSink {
             }
             if let Some(sink) = &mut self.instruments {
                 let own = beside.get(place * width..(place + 1) * width - 1);
-                sink.push(plan, self.taken, (row, own.unwrap_or_default()));
+                sink.push(plan, self.taken, row, own.unwrap_or_default());
             }
             if self.taken.is_multiple_of(plan.stride) {
                 self.points.extend_from_slice(row);

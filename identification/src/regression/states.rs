@@ -8,7 +8,12 @@ use overact::{Columns, Function, Model};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::error::{Error, Problem};
+use crate::{
+    blocks::slice,
+    data::Load,
+    error::{Error, Problem},
+    kinematics::Motion,
+};
 
 /// Initial spread of the poses around home (m, rad).
 const SPREAD: f64 = 1.0;
@@ -30,6 +35,52 @@ pub(crate) struct States {
     pub(crate) twist: Vec<f64>,
     /// Accelerations, samples × r (m/s², rad/s²).
     pub(crate) acceleration: Vec<f64>,
+}
+
+impl States {
+    /// The states as unrelated samples, with any payload.
+    pub(crate) fn sampled(&self) -> SampledStates<'_> {
+        SampledStates {
+            samples: self.samples,
+            interval: 0.0,
+            pose: &self.pose,
+            twist: &self.twist,
+            acceleration: &self.acceleration,
+            carried: Load::Any,
+        }
+    }
+}
+
+/// Successive states of a robot.
+#[derive(Debug, Clone, Copy)]
+pub struct SampledStates<'a> {
+    /// Number of samples.
+    pub samples: usize,
+    /// Sampling interval, s; zero for unrelated states.
+    pub interval: f64,
+    /// Poses, samples × pose coordinates (m, rad).
+    pub pose: &'a [f64],
+    /// Twist coordinates, samples × r (m/s, rad/s).
+    pub twist: &'a [f64],
+    /// Accelerations, samples × r (m/s², rad/s²).
+    pub acceleration: &'a [f64],
+    /// The payload that the platform carries.
+    pub carried: Load<'a>,
+}
+
+impl<'a> SampledStates<'a> {
+    /// States of `count` samples from number `first` of a motion on.
+    pub(crate) fn of_motion(motion: &'a Motion, first: usize, count: usize) -> Self {
+        let rows = |values: &'a [f64]| slice(values, values.len() / motion.samples, first, count);
+        Self {
+            samples: count,
+            interval: 1.0 / motion.sampling_frequency,
+            pose: rows(&motion.pose),
+            twist: rows(&motion.twist),
+            acceleration: rows(&motion.acceleration),
+            carried: motion.carried(),
+        }
+    }
 }
 
 /// Draws `count` random states at which the model has a value, reproducibly for a `seed`.

@@ -41,7 +41,8 @@ impl PropagatedUncertainty {
     pub(crate) fn covariance(
         &self,
         projection: usize,
-        (selected, weights): (&[usize], &[f64]),
+        selected: &[usize],
+        weights: &[f64],
     ) -> Option<DMatrix<f64>> {
         let lines = self.projections.get(projection)?;
         let (p, count) = (selected.len(), self.covariance.nrows());

@@ -139,8 +139,7 @@ pub(crate) fn validate(
     let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
     let plan = Plan::new(decimator.kept(samples), 0);
     let stride = plan.stride();
-    let seen = (observer.model, observer.projections, observer.settings);
-    let mut points = Points::new(seen, log, &decimator, samples, &plan);
+    let mut points = Points::new(observer, log, &decimator, samples, &plan);
     let mut sums = Sums::new(&layout, stride);
     let mut closure_residual = 0.0_f64;
     let mut counted = observer.settings.validation_samples;

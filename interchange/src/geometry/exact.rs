@@ -95,13 +95,15 @@ const LARGE: f64 = 1e100;
 
 /// Rotation of URDF's roll, pitch and yaw.
 #[must_use]
-pub(crate) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> Rotation3<f64> {
+pub(crate) fn roll_pitch_yaw(angles: [f64; 3]) -> Rotation3<f64> {
+    let [roll, pitch, yaw] = angles;
     about(2, angle(yaw)) * about(1, angle(pitch)) * about(0, angle(roll))
 }
 
 /// Rotation of a quaternion w, x, y, z; `None` for a zero quaternion.
 #[must_use]
-pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> Option<Rotation3<f64>> {
+pub(crate) fn quaternion(wxyz: [f64; 4]) -> Option<Rotation3<f64>> {
+    let [w, x, y, z] = wxyz;
     let raw = nalgebra::Quaternion::new(w, x, y, z);
     let largest = raw.coords.amax();
     let raw = if largest > LARGE { raw / largest } else { raw };

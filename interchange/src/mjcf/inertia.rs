@@ -192,12 +192,12 @@ fn solid(reader: &Reader<'_>, geom: &Element, kind: &str) -> Option<(f64, Vector
         )),
         "ellipsoid" => {
             let (y, z) = (second?, half_length(2)?);
-            let moments = moments([radius, y, z]) / 5.0;
+            let moments = moments(radius, y, z) / 5.0;
             Some((4.0 / 3.0 * PI * radius * y * z, moments))
         }
         "box" => {
             let (y, z) = (second?, half_length(2)?);
-            Some((8.0 * radius * y * z, moments([radius, y, z]) / 3.0))
+            Some((8.0 * radius * y * z, moments(radius, y, z) / 3.0))
         }
         "cylinder" => {
             let height = 2.0 * half_length(1)?;
@@ -218,7 +218,7 @@ fn uniform(value: f64) -> Vector3<f64> {
 }
 
 /// Sums of two squares: yy + zz, xx + zz, xx + yy.
-fn moments([x, y, z]: [f64; 3]) -> Vector3<f64> {
+fn moments(x: f64, y: f64, z: f64) -> Vector3<f64> {
     Vector3::new(y * y + z * z, x * x + z * z, x * x + y * y)
 }
 

@@ -59,17 +59,17 @@ pub(super) fn limit(files: &Files, of: &Element, tag: &str) -> Option<f64> {
 
 /// Whether a child element is true; false if absent or invalid.
 pub(super) fn flag(files: &Files, of: &Element, tag: &str) -> bool {
-    text(of, tag).is_some_and(|value| is_true(files, value))
+    text(of, tag).is_some_and(|(text, place)| is_true(files, text, place))
 }
 
 /// Whether an attribute is true; false if absent or invalid.
 pub(super) fn attribute_flag(files: &Files, of: &Element, name: &str) -> bool {
     of.attribute(name)
-        .is_some_and(|value| is_true(files, value))
+        .is_some_and(|(text, place)| is_true(files, text, place))
 }
 
 /// Whether a boolean is true; capitals do not matter, as in libsdformat.
-fn is_true(files: &Files, (text, place): (&str, &Place)) -> bool {
+fn is_true(files: &Files, text: &str, place: &Place) -> bool {
     match text.trim().to_ascii_lowercase().as_str() {
         "false" | "0" => false,
         "true" | "1" => true,

@@ -52,7 +52,8 @@ pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: 
 }
 
 /// The foot of a serial robot: a disc on the ground.
-fn foot([x, y]: &[f64; 2]) -> String {
+fn foot(place: &[f64; 2]) -> String {
+    let [x, y] = place;
     format!(
         "<ellipse class=\"ov-base\" cx=\"{}\" cy=\"{}\" rx=\"40\" ry=\"15\" stroke-width=\"1.5\"/>\n",
         n(*x),
@@ -61,7 +62,8 @@ fn foot([x, y]: &[f64; 2]) -> String {
 }
 
 /// A fixed pivot: a triangle on hatched ground.
-fn pivot([x, y]: &[f64; 2]) -> String {
+fn pivot(place: &[f64; 2]) -> String {
+    let [x, y] = place;
     let bottom = y + 26.0;
     let mut hatch = String::new();
     for step in 0..5 {

@@ -35,7 +35,8 @@ pub(super) fn symbol(
 }
 
 /// Letter on a motor.
-fn motor([x, y]: [f64; 2]) -> String {
+fn motor(place: [f64; 2]) -> String {
+    let [x, y] = place;
     format!(
         "<text class=\"ov-motor\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">M</text>",
         n(x),
@@ -44,10 +45,10 @@ fn motor([x, y]: [f64; 2]) -> String {
 }
 
 /// Joint seen along its axis.
-pub(super) fn disc([x, y]: [f64; 2], colour: usize, actuated: bool) -> String {
-    let (cx, cy) = (n(x), n(y));
+pub(super) fn disc(place: [f64; 2], colour: usize, actuated: bool) -> String {
+    let [cx, cy] = place.map(n);
     if actuated {
-        let letter = motor([x, y]);
+        let letter = motor(place);
         return format!(
             "<circle class=\"ov-case ov-f{colour}\" cx=\"{cx}\" cy=\"{cy}\" r=\"14\" stroke-width=\"2.5\"/>{letter}\n"
         );
@@ -56,7 +57,7 @@ pub(super) fn disc([x, y]: [f64; 2], colour: usize, actuated: bool) -> String {
 }
 
 /// Joint seen from any direction: a cylinder about its axis.
-fn drum([x, y]: [f64; 2], axis: [f64; 3], colour: usize, actuated: bool) -> String {
+fn drum(place: [f64; 2], axis: [f64; 3], colour: usize, actuated: bool) -> String {
     // The visible cap is at the nearer end.
     let [right, up, near] = if axis[2] < 0.0 {
         axis.map(|a| -a)
@@ -86,27 +87,28 @@ fn drum([x, y]: [f64; 2], axis: [f64; 3], colour: usize, actuated: bool) -> Stri
         ("ov-ink".to_owned(), "ov-ink".to_owned(), "2")
     };
     let letter = if actuated {
-        motor([x, y])
+        motor(place)
     } else {
         String::new()
     };
     format!(
         "<g transform=\"translate({} {}) rotate({})\"><path class=\"{body}\" d=\"{sides}\" stroke-width=\"{width}\"/>\
          <ellipse class=\"{cap}\" cx=\"{reach_text}\" cy=\"0\" rx=\"{flat_text}\" ry=\"{radius_text}\" stroke-width=\"{width}\"/></g>{letter}\n",
-        n(x),
-        n(y),
+        n(place[0]),
+        n(place[1]),
         n(angle)
     )
 }
 
 /// Slider on a rail.
 pub(super) fn block(
-    [x, y]: [f64; 2],
+    place: [f64; 2],
     axis: [f64; 3],
     colour: usize,
     actuated: bool,
     carries: bool,
 ) -> String {
+    let [x, y] = place;
     let angle = (-axis[1]).atan2(axis[0]);
     // Move the letter away from the joint on the slider.
     let (left, width, aside) = if carries {
@@ -132,7 +134,8 @@ pub(super) fn block(
 }
 
 /// Two passive joints whose axes cross.
-pub(super) fn universal([x, y]: [f64; 2]) -> String {
+pub(super) fn universal(place: [f64; 2]) -> String {
+    let [x, y] = place;
     let (cx, cy) = (n(x), n(y));
     format!(
         "<circle class=\"ov-ink\" cx=\"{cx}\" cy=\"{cy}\" r=\"8\" stroke-width=\"2.2\"/>\
@@ -170,10 +173,9 @@ fn telescope(
 }
 
 /// End of a leg with a point closure.
-pub(super) fn ball([x, y]: [f64; 2], colour: usize) -> String {
+pub(super) fn ball(place: [f64; 2], colour: usize) -> String {
+    let [cx, cy] = place.map(n);
     format!(
-        "<circle class=\"ov-case ov-f{colour}\" cx=\"{0}\" cy=\"{1}\" r=\"7.5\" stroke-width=\"2\"/>\n",
-        n(x),
-        n(y)
+        "<circle class=\"ov-case ov-f{colour}\" cx=\"{cx}\" cy=\"{cy}\" r=\"7.5\" stroke-width=\"2\"/>\n"
     )
 }

@@ -9,7 +9,8 @@ use crate::error::{Error, Problem};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    BaseParameters, ColumnSet, ModelKind, PayloadUse, Projection, Settings, base_parameters,
+    BaseParameters, ColumnSet, ModelKind, PayloadUse, Projection, SampledStates, Settings,
+    base_parameters,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -118,19 +119,17 @@ impl Question {
         frame: &FourierRun,
         course: &Course,
     ) -> Option<Vec<DMatrix<f64>>> {
-        let states = &course.states;
-        let states = [&states.pose[..], &states.twist, &states.acceleration];
-        let interval = 1.0 / (frame.fundamental * course.samples as f64);
-        let (model, picked) = (bench.model, (&self.base.columns[..], 0));
+        let states = SampledStates {
+            samples: course.samples,
+            interval: 1.0 / (frame.fundamental * course.samples as f64),
+            pose: &course.states.pose,
+            twist: &course.states.twist,
+            acceleration: &course.states.acceleration,
+            carried: frame.payload.into(),
+        };
         let lines = self
             .columns
-            .evaluate(
-                model,
-                &states,
-                (course.samples, interval),
-                frame.payload,
-                picked,
-            )
+            .evaluate(bench.model, &states, &self.base.columns, 0)
             .ok()?;
         let weight = frame.duration * self.measurement.sampling / course.samples as f64;
         let of = |projection: &Projection| match projection.kept(&bench.info) {

@@ -72,7 +72,8 @@ fn reduced(x: f32) -> (f32, f32) {
 }
 
 #[inline(always)]
-fn polynomial(z: f32, [a, b, c]: [f32; 3]) -> f32 {
+fn polynomial(z: f32, terms: [f32; 3]) -> f32 {
+    let [a, b, c] = terms;
     (a * z + b) * z + c
 }
 

@@ -110,7 +110,9 @@ fn failed_check(worst: &Tested, harm: &Harm, actuator: &str) -> Check {
     } else {
         let direction = if size < 0.0 { "small" } else { "large" };
         let [size, deviation] = [size.abs(), worst.wald.deviation].map(percent);
-        format!("{size} % too {direction} compared with {others} (standard deviation {deviation} %)")
+        format!(
+            "{size} % too {direction} compared with {others} (standard deviation {deviation} %)"
+        )
     };
     let words = format!(
         "the torque of `{actuator}` is measured {by}; {}. Check its gain, its motor constant, its gear ratio and whether it is filtered differently from the others",

@@ -8,6 +8,7 @@ mod consistency;
 mod delay;
 mod excitation;
 mod fault_hypotheses;
+mod filters;
 mod gains;
 mod geometry;
 mod half_band;
@@ -115,12 +116,13 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order of the report.
-const CHECKS: [Function; 22] = [
+const CHECKS: [Function; 23] = [
     raw_samples::check,
     units::check,
     repeated::check,
     excitation::check,
     motion_length::check,
+    filters::check,
     closure::check,
     torque_faults::check,
     delay::check,

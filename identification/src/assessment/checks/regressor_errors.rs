@@ -94,7 +94,7 @@ fn source(told: &ErrorsInRegressor) -> String {
     format!("the other periods: {}", runs.join("; "))
 }
 
-/// ProjectionEstimates of the comparison, in words.
+/// Result of the comparison, in words.
 fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
     let [k, rest] = agreement.degrees_of_freedom;
     let whose = if agreement.together {

@@ -12,9 +12,9 @@
 use super::{
     Context,
     fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
+    filters::{equal_bands, torque_band},
     half_band::confirms,
     level::{level, origin},
-    motion_length::{equal_bands, torque_band},
 };
 use crate::{
     assessment::{

@@ -7,7 +7,7 @@ use overact::Model;
 use super::misreading::Misreading;
 use super::shapes::{ActuatorState, PositionRange, SHAPES, Shape, WAVES};
 use crate::{
-    filters::central_differences,
+    filters::SampledSignals,
     kinematics::Motion,
     regression::{columns::Reversal, projection::ModelKind},
 };
@@ -336,8 +336,13 @@ impl ActuatorSignals<'_> {
 /// One-sided at both ends.
 pub(super) fn rates(values: &[f64], width: usize, frequency: f64) -> Vec<f64> {
     let samples = values.len() / width.max(1);
-    let run = (width, samples.saturating_sub(1));
-    let mut rates = central_differences(values, 0, 0..samples, run, 1);
+    let signals = SampledSignals {
+        values,
+        width,
+        start: 0,
+        last: samples.saturating_sub(1),
+    };
+    let mut rates = signals.central_differences(0..samples, 1);
     rates.iter_mut().for_each(|rate| *rate *= frequency);
     rates
 }

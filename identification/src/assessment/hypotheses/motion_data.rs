@@ -15,7 +15,7 @@ use crate::{
     blocks::{BLOCK, evaluate, slice},
     error::Error,
     kinematics::{Motion, distribution::least_torques},
-    regression::columns::Reversal,
+    regression::{columns::Reversal, states::SampledStates},
 };
 
 /// Data of a motion; samples are consecutive.
@@ -185,17 +185,10 @@ impl<'a> MotionData<'a> {
 
 /// Rows of the base parameter columns, by block and line.
 fn base(pass: &Pass<'_>, motion: &Motion) -> Result<Vec<Vec<Vec<f64>>>, Error> {
-    let sizes = pass.model.info().sizes;
     let block = |first: usize| {
         let count = BLOCK.min(motion.samples - first);
-        let states = [
-            slice(&motion.pose, sizes.pose, first, count),
-            slice(&motion.twist, sizes.dof, first, count),
-            slice(&motion.acceleration, sizes.dof, first, count),
-        ];
-        let time = (count, 1.0 / motion.sampling_frequency);
-        let picked = (pass.base, 0);
-        let rows = { pass.columns }.evaluate(pass.model, &states, time, motion.carried(), picked);
+        let states = SampledStates::of_motion(motion, first, count);
+        let rows = { pass.columns }.evaluate(pass.model, &states, pass.base, 0);
         rows.map_err(|error| motion.outside(first + error.sample, error.error).into())
     };
     let blocks = (0..motion.samples).step_by(BLOCK);

@@ -13,7 +13,7 @@ use crate::{
         Motion,
         distribution::{least_norm, transposed_product},
     },
-    regression::columns::ColumnSet,
+    regression::{columns::ColumnSet, states::SampledStates},
 };
 
 /// Step of a position (m, rad), and relative step of the clock.
@@ -55,16 +55,19 @@ impl<'a> Prediction<'a> {
         for first in (0..motion.samples).step_by(BLOCK) {
             let count = BLOCK.min(motion.samples - first);
             let widths = [sizes.pose, r, r];
-            let parts = [0, 1, 2].map(|i| slice(states[i], widths[i], first, count));
+            let [pose, twist, acceleration] =
+                [0, 1, 2].map(|i| slice(states[i], widths[i], first, count));
+            let states = SampledStates {
+                samples: count,
+                interval,
+                pose,
+                twist,
+                acceleration,
+                carried: motion.carried(),
+            };
             let lines = self
                 .columns
-                .evaluate(
-                    self.model,
-                    &parts,
-                    (count, interval),
-                    motion.carried(),
-                    (self.base, 0),
-                )
+                .evaluate(self.model, &states, self.base, 0)
                 .map_err(|error| motion.outside(first + error.sample, error.error))?;
             let p = self.base.len();
             for sample in 0..count {

@@ -9,7 +9,7 @@ use super::{
     columns::Layout, group::Group, model_columns::ModelColumns, scores::MotionMean,
     sections::RunScores,
 };
-use crate::estimation::periodic_variance::SumVariance;
+use crate::estimation::periodic_variance::{SumVariance, VarianceRatio};
 
 /// Orthonormal columns of a group outside the model's columns: z⊥ = (z - W B) Mᵀ.
 pub(super) struct OrthogonalColumns<'a> {
@@ -195,7 +195,8 @@ impl ScoreCovariance {
             return self;
         };
         // The columns are orthonormal.
-        let (ratio, freedom) = all.by(self.covariance.trace(), sum_variances.len() as f64);
+        let VarianceRatio { ratio, freedom } =
+            all.by(self.covariance.trace(), sum_variances.len() as f64);
         if ratio > 1.0 && ratio.is_finite() {
             self.covariance *= ratio;
             if sum_variances.len() == 1 {

@@ -17,6 +17,7 @@ use crate::{
     regression::{
         columns::ColumnSet,
         factor::{Factor, Reduced},
+        states::SampledStates,
     },
     settings::Settings,
 };
@@ -257,23 +258,20 @@ fn run_factors(
                 Error::from(motion.outside(first + error.sample, error.error))
             };
             let pose = slice(&motion.pose, info.sizes.pose, first, count);
-            let states = [
-                pose,
-                slice(&motion.twist, r, first, count),
-                slice(&motion.acceleration, r, first, count),
-            ];
-            let interval = 1.0 / motion.sampling_frequency;
-            let evaluate = |states: &[&[f64]; 3]| {
-                let picked = (&base.columns[..], more);
-                let carried = motion.carried();
-                let lines = columns.evaluate(model, states, (count, interval), carried, picked);
+            let states = SampledStates::of_motion(&motion, first, count);
+            let evaluate = |states: &SampledStates<'_>| {
+                let lines = columns.evaluate(model, states, &base.columns, more);
                 lines.map_err(at)
             };
             let mut lines = evaluate(&states)?;
             if without_gravity > 0.0 {
                 // At rest, the columns of masses contain gravity only.
                 let rest = vec![0.0; r * count];
-                let at_rest = evaluate(&[pose, &rest, &rest])?;
+                let at_rest = evaluate(&SampledStates {
+                    twist: &rest,
+                    acceleration: &rest,
+                    ..states
+                })?;
                 for (own, rest) in lines.iter_mut().zip(&at_rest) {
                     let rows = own.chunks_exact_mut(width).zip(rest.chunks_exact(width));
                     for (own, rest) in rows {

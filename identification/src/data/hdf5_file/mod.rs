@@ -205,7 +205,7 @@ impl Stored for Hdf5 {
             }
         }
         Error::check(problems)?;
-        let file = (self.file.as_str(), self.bytes);
-        Ok(Box::new(Rows::new(file, &self.series, wanted)))
+        let rows = Rows::new(&self.file, self.bytes, &self.series, wanted);
+        Ok(Box::new(rows))
     }
 }

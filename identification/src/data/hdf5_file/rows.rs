@@ -65,7 +65,8 @@ struct Block {
 impl<'a> Rows<'a> {
     /// Starts at the first row.
     pub(super) fn new(
-        (file, size): (&'a str, u64),
+        file: &'a str,
+        size: u64,
         series: &'a [Series],
         wanted: Vec<Wanted<'a>>,
     ) -> Self {

@@ -68,7 +68,8 @@ impl Chunk {
     pub(super) fn new(
         input: BufReader<Section>,
         packing: &str,
-        (place, header): (u64, ChunkHeader),
+        place: u64,
+        header: ChunkHeader,
     ) -> Result<Self, String> {
         let input = match packing {
             "" => Unpacking::None(input),

@@ -128,7 +128,7 @@ impl Stored for Topic {
             let source = self.columns.get(place)?.source;
             Some(Wanted { source, name })
         });
-        Ok(Box::new(Rows::new(self, (input, length), wanted.collect())))
+        Ok(Box::new(Rows::new(self, input, length, wanted.collect())))
     }
 }
 

@@ -190,11 +190,8 @@ impl Records {
         let header = ChunkHeader::of(&beginning).ok_or_else(cut_off)?;
         self.pass(end - start)?;
         let input = Section::buffered(&self.file, start, start + size);
-        Chunk::new(
-            input,
-            &legible(&String::from_utf8_lossy(&packing)),
-            (place, header),
-        )
+        let packing = legible(&String::from_utf8_lossy(&packing));
+        Chunk::new(input, &packing, place, header)
     }
 
     fn read(&mut self, bytes: &mut [u8]) -> Result<(), String> {

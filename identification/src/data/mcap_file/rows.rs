@@ -39,11 +39,7 @@ pub(super) struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// Starts at the first message of a topic; `length` is the size of its file.
-    pub(super) fn new(
-        topic: &'a Topic,
-        (file, length): (File, u64),
-        wanted: Vec<Wanted<'a>>,
-    ) -> Self {
+    pub(super) fn new(topic: &'a Topic, file: File, length: u64, wanted: Vec<Wanted<'a>>) -> Self {
         Self {
             topic,
             records: Records::new(&Arc::new(file), MAGIC.len() as u64, length),

@@ -246,20 +246,24 @@ impl Column<'_> {
         let Some(reader) = &mut self.reader else {
             return Ok(());
         };
-        let into = (&mut self.levels, &mut self.values);
+        let (levels, values) = (&mut self.levels, &mut self.values);
         let read = match reader {
-            Of::DoubleColumnReader(own) => batch(own, count, into, |value| *value),
-            Of::FloatColumnReader(own) => batch(own, count, into, |value| f64::from(*value)),
-            Of::Int64ColumnReader(own) => {
-                batch(own, count, into, |value| kind.long(*value, origin))
+            Of::DoubleColumnReader(own) => batch(own, count, levels, values, |value| *value),
+            Of::FloatColumnReader(own) => {
+                batch(own, count, levels, values, |value| f64::from(*value))
             }
-            Of::Int32ColumnReader(own) => {
-                batch(own, count, into, |value| kind.short(*value, origin))
-            }
-            Of::Int96ColumnReader(own) => batch(own, count, into, |value| {
+            Of::Int64ColumnReader(own) => batch(own, count, levels, values, |value| {
+                kind.long(*value, origin)
+            }),
+            Of::Int32ColumnReader(own) => batch(own, count, levels, values, |value| {
+                kind.short(*value, origin)
+            }),
+            Of::Int96ColumnReader(own) => batch(own, count, levels, values, |value| {
                 kind.long(value.to_nanos(), origin)
             }),
-            Of::BoolColumnReader(own) => batch(own, count, into, |value| f64::from(*value)),
+            Of::BoolColumnReader(own) => {
+                batch(own, count, levels, values, |value| f64::from(*value))
+            }
             Of::ByteArrayColumnReader(_) | Of::FixedLenByteArrayColumnReader(_) => {
                 return Err(String::from("it has no numbers"));
             }
@@ -277,7 +281,8 @@ impl Column<'_> {
 fn batch<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     count: usize,
-    (levels, values): (&mut Vec<i16>, &mut Vec<Option<f64>>),
+    levels: &mut Vec<i16>,
+    values: &mut Vec<Option<f64>>,
     number: impl Fn(&T::T) -> f64,
 ) -> Result<(), ParquetError> {
     let mut found = Vec::with_capacity(count);

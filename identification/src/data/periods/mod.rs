@@ -174,15 +174,15 @@ fn gathered(log: &Log, samples: usize) -> Result<Periods, Error> {
         sums,
         counts,
     };
-    periods.difference = periods.differ(&origin, (&squares, &totals), sample);
+    periods.difference = periods.differ(&origin, &squares, &totals, sample);
     let size = origin.iter().fold(1.0_f64, |size, q| size.max(q.abs()));
     let floor = (ROUNDING * size).powi(2) * (count * samples) as f64;
-    periods.correlation = correlation((&own, &together), count, floor);
+    periods.correlation = correlation(&own, &together, count, floor);
     Ok(periods)
 }
 
 /// ρ over all actuators, each scaled by its own noise.
-fn correlation((own, together): (&[f64], &[f64]), count: usize, floor: f64) -> Option<f64> {
+fn correlation(own: &[f64], together: &[f64], count: usize, floor: f64) -> Option<f64> {
     let n = own.len();
     let noisy: Vec<usize> = (0..n).filter(|&i| own[i] > floor).collect();
     let ratio = |i: &usize| {
@@ -195,7 +195,7 @@ fn correlation((own, together): (&[f64], &[f64]), count: usize, floor: f64) -> O
 
 impl Periods {
     /// Difference between periods by the motion's variance, for the actuator with the largest one.
-    fn differ(&self, origin: &[f64], (squares, totals): (&[f64], &[f64]), samples: usize) -> f64 {
+    fn differ(&self, origin: &[f64], squares: &[f64], totals: &[f64], samples: usize) -> f64 {
         let n = self.width;
         let of = |i: usize| {
             let rows = self.sums[i..].iter().step_by(n).zip(&self.counts);

@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 /// A run of two actuators at 1 kHz with a period in samples.
 ///
 /// It has random errors of size `fresh` at each sample, and of size `repeated` at each phase.
-fn run(period: f64, samples: usize, (fresh, repeated): (f64, f64)) -> Log {
+fn run(period: f64, samples: usize, fresh: f64, repeated: f64) -> Log {
     let mut generator = Pcg64::seed_from_u64(4);
     let size = period.round() as usize;
     let again: Vec<f64> = (0..2 * size)
@@ -28,8 +28,8 @@ fn run(period: f64, samples: usize, (fresh, repeated): (f64, f64)) -> Log {
 
 #[test]
 fn the_period_is_found_and_the_correlation_of_the_errors_is_told() {
-    for (noise, expected) in [((1e-4, 0.0), 0.0), ((0.0, 1e-4), 1.0), ((1e-4, 1e-4), 0.5)] {
-        let log = run(1250.0, 8000, noise);
+    for [fresh, repeated, expected] in [[1e-4, 0.0, 0.0], [0.0, 1e-4, 1.0], [1e-4, 1e-4, 0.5]] {
+        let log = run(1250.0, 8000, fresh, repeated);
         let found = periods(&log, None).expect("periodic");
         assert_eq!((found.samples, found.count), (1250, 6));
         let correlation = found.correlation.expect("noise");
@@ -41,7 +41,7 @@ fn the_period_is_found_and_the_correlation_of_the_errors_is_told() {
 
 #[test]
 fn periods_without_a_whole_number_of_samples_are_taken_together() {
-    let log = run(833.0 + 1.0 / 3.0, 10_000, (1e-5, 0.0));
+    let log = run(833.0 + 1.0 / 3.0, 10_000, 1e-5, 0.0);
     for period in [None, Some((2500.0 / 3.0) * 1e-3)] {
         let found = periods(&log, period).expect("periodic");
         assert_eq!((found.samples, found.count), (2500, 4));
@@ -50,7 +50,7 @@ fn periods_without_a_whole_number_of_samples_are_taken_together() {
 
 #[test]
 fn the_others_are_the_mean_of_the_other_periods() {
-    let log = run(500.0, 1700, (1e-3, 0.0));
+    let log = run(500.0, 1700, 1e-3, 0.0);
     let (own, torques) = log.load().expect("in memory");
     let others = log.others(periods(&log, None).expect("periodic"));
     let (mean, same) = others.load().expect("in memory");
@@ -65,7 +65,7 @@ fn the_others_are_the_mean_of_the_other_periods() {
 #[test]
 fn what_does_not_repeat_itself_is_no_period() {
     let said = |period: f64, given: Option<f64>| {
-        let log = run(period, 3000, (1e-4, 0.0));
+        let log = run(period, 3000, 1e-4, 0.0);
         let error = periods(&log, given).expect_err("no period");
         error.to_string()
     };
@@ -87,11 +87,10 @@ fn a_period_that_does_not_fit_into_memory_is_refused() {
 
 #[test]
 fn motions_that_return_are_found_within_a_run_and_from_run_to_run() {
-    let noise = (1e-4, 0.0);
-    let periodic = run(500.0, 1700, noise);
-    let other = run(400.0, 1700, noise);
+    let periodic = run(500.0, 1700, 1e-4, 0.0);
+    let other = run(400.0, 1700, 1e-4, 0.0);
     // Less than two periods each.
-    let once = run(1500.0, 1700, noise);
+    let once = run(1500.0, 1700, 1e-4, 0.0);
     let found = returns(
         &[
             periodic.clone(),
@@ -116,7 +115,7 @@ fn motions_that_return_are_found_within_a_run_and_from_run_to_run() {
 
 #[test]
 fn runs_of_one_motion_with_different_payloads_are_apart() {
-    let empty = run(1500.0, 1700, (1e-4, 0.0));
+    let empty = run(1500.0, 1700, 1e-4, 0.0);
     let (positions, torques) = empty.load().expect("in memory");
     let loaded = Log::new("loaded", 1000.0, 2, positions, torques, true).expect("a run");
     assert_eq!(returns(&[empty, loaded], None), [None, None]);

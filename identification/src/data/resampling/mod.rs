@@ -35,7 +35,7 @@ pub(super) type Source<'a> = dyn FnMut(&mut [f64]) -> Result<bool, Error> + 'a;
 /// Position of a time relative to the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
-    PriorStage,
+    Before,
     Inside,
     Behind,
 }
@@ -77,12 +77,7 @@ struct LowPass {
 
 impl Resampled {
     /// Rows of `width` numbers with a usual `step`, s, for a new `rate`, Hz.
-    pub(super) fn new(
-        file: String,
-        clock: Expression,
-        width: usize,
-        (step, rate): (f64, f64),
-    ) -> Self {
+    pub(super) fn new(file: String, clock: Expression, width: usize, step: f64, rate: f64) -> Self {
         let ratio = 1.0 / (step * rate);
         // A NaN step gets no low-pass filter; its times are rejected later.
         let low_pass = is_lower(step, rate).then(|| LowPass {
@@ -174,9 +169,9 @@ impl Resampled {
             match self.between(source, origin + next as f64 * low_pass.step, &mut row)? {
                 Place::Inside => low_pass.values.push_back(row),
                 // Times before the first sample are not requested again.
-                Place::PriorStage => {
+                Place::Before => {
                     low_pass.values.clear();
-                    return Ok(Place::PriorStage);
+                    return Ok(Place::Before);
                 }
                 Place::Behind => return Ok(Place::Behind),
             }
@@ -217,7 +212,7 @@ impl Resampled {
             }
         }
         match self.range {
-            Some((first, _)) if time < first => return Ok(Place::PriorStage),
+            Some((first, _)) if time < first => return Ok(Place::Before),
             Some((_, last)) if time <= last => {}
             _ => return Ok(Place::Behind),
         }

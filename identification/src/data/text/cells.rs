@@ -14,7 +14,8 @@ fn is_blank(byte: u8) -> bool {
 /// undefined.
 pub(super) fn read(
     line: &[u8],
-    (separator, most): (u8, usize),
+    separator: u8,
+    most: usize,
     wanted: &[(usize, usize)],
     values: &mut [f64],
 ) -> bool {
@@ -129,7 +130,7 @@ mod tests {
 
     fn numbers(line: &str, separator: u8, wanted: &[(usize, usize)]) -> Option<Vec<f64>> {
         let mut values = vec![f64::NAN; wanted.len()];
-        read(line.as_bytes(), (separator, 5), wanted, &mut values).then_some(values)
+        read(line.as_bytes(), separator, 5, wanted, &mut values).then_some(values)
     }
 
     #[test]

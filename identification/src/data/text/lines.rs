@@ -153,11 +153,11 @@ impl Lines {
         Ok(())
     }
 
-    /// Number of consumed lines and bytes, and the rest of the file.
-    pub(super) fn rest(&self) -> Result<(usize, u64, Rest)> {
+    /// The unread rest of the file.
+    pub(super) fn rest(&self) -> Result<Rest> {
         let left = self.buffer[self.left.clone()].to_vec();
         let input = self.input.try_clone()?;
-        Ok((self.passed, self.bytes, Cursor::new(left).chain(input)))
+        Ok(Cursor::new(left).chain(input))
     }
 }
 

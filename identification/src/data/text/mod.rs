@@ -97,10 +97,9 @@ impl Text {
     /// # Errors
     /// A file that cannot be read any more.
     pub(super) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
-        let input = self
-            .data()
-            .map_err(|error| unreadable(&self.file, &error))?;
-        Rows::new(self, wanted, input)
+        let data = self.data();
+        let (input, bytes) = data.map_err(|error| unreadable(&self.file, &error))?;
+        Rows::new(self, wanted, input, bytes)
     }
 
     /// The file after its byte order mark, and the length of that mark.

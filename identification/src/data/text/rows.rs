@@ -40,7 +40,8 @@ impl<'a> Rows<'a> {
     pub(super) fn new(
         text: &'a Text,
         wanted: &[(usize, &'a str)],
-        (input, bytes): (Opened, u64),
+        input: Opened,
+        bytes: u64,
     ) -> Result<Self, Error> {
         let places = wanted.iter().zip(0..);
         let mut order: Vec<(usize, usize)> =
@@ -106,8 +107,8 @@ impl<'a> Rows<'a> {
                 continue;
             }
             self.line = lines.passed();
-            let form = (separator, self.text.dialect.most);
-            if !decimal_comma && cells::read(line, form, &self.order, values) {
+            let most = self.text.dialect.most;
+            if !decimal_comma && cells::read(line, separator, most, &self.order, values) {
                 self.diagnostics.is_first = false;
                 return Ok(true);
             }
@@ -157,9 +158,9 @@ impl<'a> Rows<'a> {
     /// Switches to the CSV reader.
     fn leave_lines(&mut self) -> Result<(), Error> {
         if let Source::Lines(lines) = &self.source {
-            let rest = lines.rest();
-            let (lines, bytes, rest) = rest.map_err(|error| self.broken(&error))?;
-            let records = Records::new(&self.text.dialect, (lines, bytes), rest);
+            let (passed, bytes, rest) = (lines.passed(), lines.bytes(), lines.rest());
+            let rest = rest.map_err(|error| self.broken(&error))?;
+            let records = Records::new(&self.text.dialect, passed, bytes, rest);
             self.source = Source::Records(Box::new(records));
         }
         Ok(())
@@ -228,7 +229,7 @@ struct Records {
 }
 
 impl Records {
-    fn new(dialect: &Dialect, (lines, passed): (usize, u64), rest: Rest) -> Self {
+    fn new(dialect: &Dialect, lines: usize, passed: u64, rest: Rest) -> Self {
         let input = match dialect.separator {
             b' ' => Input::Blanks(CollapsedBlanks::new(rest, BUFFER)),
             _ => Input::Plain(rest),

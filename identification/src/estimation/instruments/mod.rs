@@ -86,7 +86,7 @@ impl Instrumental {
             )
             .help("record several periods of a motion that excites all of them")
         })?;
-        let estimation = with_values(system, selected, start, (values, &inverse));
+        let estimation = with_values(system, selected, start, values, &inverse);
         let mut found = Self {
             intervals: None,
             errors: block(p, p),
@@ -148,7 +148,8 @@ fn with_values(
     system: &System,
     selected: &[usize],
     start: &Estimation,
-    (values, inverse): (Vec<f64>, &DMatrix<f64>),
+    values: Vec<f64>,
+    inverse: &DMatrix<f64>,
 ) -> Estimation {
     let lines = line_errors(system, selected, &values);
     let (residual_norm, measured_norm) = overall(&lines);

@@ -123,6 +123,17 @@ pub struct RegressorError {
     pub strength: f64,
 }
 
+/// Least-squares and instrumental-variable estimates of the same columns.
+pub(crate) struct EstimatePair<'a> {
+    pub(crate) system: &'a System,
+    /// Estimated columns.
+    pub(crate) selected: &'a [usize],
+    pub(crate) least_squares: &'a Estimation,
+    /// Standard deviations of least squares for autocorrelated residuals.
+    pub(crate) deviations: &'a [f64],
+    pub(crate) instrumental: &'a Instrumental,
+}
+
 impl RepeatedRun {
     /// Periods of a run with this sampling frequency.
     pub(crate) fn new(run: &str, frequency: f64, found: bool, periods: &Periods) -> Self {
@@ -157,41 +168,49 @@ impl ErrorsInRegressor {
         }
     }
 
-    /// Compares the estimates of the columns `selected`, each with its name and unit.
-    ///
-    /// `deviations` are the standard deviations of least squares for autocorrelated residuals.
+    /// Compares two estimates of parameters with these names and units.
     pub(crate) fn compared(
         self,
-        (system, selected): (&System, &[usize]),
-        (least_squares, deviations): (&Estimation, &[f64]),
-        found: &Instrumental,
-        names: &[(String, String)],
+        estimates: &EstimatePair<'_>,
+        names: &[String],
+        units: &[&str],
     ) -> Self {
-        let Some(test) = Hausman::new(system, selected, least_squares, found) else {
+        let &EstimatePair {
+            system,
+            selected,
+            least_squares,
+            deviations,
+            instrumental,
+        } = estimates;
+        let Some(test) = Hausman::new(system, selected, least_squares, instrumental) else {
             return Self {
                 missing: Some(String::from("too few equations follow one another")),
                 ..self
             };
         };
-        let total = total_least_squares(system, selected, found);
-        let strengths = strengths(found);
-        let parameters = names.iter().enumerate().map(|(i, (name, unit))| {
-            let own = &test.parameters[i];
-            let differs = test.differs(own);
-            RegressorError {
-                name: name.clone(),
-                unit: unit.clone(),
-                least_squares: least_squares.values[i],
-                instruments: found.estimation.values[i],
-                total_least_squares: total.as_ref().map(|values| values[i]),
-                difference_deviation: own.deviation,
-                probability: own.probability,
-                differs,
-                spoiled: differs && own.difference.abs() > deviations[i],
-                partial_r2: strengths[i].partial_r2,
-                strength: strengths[i].f,
-            }
-        });
+        let total = total_least_squares(system, selected, instrumental);
+        let strengths = strengths(instrumental);
+        let parameters = names
+            .iter()
+            .zip(units)
+            .enumerate()
+            .map(|(i, (name, unit))| {
+                let own = &test.parameters[i];
+                let differs = test.differs(own);
+                RegressorError {
+                    name: name.clone(),
+                    unit: (*unit).to_owned(),
+                    least_squares: least_squares.values[i],
+                    instruments: instrumental.estimation.values[i],
+                    total_least_squares: total.as_ref().map(|values| values[i]),
+                    difference_deviation: own.deviation,
+                    probability: own.probability,
+                    differs,
+                    spoiled: differs && own.difference.abs() > deviations[i],
+                    partial_r2: strengths[i].partial_r2,
+                    strength: strengths[i].f,
+                }
+            });
         let weakest = strengths.iter().map(|own| own.f);
         Self {
             parameters: parameters.collect(),

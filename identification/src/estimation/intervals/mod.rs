@@ -78,9 +78,7 @@ impl Intervals {
         sorted.sort_by(f64::total_cmp);
         let freedom = sorted[sorted.len() / 2];
         covariance.enlarge(&ratios(system, context));
-        let variances: Vec<f64> = covariance.matrix.diagonal().iter().copied().collect();
-        let freedoms = covariance.freedoms.clone();
-        covariance.enlarge(&periods::ratios(system, context, (&variances, &freedoms)));
+        covariance.enlarge(&periods::ratios(system, context, &covariance));
         Some(Self {
             columns,
             values: values.clone(),

@@ -5,18 +5,18 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::scores::Context;
+use super::scores::{Context, Covariance};
 use crate::{
-    estimation::periodic_variance::{Mean, SumVariance},
+    estimation::periodic_variance::{Mean, SumVariance, VarianceRatio},
     regression::system::System,
 };
 
-/// Ratio of each parameter's variance to `variances`, with its degrees of freedom.
+/// Ratio of each parameter's variance to that of `covariance`, with its degrees of freedom.
 pub(super) fn ratios(
     system: &System,
     context: &Context<'_>,
-    (variances, freedoms): (&[f64], &[f64]),
-) -> Vec<(f64, f64)> {
+    covariance: &Covariance,
+) -> Vec<VarianceRatio> {
     let p = context.selected.len();
     let influence = context.influence();
     // In the mean over all periods, the instruments equal the columns.
@@ -45,15 +45,14 @@ pub(super) fn ratios(
         }
     }
     if system.folds.is_empty() {
-        return vec![(1.0, f64::INFINITY); p];
+        return vec![VarianceRatio::ONE; p];
     }
-    let squares = context.inverse.diagonal();
-    let each = sum_variances.iter().zip(variances).zip(squares.iter());
+    let (variances, squares) = (covariance.matrix.diagonal(), context.inverse.diagonal());
+    let each = sum_variances.iter().zip(&variances).zip(&squares);
     let ratios = each
-        .zip(freedoms)
+        .zip(&covariance.freedoms)
         .map(|(((sum_variance, variance), square), own)| {
-            let (ratio, freedom) = sum_variance.by(*variance, *square);
-            VarianceRatio::new(ratio, freedom, *own)
+            LogarithmicRatio::new(sum_variance.by(*variance, *square), *own)
         });
     enlarged(&ratios.collect::<Vec<_>>())
 }
@@ -63,19 +62,21 @@ pub(super) fn ratios(
 /// It is that of faultless virtual robots in runs of ten seconds, whose intervals are wide enough.
 const LEAST_MEAN: f64 = 0.5;
 
-/// Estimated ratio of two variances.
+/// Logarithm of an estimated ratio of two variances.
 #[derive(Debug, Clone, Copy)]
-struct VarianceRatio {
-    /// Its logarithm, corrected for bias.
+struct LogarithmicRatio {
+    /// The logarithm, corrected for bias.
     logarithm: f64,
-    /// Sampling variance of the logarithm.
+    /// Its sampling variance.
     variance: f64,
+    /// Degrees of freedom of the ratio.
     freedom: f64,
 }
 
-impl VarianceRatio {
-    /// Ratio of two variances with `freedom` and `other_freedom` degrees of freedom.
-    fn new(ratio: f64, freedom: f64, other_freedom: f64) -> Self {
+impl LogarithmicRatio {
+    /// Logarithm of a ratio to a variance with `other_freedom` degrees of freedom.
+    fn new(estimate: VarianceRatio, other_freedom: f64) -> Self {
+        let VarianceRatio { ratio, freedom } = estimate;
         Self {
             logarithm: ratio.ln() + 1.0 / freedom - 1.0 / other_freedom,
             variance: 2.0 / freedom + 2.0 / other_freedom,
@@ -92,26 +93,29 @@ impl VarianceRatio {
 ///
 /// Single ratios scatter, and using only those above one would overestimate the variance. They are
 /// shrunk towards their mean as far as their spread is random (James and Stein).
-fn enlarged(ratios: &[VarianceRatio]) -> Vec<(f64, f64)> {
+fn enlarged(ratios: &[LogarithmicRatio]) -> Vec<VarianceRatio> {
     let sound = || ratios.iter().filter(|one| one.is_sound());
     let weights: f64 = sound().map(|one| 1.0 / one.variance).sum();
     let mean = sound().map(|one| one.logarithm / one.variance).sum::<f64>() / weights;
     if weights.is_nan() || mean < LEAST_MEAN {
-        return vec![(1.0, f64::INFINITY); ratios.len()];
+        return vec![VarianceRatio::ONE; ratios.len()];
     }
     let apart = sound().map(|one| (one.logarithm - mean).powi(2) / one.variance - 1.0);
     // Variance of the true ratios.
     let between = (apart.sum::<f64>() / weights).max(0.0);
-    let enlarged = |one: &VarianceRatio| {
+    let enlarged = |one: &LogarithmicRatio| {
         if !one.is_sound() {
-            return (1.0, f64::INFINITY);
+            return VarianceRatio::ONE;
         }
         let own = between / (between + one.variance);
         let logarithm = mean + own * (one.logarithm - mean);
         if logarithm > 0.0 {
-            (logarithm.exp(), one.freedom / own.max(f64::MIN_POSITIVE))
+            VarianceRatio {
+                ratio: logarithm.exp(),
+                freedom: one.freedom / own.max(f64::MIN_POSITIVE),
+            }
         } else {
-            (1.0, f64::INFINITY)
+            VarianceRatio::ONE
         }
     };
     ratios.iter().map(enlarged).collect()
@@ -119,31 +123,38 @@ fn enlarged(ratios: &[VarianceRatio]) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{LEAST_MEAN, VarianceRatio, enlarged};
+    use super::{LEAST_MEAN, LogarithmicRatio, VarianceRatio, enlarged};
 
-    fn told(ratios: &[f64]) -> Vec<VarianceRatio> {
-        let one = |ratio: &f64| VarianceRatio::new(*ratio, 20.0, 40.0);
+    fn told(ratios: &[f64]) -> Vec<LogarithmicRatio> {
+        let estimate = |ratio: f64| VarianceRatio {
+            ratio,
+            freedom: 20.0,
+        };
+        let one = |ratio: &f64| LogarithmicRatio::new(estimate(*ratio), 40.0);
         ratios.iter().map(one).collect()
     }
 
     #[test]
     fn ratios_that_chance_makes_enlarge_nothing() {
         let found = enlarged(&told(&[0.6, 1.7, 1.1, 0.8, 1.3, 0.9]));
-        assert!(found.iter().all(|(ratio, _)| *ratio == 1.0), "{found:?}");
+        assert!(found.iter().all(|own| own.ratio == 1.0), "{found:?}");
     }
 
     #[test]
     fn ratios_are_drawn_to_their_mean_as_far_as_chance_parts_them() {
         let found = enlarged(&told(&[2.5, 4.0, 3.0, 2.8, 3.6]));
-        let first = found[0].0;
+        let first = found[0].ratio;
         assert!(first.ln() > LEAST_MEAN);
         assert!(
-            found.iter().all(|(ratio, _)| (ratio - first).abs() < 1e-9),
+            found.iter().all(|own| (own.ratio - first).abs() < 1e-9),
             "{found:?}"
         );
         // If the true ratios differ, each keeps most of its own value.
         let found = enlarged(&told(&[1.0, 1.1, 30.0, 40.0, 0.9, 35.0]));
-        assert!(found[0].0 < 2.0 && found[3].0 > 20.0, "{found:?}");
-        assert!(found[3].1 < 25.0 && found[0].0 >= 1.0, "{found:?}");
+        assert!(found[0].ratio < 2.0 && found[3].ratio > 20.0, "{found:?}");
+        assert!(
+            found[3].freedom < 25.0 && found[0].ratio >= 1.0,
+            "{found:?}"
+        );
     }
 }

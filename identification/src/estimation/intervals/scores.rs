@@ -42,7 +42,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::{
-    estimation::{correlation::square, estimate::Estimation},
+    estimation::{correlation::square, estimate::Estimation, periodic_variance::VarianceRatio},
     regression::system::{Stretch, System},
 };
 
@@ -116,13 +116,13 @@ impl Covariance {
         sound.then_some(Self { matrix, freedoms })
     }
 
-    /// Multiplies the variances by ratios with their degrees of freedom; keeps correlations.
-    pub(crate) fn enlarge(&mut self, ratios: &[(f64, f64)]) {
-        for (i, (ratio, freedom)) in ratios.iter().enumerate() {
-            let factor = ratio.sqrt();
+    /// Multiplies the variances by ratios; keeps correlations.
+    pub(crate) fn enlarge(&mut self, ratios: &[VarianceRatio]) {
+        for (i, own) in ratios.iter().enumerate() {
+            let factor = own.ratio.sqrt();
             self.matrix.row_mut(i).scale_mut(factor);
             self.matrix.column_mut(i).scale_mut(factor);
-            self.freedoms[i] = 1.0 / (1.0 / self.freedoms[i] + 1.0 / freedom);
+            self.freedoms[i] = 1.0 / (1.0 / self.freedoms[i] + 1.0 / own.freedom);
         }
     }
 }

@@ -47,25 +47,33 @@ pub(crate) struct Recommended {
     pub(crate) stop: String,
 }
 
-/// Eliminates parameters from the base estimation `start` of the columns `selected`.
-///
-/// `names` are those of the columns, `intervals` have their covariance, and `folds` serve for
-/// cross-validation.
+/// Estimate of all base parameters that the data separate.
+pub(crate) struct BaseEstimate<'a> {
+    /// Columns of the base parameters.
+    pub(crate) selected: &'a [usize],
+    /// Their names.
+    pub(crate) names: &'a [String],
+    pub(crate) estimation: &'a Estimation,
+    /// Intervals with the covariance of the estimates.
+    pub(crate) intervals: &'a Intervals,
+}
+
+/// Eliminates parameters from the estimate `start`; `folds` serve for cross-validation.
 ///
 /// # Errors
 /// An estimation fails.
 pub(crate) fn recommended(
     system: &System,
-    (selected, names): (&[usize], &[String]),
-    start: &Estimation,
-    (intervals, folds): (&Intervals, Option<&CrossValidationFolds>),
+    start: &BaseEstimate<'_>,
+    folds: Option<&CrossValidationFolds>,
     settings: &Settings,
 ) -> Result<Recommended, Error> {
+    let selected = start.selected;
     let base = folds.and_then(|folds| folds.squares(selected));
     let mut here = Recommended {
         selected: selected.to_vec(),
-        names: names.to_vec(),
-        estimation: start.clone(),
+        names: start.names.to_vec(),
+        estimation: start.estimation.clone(),
         stop: String::from("one parameter is left"),
     };
     if settings.r_sigma.is_infinite() {
@@ -79,7 +87,7 @@ pub(crate) fn recommended(
         left.remove(worst);
         let is_cancelled = |column: &&usize| !left.contains(column);
         let cancelled: Vec<usize> = selected.iter().filter(is_cancelled).copied().collect();
-        if let Some(reason) = refuted(intervals, &cancelled) {
+        if let Some(reason) = refuted(start.intervals, &cancelled) {
             here.stop = format!("without `{name}`, {reason}");
             break;
         }

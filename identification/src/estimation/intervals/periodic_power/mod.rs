@@ -28,12 +28,15 @@ mod signs;
 use rayon::prelude::*;
 
 use super::scores::Context;
-use crate::{estimation::correlation::pieces, regression::system::System};
+use crate::{
+    estimation::{correlation::pieces, periodic_variance::VarianceRatio},
+    regression::system::System,
+};
 use piece::{PieceContribution, contributions};
 use signs::{DRAWS, Signs};
 
 /// Q_i/Q'_i of each parameter, and the degrees of freedom of Q_i.
-pub(crate) fn ratios(system: &System, context: &Context<'_>) -> Vec<(f64, f64)> {
+pub(crate) fn ratios(system: &System, context: &Context<'_>) -> Vec<VarianceRatio> {
     let p = context.selected.len();
     let signs = Signs::new(system, context);
     let stretches = system.stretches.iter().enumerate();
@@ -59,8 +62,11 @@ pub(crate) fn ratios(system: &System, context: &Context<'_>) -> Vec<(f64, f64)> 
             let by_chance = sum(|contribution| contribution.drawn.own)
                 / sum(|contribution| contribution.drawn.around);
             let freedom = 2.0 * around * around / sum(|contribution| contribution.squares);
-            // The ratio for random signs also scatters, like the mean of `DRAWS` residuals.
-            (ratio / by_chance, freedom / (1.0 + 1.0 / DRAWS as f64))
+            VarianceRatio {
+                ratio: ratio / by_chance,
+                // The ratio for random signs also scatters, like the mean of `DRAWS` residuals.
+                freedom: freedom / (1.0 + 1.0 / DRAWS as f64),
+            }
         })
         .collect()
 }

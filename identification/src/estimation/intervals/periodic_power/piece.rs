@@ -105,11 +105,11 @@ pub(super) fn contributions<'a>(
     let own = Powers::new(&spectra, bins);
     let drawn = Powers::new(&drawn, bins);
     let (around, drawn_around) = (means(&own), means(&drawn));
-    let powers = [&taken, &own, &around, &drawn, &drawn_around];
     summed(
         context.selected.len(),
         &lines,
-        (powers, bins),
+        [&taken, &own, &around, &drawn, &drawn_around],
+        bins,
         neighbours.padding(),
     )
 }
@@ -121,7 +121,8 @@ pub(super) fn contributions<'a>(
 fn summed(
     parameters: usize,
     lines: &[Line],
-    (powers, bins): ([&Powers; FORMS], usize),
+    powers: [&Powers; FORMS],
+    bins: usize,
     padding: f64,
 ) -> Vec<PieceContribution> {
     let mut contributions = vec![PieceContribution::default(); parameters];

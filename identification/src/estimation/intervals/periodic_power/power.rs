@@ -8,8 +8,8 @@ use crate::estimation::fourier::Spectrum;
 /// A Hermitian matrix over pairs of lines, for each frequency from 0 to Nyquist.
 pub(super) struct Powers {
     lines: usize,
-    /// Lower triangle, row by row: real and imaginary parts over frequency.
-    pairs: Vec<[Vec<f64>; 2]>,
+    /// Lower triangle, row by row.
+    pairs: Vec<Spectrum>,
 }
 
 impl Powers {
@@ -31,7 +31,7 @@ impl Powers {
                     *turned = *turned + y * u - x * v;
                 }
             }
-            [real, imaginary]
+            Spectrum { real, imaginary }
         });
         Self {
             lines,
@@ -48,7 +48,7 @@ impl Powers {
         let below = (0..lines).flat_map(|j| (0..=j).map(move |k| (j, k)));
         let pairs = below.map(|(j, k)| {
             let (real, imaginary) = (0..bins).map(|bin| of(j, k, bin).into()).unzip();
-            [real, imaginary]
+            Spectrum { real, imaginary }
         });
         Self {
             lines,
@@ -56,7 +56,7 @@ impl Powers {
         }
     }
 
-    fn pair(&self, j: usize, k: usize) -> &[Vec<f64>; 2] {
+    fn pair(&self, j: usize, k: usize) -> &Spectrum {
         &self.pairs[j * (j + 1) / 2 + k]
     }
 }
@@ -97,8 +97,8 @@ impl Forms<'_> {
             for (k, [d, e]) in self.vectors[..=j].iter().enumerate() {
                 let both = if k == j { 1.0 } else { 2.0 };
                 let [m, n, o, p, q] = self.matrices.map(|matrix| {
-                    let [real, imaginary] = &matrix.pairs[pair];
-                    [real[self.bin], imaginary[self.bin]]
+                    let power = &matrix.pairs[pair];
+                    [power.real[self.bin], power.imaginary[self.bin]]
                 });
                 pair += 1;
                 let (a, b, d, e) = (&a[..count], &b[..count], &d[..count], &e[..count]);
@@ -156,7 +156,7 @@ impl Neighbours {
         let lines = powers.lines;
         let left: Vec<Vec<f64>> = (0..lines)
             .map(|j| {
-                let own = &taken.pair(j, j)[0];
+                let own = &taken.pair(j, j).real;
                 own.iter().map(|part| 1.0 - part.min(1.0)).collect()
             })
             .collect();
@@ -172,7 +172,7 @@ impl Neighbours {
     }
 
     /// Sum of the neighbours' values divided by the sum of their weights.
-    fn mean(&self, [real, imaginary]: &[Vec<f64>; 2], weights: &[f64]) -> [Vec<f64>; 2] {
+    fn mean(&self, power: &Spectrum, weights: &[f64]) -> Spectrum {
         let bins = weights.len();
         // Frequencies beyond either end are the conjugates of those inside.
         let inside = |place: isize| -> (usize, f64) {
@@ -189,7 +189,7 @@ impl Neighbours {
         let mut sums = vec![[0.0; 3]];
         for place in first..bins as isize + self.farthest as isize {
             let (bin, sign) = inside(place);
-            let own = [real[bin], sign * imaginary[bin], weights[bin]];
+            let own = [power.real[bin], sign * power.imaginary[bin], weights[bin]];
             let last = sums[sums.len() - 1];
             sums.push([0, 1, 2].map(|part| last[part] + own[part]));
         }
@@ -206,7 +206,7 @@ impl Neighbours {
             (x / weight, y / weight)
         };
         let (real, imaginary) = (0..bins).map(mean).unzip();
-        [real, imaginary]
+        Spectrum { real, imaginary }
     }
 }
 
@@ -230,7 +230,8 @@ mod tests {
     /// Mean of ρ_a ρ_b* around a frequency by definition, on the circle of frequencies.
     fn mean(
         neighbours: &Neighbours,
-        [a, b]: [&Spectrum; 2],
+        a: &Spectrum,
+        b: &Spectrum,
         taken: [fn(f64) -> f64; 2],
         bin: usize,
     ) -> Complex<f64> {
@@ -274,11 +275,12 @@ mod tests {
             };
             let means = neighbours.means(&powers, &taken);
             for (j, k) in [(0, 0), (1, 0), (1, 1)] {
-                let [real, imaginary] = means.pair(j, k);
-                let (both, taken) = ([j, k].map(|j| &residuals[j][0]), [j, k].map(|j| parts[j]));
+                let power = means.pair(j, k);
+                let taken = [j, k].map(|j| parts[j]);
                 for bin in 0..BINS {
-                    let expected = mean(&neighbours, both, taken, bin);
-                    let found = Complex::new(real[bin], imaginary[bin]);
+                    let expected =
+                        mean(&neighbours, &residuals[j][0], &residuals[k][0], taken, bin);
+                    let found = Complex::new(power.real[bin], power.imaginary[bin]);
                     let miss = (found - expected).norm() / expected.norm().max(1.0);
                     assert!(miss < 1e-12, "{bin}: {found} is not {expected}");
                 }
