@@ -247,8 +247,8 @@ fn paper_shows_every_column_and_what_is_closed_on_the_screen() {
     };
     let text = String::from_utf8_lossy(&read.stdout).replace('\u{a0}', " ");
     for title in [
-        "Case 1",
-        "Case 2",
+        "Platform projection",
+        "Actuator projection",
         "95 % interval",
         "published",
         "difference",

@@ -110,10 +110,16 @@ fn assert_tables(text: &str) {
         let found = lines.any(|line| line.starts_with(start) && line.contains(number));
         assert!(found, "{start} {number} in\n{text}");
     };
-    line("log_trajectory_1.csv  case 1, eq. (26), published", "9.1");
+    line(
+        "log_trajectory_1.csv  platform projection, eq. (26), published",
+        "9.1",
+    );
     line("m_payload", "5.42");
     line("zz_1_leg4R", "0.0507");
-    for controller in ["computed torque, case 1", "computed torque, case 2"] {
+    for controller in [
+        "computed torque, platform projection",
+        "computed torque, actuator projection",
+    ] {
         assert!(text.contains(controller), "{controller}");
     }
 }
@@ -161,8 +167,8 @@ fn a_crossed_singularity_of_the_kept_actuators_is_told() {
         let found = verdicts.find(|verdict| verdict["subject"] == subject);
         found.unwrap_or_else(|| panic!("no verdict on {subject}"))
     };
-    assert_eq!(verdict("case 2")["grade"], "no");
-    let reasons = verdict("case 2")["reasons"].to_string();
+    assert_eq!(verdict("actuator projection")["grade"], "no");
+    let reasons = verdict("actuator projection")["reasons"].to_string();
     assert!(
         reasons.contains("crosses a singularity of the kept actuators"),
         "{reasons}"

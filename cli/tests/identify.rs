@@ -34,6 +34,28 @@ fn a_result_that_is_not_to_be_used_fails_where_that_is_asked_for() {
 }
 
 #[test]
+fn a_joint_that_never_moves_is_locked_or_has_a_dead_encoder() {
+    let bench = serial();
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let log = bench.read("log_identification.csv");
+    let dead = log.lines().enumerate().map(|(line, text)| {
+        let mut cells: Vec<&str> = text.split(',').collect();
+        if line > 0 {
+            cells[2] = "0.5";
+        }
+        cells.join(",")
+    });
+    let dead: Vec<String> = dead.collect();
+    bench.write("dead.csv", &dead.join("\n"));
+    let refused = bench.run(&["identify", "my.toml", "--data", "dead.csv", "--strict"]);
+    assert_eq!(refused.code, Some(3), "{}", refused.err);
+    let words = "the position of joint 2 does not change in any training run";
+    assert!(refused.err.contains(words), "{}", refused.err);
+    // The round-off of a constant position is no motion.
+    assert!(!refused.err.contains("fastest motion"), "{}", refused.err);
+}
+
+#[test]
 fn simulated_logs_give_what_the_virtual_experiment_gives() {
     let bench = serial();
     let made = bench.run(&["simulate", "my.toml", "-o", "log.csv"]);

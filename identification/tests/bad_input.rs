@@ -339,5 +339,5 @@ fn experiments_are_checked() {
     // At rest only the offset has a column, and it explains zero torques.
     let result = identify(&PAIR, &dataset, &settings(), &|_| {}).expect("an estimate");
     assert!(result.warnings.iter().any(|warning| warning
-        == "case 1: `m_platformR` is not identifiable: its column is zero on these data"));
+        == "platform projection: `m_platformR` is not identifiable: its column is zero on these data"));
 }

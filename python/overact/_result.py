@@ -123,7 +123,7 @@ class Verdict:
     """Verdict on the estimates of a model.
 
     Attributes:
-        subject: "case 1", "case 2" or "joint model".
+        subject: "platform projection", "actuator projection" or "joint model".
         grade: "use", "use-listed" or "do-not-use".
         trusted: Whether they may be used without restriction.
         listed: Parameters that may be used, if not all may.

@@ -139,7 +139,7 @@ def assert_alike(found, expected, what):
 
 def test_estimates_are_objects(robot, result):
     assert result.robot == robot.name and len(result.verdicts) == 2
-    assert result.verdict.subject == "case 1" and result.verdict.reasons
+    assert result.verdict.subject == "platform projection" and result.verdict.reasons
     assert result.trusted == (result.verdict.grade == "use")
     base = result.base
     assert list(base) == [one.name for one in robot.base_parameters][: len(base)] or len(base) > 0
@@ -165,7 +165,7 @@ def test_estimates_are_objects(robot, result):
         or result.consistent
     )
     text = repr(result)
-    assert text.startswith(f"Identification of {robot.name}\ncase 1: ")
+    assert text.startswith(f"Identification of {robot.name}\nplatform projection: ")
     assert all(name in text for name in result.recommended)
 
 

@@ -60,7 +60,7 @@ fn section(title: &str, contents: TextTable) -> String {
 /// Name of a model.
 const fn case(model: ModelKind) -> &'static str {
     match model {
-        ModelKind::Platform | ModelKind::Actuators => model.case(),
+        ModelKind::Platform | ModelKind::Actuators => model.label(),
         ModelKind::Joints => model.name(),
     }
 }

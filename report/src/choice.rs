@@ -49,8 +49,8 @@ pub(crate) fn is_answer(identification: &Identification, model: ModelKind, stage
 /// Name of the projection at the beginning of a sentence.
 pub(crate) const fn case_heading(model: ModelKind) -> &'static str {
     match model {
-        ModelKind::Platform => "Case 1",
-        ModelKind::Actuators => "Case 2",
+        ModelKind::Platform => "Platform projection",
+        ModelKind::Actuators => "Actuator projection",
         ModelKind::Joints => "Joint model",
     }
 }
@@ -68,7 +68,7 @@ pub(crate) const fn stage_name(stage: Stage) -> &'static str {
 /// Description of the model's projection.
 pub(crate) fn projection(estimate: &Estimate) -> String {
     match estimate.model {
-        ModelKind::Platform => String::from("torques projected on the platform"),
+        ModelKind::Platform => String::from("torques of all actuators"),
         ModelKind::Actuators => {
             format!(
                 "torques projected on {}",

@@ -32,7 +32,7 @@ pub(crate) const fn title(kind: CheckKind) -> &'static str {
         CheckKind::PayloadLabel => "label of the payload",
         CheckKind::Delay => "delay between torques and motion",
         CheckKind::MissingParameter => "terms missing from the model",
-        CheckKind::Partition => "kept actuators of case 2",
+        CheckKind::Partition => "kept actuators",
         CheckKind::Consistency => "physical consistency",
         CheckKind::RelativeError => "residual beyond noise",
         CheckKind::ResidualCorrelation => "residuals correlated between drives",
@@ -44,7 +44,7 @@ pub(crate) const fn title(kind: CheckKind) -> &'static str {
 
 /// Scope of a check: models, stages, run and actuator.
 pub(crate) fn place(check: &Check) -> String {
-    let models = check.models.iter().map(|model| model.case().to_owned());
+    let models = check.models.iter().map(|model| model.label().to_owned());
     let stages = check
         .stages
         .iter()

@@ -30,7 +30,7 @@ pub fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>
     let dof = model.mechanism.dof();
     if problems.is_empty() && kept.len() != dof {
         let message = format!(
-            "case 2 keeps {dof} actuators, one for each degree of freedom, not {}",
+            "the actuator projection keeps {dof} actuators, one for each degree of freedom, not {}",
             kept.len()
         );
         problems.push(Problem::new(Code::KEPT_ACTUATORS, message));

@@ -41,8 +41,8 @@ pub fn tracking(
     let mut controllers = vec![(String::from("pd"), plain.clone())];
     for estimate in answers(result) {
         let name = match estimate.model {
-            ModelKind::Platform => "computed torque, case 1",
-            ModelKind::Actuators => "computed torque, case 2",
+            ModelKind::Platform => "computed torque, platform projection",
+            ModelKind::Actuators => "computed torque, actuator projection",
             ModelKind::Joints => "computed torque",
         };
         let computed = Experiment {

@@ -245,14 +245,13 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
 ///
 /// An expression is a handle into the arena that creates it. A log in a file is read through that
 /// file, and reading a file creates a log. The others are to be resolved.
-const CIRCLES: [(&str, &[&str]); 4] = [
+const CIRCLES: [(&str, &[&str]); 3] = [
     ("codegen/cas", &["arena", "expr"]),
     ("identification/data", &["log", "periods"]),
     (
         "identification/estimation",
         &["instruments", "total_least_squares"],
     ),
-    ("identification/regression", &["instruments", "observation"]),
 ];
 
 /// Files of a crate, parsed once for all tests.

@@ -19,7 +19,7 @@ pub fn markdown(cells: &[Cell]) -> String {
             text,
             "| {} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {low:.1} to {high:.1} | {:.2} | {:.2} | {} | `{}` {:.0} % |",
             cell.robot,
-            cell.model.case(),
+            cell.model.label(),
             cell.stage.name(),
             match cell.estimator {
                 Estimator::LeastSquares => "least squares",

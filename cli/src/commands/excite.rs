@@ -116,7 +116,7 @@ fn comparison(found: &Excitation) -> String {
         for case in &runs.cases {
             let mut row = vec![
                 name.clone(),
-                case.model.case().to_owned(),
+                case.model.label().to_owned(),
                 significant(case.condition, 3),
                 format!("{:.1}", case.log_det),
             ];

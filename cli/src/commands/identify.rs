@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     /// Skip unusable parts of factor files, and report them
     #[arg(long, requires = "factors")]
     skip_bad: bool,
-    /// Kept actuators of case 2 [default: those of the description]
+    /// Kept actuators of the actuator projection [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
     /// Simulate tracking of the validation runs with a PD controller and with computed torques

@@ -62,7 +62,7 @@ pub(crate) enum Command {
     Factor(factor::Arguments),
     /// Merge factor files without duplicates
     Merge(merge::Arguments),
-    /// Compare all choices of kept actuators of case 2
+    /// Compare all choices of kept actuators of the actuator projection
     Partitions(partitions::Arguments),
     /// Explain the cause and the remedy of an error code
     Explain(explain::Arguments),

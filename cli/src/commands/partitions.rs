@@ -88,7 +88,7 @@ fn text(study: &Study) -> String {
         "inputs projected on",
         "cond J_a",
         "crossings",
-        "sigma by case 1",
+        "sigma by platform",
         "sum sigma %",
         "sum error %",
         "validation %",
@@ -99,7 +99,7 @@ fn text(study: &Study) -> String {
         "ranks",
     ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    rows.push(cells(&study.platform, "platform (case 1)".to_owned()));
+    rows.push(cells(&study.platform, "platform".to_owned()));
     let partitions = study.partitions.iter();
     rows.extend(partitions.map(|row| cells(row, row.kept_actuators.join(", "))));
     let mut text = columns(&rows, &[true]);

@@ -95,7 +95,7 @@ impl Underivable {
             }
             Self::SingularPartition => Diagnostic::new(
                 Code::ALWAYS_SINGULAR,
-                format!("the kept actuators of case 2 never determine {motion}"),
+                format!("the kept actuators never determine {motion}"),
                 description.name.span.clone(),
             )
             .help("choose other `kept_actuators`"),

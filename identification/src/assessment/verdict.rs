@@ -11,7 +11,7 @@ use crate::{
 /// Verdict on a model: on its recommended parameters, and on its other stages.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
-    /// Subject in words: `case 1`, `case 2`, `joint model`.
+    /// Subject in words: `platform projection`, `actuator projection`, `joint model`.
     pub subject: String,
     /// Model.
     pub model: ModelKind,
@@ -65,7 +65,7 @@ pub(crate) fn verdicts(
         let recommended = stages.iter().find(|one| one.stage == Stage::Recommended);
         let main = recommended.or_else(|| stages.first())?.clone();
         Some(Verdict {
-            subject: model.case().to_owned(),
+            subject: model.label().to_owned(),
             model,
             stage: main.stage,
             grade: main.grade,

@@ -21,7 +21,8 @@ use crate::{
     error::Error,
     regression::{
         factor::Factor,
-        observation::{MeasuredRun, Observer},
+        observation::MeasuredRun,
+        observer::Observer,
         system::{Observed, System},
     },
 };

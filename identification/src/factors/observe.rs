@@ -18,7 +18,8 @@ use crate::{
     prior::Prior,
     regression::{
         columns::ColumnSet,
-        observation::{MeasuredRun, Observer, RunObservation},
+        observation::{MeasuredRun, RunObservation},
+        observer::Observer,
         projection::Projection,
         system::Observed,
     },

@@ -72,7 +72,7 @@ pub(super) fn restored(
                     file: run.summary.name.clone(),
                     run: Some(run.title()),
                     reason: Reason::MissingModel,
-                    message: format!("{}: {message}", projection.model().case()),
+                    message: format!("{}: {message}", projection.model().label()),
                 }),
                 (Err(message), Ok(_)) => system = Err(Problem::new(Code::FACTORS, message).into()),
                 (_, Err(_)) => {}

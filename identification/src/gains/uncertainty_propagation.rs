@@ -22,7 +22,7 @@ use crate::{
     },
     regression::{
         chunk::projected,
-        observation::Observer,
+        observer::Observer,
         projection::Projection,
         sink::{LineSink, Plan, observed},
         system::System,

@@ -16,7 +16,7 @@ use crate::{
     },
     regression::{
         chunk::projected,
-        observation,
+        observer,
         projection::Projection,
         sink::{LineSink, Plan, observed},
         states::SampledStates,
@@ -55,7 +55,7 @@ impl Observer<'_> {
         Error::check(checked.flat_map(|error| error.problems).collect())?;
         let info = self.model.info();
         let projections = Projection::usual(&info, &self.settings.kept_actuators);
-        let observer = observation::Observer {
+        let observer = observer::Observer {
             model: self.model,
             columns: &self.extended.own.columns,
             base: &self.extended.own.picked,
@@ -77,7 +77,7 @@ impl Observer<'_> {
     /// Adds the equations of a run.
     fn run(
         &self,
-        observer: &observation::Observer<'_>,
+        observer: &observer::Observer<'_>,
         runs: &[Log],
         number: usize,
         systems: &mut [Result<System, Error>],
@@ -141,7 +141,7 @@ impl Observer<'_> {
     /// Field columns of up to [`BLOCK`] samples from number `first` of the motion on.
     fn field_rows(
         &self,
-        observer: &observation::Observer<'_>,
+        observer: &observer::Observer<'_>,
         motion: &Motion,
         first: usize,
     ) -> Result<FieldRows, Error> {

@@ -8,7 +8,7 @@ use crate::{
     consistent::Consistent,
     data::Log,
     error::Error,
-    regression::{observation::Observer, projection::ModelKind},
+    regression::{observer::Observer, projection::ModelKind},
     result::{CrossValidation, Estimate, Stage},
     series::RunFigures,
     settings::Settings,

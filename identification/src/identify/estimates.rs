@@ -412,7 +412,7 @@ fn on_data(
     let places: Vec<usize> = (0..base.columns.len()).collect();
     let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
     let name = |place: usize| base.names.get(place).map_or("", String::as_str);
-    let label = system.projection.model().case();
+    let label = system.projection.model().label();
     for &column in &found.zero {
         warnings.push(format!(
             "{label}: `{}` is not identifiable: its column is zero on these data",
@@ -464,14 +464,14 @@ fn nothing_moves(prepared: &Prepared, system: &System) -> Problem {
 
 /// Warnings about a system or its estimate.
 fn quality_warnings(system: &System, base: &Estimation) -> Vec<String> {
-    let label = system.projection.model().case();
+    let label = system.projection.model().label();
     let mut warnings = Vec::new();
     if let Some(partition) = &system.partition
         && partition.largest > LARGEST_PARTITION_CONDITION
         && matches!(system.projection, Projection::Actuators(_))
     {
         warnings.push(format!(
-            "{label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or use case 1",
+            "{label}: the condition number of the kept actuators reaches {:.1} ({}, t = {:.3} s), above {LARGEST_PARTITION_CONDITION}; keep other actuators or use the platform projection",
             partition.largest, partition.run, partition.time
         ));
     }

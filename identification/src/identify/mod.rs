@@ -270,7 +270,7 @@ fn estimates(
                 );
             }
             Err(error) if matches!(projection, Projection::Actuators(_)) => {
-                warnings.push(format!("case 2 is left out: {error}"));
+                warnings.push(format!("the actuator projection is left out: {error}"));
             }
             Err(error) => return Err(error),
         }

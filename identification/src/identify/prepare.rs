@@ -23,7 +23,8 @@ use crate::{
     regression::{
         columns::ColumnSet,
         factor::Factor,
-        observation::{MeasuredRun, Observer, RunObservation},
+        observation::{MeasuredRun, RunObservation},
+        observer::Observer,
         projection::Projection,
         system::{Observed, System},
         uncertainty_propagation::PropagatedUncertainty,

@@ -275,7 +275,9 @@ fn warning(row: &RankedProjection, platform: &RankedProjection) -> Option<String
         )
     };
     if row.relative_error_percent < platform.relative_error_percent {
-        text.push_str("; its relative error below that of case 1 is no reason to use it");
+        text.push_str(
+            "; its relative error below that of the platform projection is no reason to use it",
+        );
     }
     Some(text)
 }

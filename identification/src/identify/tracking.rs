@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct TrackingError {
     /// Name of the run.
     pub run: String,
-    /// `pd`, `computed torque, case 1`, `computed torque, case 2`.
+    /// `pd`, `computed torque, platform projection`, `computed torque, actuator projection`.
     pub controller: String,
     /// Names of the actuators.
     pub actuators: Vec<String>,

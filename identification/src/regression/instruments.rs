@@ -6,7 +6,7 @@ use overact::{Code, Model};
 
 use super::{
     chunk::Chunk,
-    observation::{Conditioning, Observer},
+    observer::{Conditioning, Observer},
 };
 use crate::{
     data::Log,

@@ -3,7 +3,8 @@
 //! - `columns`: columns of the model: standard parameters, payload, split friction;
 //! - `friction`, `states`: joint of each friction parameter, and random states to find it;
 //! - `collect_rows`: numbers of the model in rows;
-//! - `chunk`, `observation`: successive samples as equations; the pass over a run;
+//! - `chunk`, `observer`, `observation`: successive samples as equations; options of the pass over a
+//!   run; the pass;
 //! - `instruments`: equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
 //! - `update`: update of an R factor;
@@ -24,6 +25,7 @@ pub(crate) mod fold;
 mod friction;
 mod instruments;
 pub(crate) mod observation;
+pub(crate) mod observer;
 pub(crate) mod points;
 pub(crate) mod projection;
 pub(crate) mod sink;

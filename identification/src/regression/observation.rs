@@ -5,14 +5,14 @@
 
 use std::ops::Range;
 
-use overact::{Function, Model};
+use overact::Function;
 use rayon::prelude::*;
 
 use super::{
     chunk::{Chunk, projected},
-    columns::ColumnSet,
     fold::Phases,
     instruments::InstrumentRun,
+    observer::{Conditioning, Observer},
     points::Points,
     projection::Projection,
     sink::{LineSink, Plan, observed},
@@ -30,18 +30,7 @@ use crate::{
     },
     monitor::Monitor,
     series::RunFigures,
-    settings::Settings,
 };
-
-/// Options of the observation, the same for all runs.
-pub(crate) struct Observer<'a> {
-    pub(crate) model: &'a dyn Model,
-    pub(crate) columns: &'a ColumnSet,
-    /// Columns of the base parameters.
-    pub(crate) base: &'a [usize],
-    pub(crate) projections: &'a [Projection],
-    pub(crate) settings: &'a Settings,
-}
 
 /// A run to observe.
 pub(crate) struct MeasuredRun<'a> {
@@ -54,15 +43,6 @@ pub(crate) struct MeasuredRun<'a> {
     pub(crate) budget: usize,
     /// Its periodic motion, if it has one.
     pub(crate) returns: Option<Return>,
-}
-
-/// Conditioning of the kept actuators.
-#[derive(Clone, Copy)]
-pub(super) struct Conditioning<'a> {
-    /// Scales of the platform's coordinates.
-    pub(super) scales: &'a [f64],
-    /// Whether chunks contain the conditions.
-    pub(super) is_recorded: bool,
 }
 
 /// Other results of a pass over a run.

@@ -1,8 +1,6 @@
 //! Motion data for plots, and the worst condition of the kept actuators along a run.
 
-use super::{
-    observation::Observer, projection::Projection, sink::Plan, system::PartitionCondition,
-};
+use super::{observer::Observer, projection::Projection, sink::Plan, system::PartitionCondition};
 use crate::{
     blocks::BLOCK,
     data::Log,

@@ -28,12 +28,12 @@ impl ModelKind {
         }
     }
 
-    /// Name in the paper: `case 1`, `case 2`; `joint model` without redundancy.
+    /// Name in texts: `platform projection`, `actuator projection`; `joint model` without redundancy.
     #[must_use]
-    pub const fn case(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
-            Self::Platform => "case 1",
-            Self::Actuators => "case 2",
+            Self::Platform => "platform projection",
+            Self::Actuators => "actuator projection",
             Self::Joints => "joint model",
         }
     }

@@ -24,9 +24,7 @@ use crate::{
         distribution::{least_multipliers, least_norm, product, transposed_product},
     },
     monitor::Monitor,
-    regression::{
-        Chunk, observation::Observer, points::Points, projection::Projection, sink::Plan,
-    },
+    regression::{Chunk, observer::Observer, points::Points, projection::Projection, sink::Plan},
     series::{RunFigures, Series},
 };
 

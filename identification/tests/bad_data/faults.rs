@@ -79,7 +79,7 @@ fn a_drive_of_the_wrong_sign_is_named() {
         found(&result)[0],
         (CheckKind::WrongSign, None, Some("leg4"))
     );
-    assert!(!trusted(&result, "case 1"));
+    assert!(!trusted(&result, "platform projection"));
     if !is_full() {
         return;
     }
@@ -168,7 +168,7 @@ fn late_torques_are_named_with_their_delay() {
     let told = told.and_then(|text| text.split_once(" ms behind the motion"));
     let size: f64 = told.expect("a size").0.parse().expect("a number");
     assert!((size - 1.0).abs() < 0.05, "{size}");
-    assert!(!trusted(&result, "case 1"));
+    assert!(!trusted(&result, "platform projection"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::*;
 fn good_data_raise_no_alarm() {
     let result = with(|_, _, _| {}).expect("an identification");
     assert_eq!(found(&result), []);
-    assert!(trusted(&result, "case 1") && trusted(&result, "case 2"));
+    assert!(trusted(&result, "platform projection") && trusted(&result, "actuator projection"));
     if !is_full() {
         return;
     }
@@ -49,7 +49,7 @@ fn clipped_torques_are_named() {
         );
     };
     clipped(&result);
-    assert!(!trusted(&result, "case 1"));
+    assert!(!trusted(&result, "platform projection"));
     if !is_full() {
         return;
     }

@@ -33,10 +33,10 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
         let mut keys = String::new();
         let has_kept = has_kept(identification);
         if has_kept {
-            caption.push_str(" Case 2 uses the kept actuators only: where its line is above the dashed limit, they hardly determine the platform’s motion, and case 2 amplifies noise.");
+            caption.push_str(" The actuator projection uses the kept actuators only: where its line is above the dashed limit, they hardly determine the platform’s motion, and it amplifies noise.");
             keys = key(&[
-                ("first", "all actuators (case 1)"),
-                ("second", "kept actuators (case 2)"),
+                ("first", "all actuators (platform projection)"),
+                ("second", "kept actuators (actuator projection)"),
             ]);
         }
         body.push_str(&figure(
@@ -157,7 +157,7 @@ fn crossings(identification: &Identification) -> String {
         String::from("No run crosses a singularity of the kept actuators.")
     } else {
         format!(
-            "A singularity of the kept actuators is crossed: {}. Case 2 is undefined there and inaccurate nearby, although its relative error may be lower than that of case 1.",
+            "A singularity of the kept actuators is crossed: {}. The actuator projection is undefined there and inaccurate nearby, although its relative error may be lower than that of the platform projection.",
             places.join("; ")
         )
     }

@@ -83,7 +83,7 @@ pub(super) fn torques(contents: &Contents<'_>) -> String {
             "{}, {} of {}",
             one.run,
             stage_name(one.stage),
-            one.model.case()
+            one.model.label()
         );
         // Runs of the first model are shown, all others are collapsed.
         if ordered

@@ -107,7 +107,7 @@ fn over_time(one: &ResidualFigures, line: &LineResidual, units: &Units) -> Optio
             y: Axis::linear(format!("residual{}", bracketed(units.torque(&line.name)))),
             lines: vec![Line::new(
                 Look::Residual,
-                format!("residual, {}", one.model.case()),
+                format!("residual, {}", one.model.label()),
                 &worst.time,
                 &worst.residual,
             )],

@@ -34,9 +34,9 @@ pub(crate) enum Look {
     Predicted,
     /// Residual.
     Residual,
-    /// Case 1, or the only case.
+    /// Platform projection, or the only model.
     First,
-    /// Case 2.
+    /// Actuator projection.
     Second,
     /// A third one.
     Third,

@@ -137,7 +137,7 @@ fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -
         "",
         &format!(
             "{} ({}){grade}",
-            estimate.model.case(),
+            estimate.model.label(),
             projection(estimate)
         ),
     );

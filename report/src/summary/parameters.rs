@@ -6,7 +6,7 @@ use crate::{
     layout::{WIDTH, paragraph, table},
 };
 use overact_identification::{
-    Estimate, Grade, Identification, ParameterEstimate, Verdict, significant,
+    Estimate, Grade, Identification, ModelKind, ParameterEstimate, Verdict, significant,
 };
 
 /// Results and the names of their parameters.
@@ -133,7 +133,7 @@ impl Rows<'_> {
             header.push("true value");
         }
         for answer in &self.answers {
-            header.extend([answer.model.case(), "95 % interval"]);
+            header.extend([column_title(answer.model), "95 % interval"]);
         }
         header.push("unit");
         let nothing = || String::from("-");
@@ -155,6 +155,15 @@ impl Rows<'_> {
             row
         });
         table(&header, rows.collect())
+    }
+}
+
+/// Title of the column with the values of a model.
+const fn column_title(model: ModelKind) -> &'static str {
+    match model {
+        ModelKind::Platform => "platform",
+        ModelKind::Actuators => "actuators",
+        ModelKind::Joints => "joint model",
     }
 }
 

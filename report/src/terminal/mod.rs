@@ -64,7 +64,7 @@ fn consistent(one: &Consistent) -> String {
     let header = ["parameter", "value", "unit", "prior", "from data %"];
     format!(
         "Physically consistent parameters, {}: error {:.4} % (base parameters {:.4} %)\n{}",
-        one.model.case(),
+        one.model.label(),
         one.relative_error_percent,
         one.base_relative_error_percent,
         table(&header, rows.collect())
@@ -162,9 +162,9 @@ fn fraction(value: f64) -> Option<(u64, u64)> {
 #[must_use]
 pub fn estimate(estimate: &Estimate) -> String {
     let what = match estimate.model {
-        ModelKind::Platform => String::from("Case 1, inputs projected on the platform"),
+        ModelKind::Platform => String::from("Platform projection"),
         ModelKind::Actuators => format!(
-            "Case 2, inputs projected on {}",
+            "Actuator projection on {}",
             estimate.kept_actuators.join(", ")
         ),
         ModelKind::Joints => String::from("Joint model"),

@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     /// Columns of an identification model, or parameters of dynamics [default: standard]
     #[arg(long, value_enum)]
     columns: Option<ColumnsOf>,
-    /// Kept actuators of case 2 [default: those of the description]
+    /// Kept actuators of the actuator projection [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
     /// Standard parameters, for functions that take `parameters` or `base_parameters` [default: those of

@@ -51,7 +51,7 @@ fn heading(document: &Inspection) -> String {
     if document.actuators > document.dof {
         let _ = writeln!(
             text,
-            "kept in case 2: {}",
+            "kept by the actuator projection: {}",
             document.kept_actuators.join(", ")
         );
     }

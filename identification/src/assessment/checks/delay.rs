@@ -75,7 +75,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         || String::from("the torques are"),
         |name| format!("only the torque of `{name}` is"),
     );
-    let paces = scores.paces();
+    let paces = context.paces(scores);
     let fastest = paces.iter().flatten().map(|pace| pace.frequency);
     let is_far = wald.size().abs() * fastest.fold(0.0, f64::max) > LARGEST;
     let by = if is_far {

@@ -24,7 +24,10 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(scores) = context.scores else {
         return Ok(Vec::new());
     };
-    let checks = [cutoff(context, &scores.paces()), unlike_filters(context)];
+    let checks = [
+        cutoff(context, &context.paces(scores)),
+        unlike_filters(context),
+    ];
     Ok(checks.into_iter().flatten().collect())
 }
 

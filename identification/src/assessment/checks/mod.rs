@@ -34,7 +34,10 @@ use overact::Model;
 
 pub(super) use fault_hypotheses::HARMFUL;
 
-use super::{check::Check, hypotheses::Scores};
+use super::{
+    check::Check,
+    hypotheses::{Pace, Scores},
+};
 use crate::{
     data::{Dataset, Log},
     display_names::with_joints,
@@ -92,6 +95,23 @@ impl<'a> Context<'a> {
     pub(crate) fn runs(&self) -> impl Iterator<Item = (&'a Log, &'a RunMonitor)> {
         let all = self.dataset.runs.iter().chain(self.dataset.validation);
         all.zip(self.watched)
+    }
+
+    /// Whether the position of each actuator changes by more than its noise in a training run.
+    pub(crate) fn moving_actuators(&self) -> Vec<bool> {
+        let mut moving = vec![false; self.model.info().actuators.len()];
+        for run in self.watched.iter().take(self.dataset.runs.len()) {
+            for (moving, at_rest) in moving.iter_mut().zip(run.monitor.at_rest()) {
+                *moving |= !at_rest;
+            }
+        }
+        moving
+    }
+
+    /// Pace of each actuator's motion; `None` for those at rest.
+    pub(crate) fn paces(&self, scores: &Scores) -> Vec<Option<Pace>> {
+        let paces = scores.paces().into_iter().zip(self.moving_actuators());
+        paces.map(|(pace, moves)| pace.filter(|_| moves)).collect()
     }
 
     /// The system of a model, if it has one.

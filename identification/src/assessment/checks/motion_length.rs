@@ -58,7 +58,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         })
         .into_iter()
         .collect();
-    checks.extend(length(context, &scores.paces()));
+    checks.extend(length(context, &context.paces(scores)));
     Ok(checks)
 }
 

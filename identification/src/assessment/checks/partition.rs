@@ -72,7 +72,7 @@ fn spoiled(
     if let Some((case_1, case_2)) = lower_error(context) {
         let _ = write!(
             text,
-            "; its relative error of {} % is lower than the {} % of case 1 only because a few samples near the singularity outweigh all others",
+            "; its relative error of {} % is lower than the {} % of the platform projection only because a few samples near the singularity outweigh all others",
             significant(case_2, 3),
             significant(case_1, 3)
         );

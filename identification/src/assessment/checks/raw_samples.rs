@@ -57,19 +57,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 /// Nothing in the data distinguishes a locked joint from a dead encoder, with which all estimates
 /// may be wrong.
 fn unmoved(context: &Context<'_>) -> Vec<Check> {
-    let names = context.model.info().actuators;
-    let training = context.watched.iter().take(context.dataset.runs.len());
-    let mut unmoved = vec![!couples(context.model); names.len()];
-    for run in training {
-        for (unmoved, at_rest) in unmoved.iter_mut().zip(run.monitor.at_rest()) {
-            *unmoved &= at_rest;
-        }
-    }
+    let moving = context.moving_actuators();
     // The check of standstill reports a robot that does not move at all.
-    if unmoved.iter().all(|unmoved| *unmoved) {
+    if couples(context.model) || !moving.contains(&true) {
         return Vec::new();
     }
-    let names = names.iter().zip(unmoved).filter(|(_, unmoved)| *unmoved);
+    let names = context.model.info().actuators.iter().zip(moving);
+    let unmoved = names.filter(|(_, moves)| !moves);
     let check = |(name, _): (&&str, bool)| {
         let message = format!(
             "the position of `{name}` does not change in any training run: the joint is locked, or its encoder is dead. Repair the encoder, or move the joint; describe a locked joint as `type = \"fixed\"`"
@@ -79,7 +73,7 @@ fn unmoved(context: &Context<'_>) -> Vec<Check> {
             .found()
             .with_grade(Grade::DoNotUse)
     };
-    names.map(check).collect()
+    unmoved.map(check).collect()
 }
 
 /// Names of base parameters of dry friction and offsets, which a standstill does not separate.

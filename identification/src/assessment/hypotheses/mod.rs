@@ -33,7 +33,7 @@
 //! - `misreading`: dependence of an encoder error on the position;
 //! - `prediction`: prediction for a slightly different motion;
 //! - `sections`: products of columns and residual, by section of the time;
-//! - `pairs`: correlated residuals of actuators;
+//! - `pairs`, `correlations`: correlated residuals of actuators;
 //! - `pace`: residual and motion over time;
 //! - `pass`: inputs of a pass over a run; `motion_data`: data of the rows; `run`: the pass;
 //! - `scores`: result of all passes;
@@ -44,6 +44,7 @@
 //! - `test`: sizes, standard deviations, p-values; `wald_test`: their result.
 
 mod columns;
+mod correlations;
 mod group;
 mod misreading;
 mod model_columns;
@@ -62,10 +63,10 @@ mod test;
 mod wald_test;
 
 pub(crate) use columns::FaultHypothesis;
+pub(crate) use correlations::Correlation;
 pub(crate) use group::Group;
 pub(crate) use misreading::Misreading;
 pub(crate) use pace::Pace;
-pub(crate) use pairs::Correlation;
 pub(crate) use scores::{ScoreTest, Scores};
 pub(crate) use shapes::{PositionRange, Shape};
 pub(crate) use wald_test::WaldTest;

@@ -2,7 +2,11 @@
 
 use nalgebra::DMatrix;
 
-use super::{scaled::Scaled, scores::Scores};
+use super::{
+    columns::Layout,
+    scaled::Scaled,
+    sections::{MotionMean, RunScores},
+};
 
 /// Columns of base parameters, and rates of the dry friction columns.
 #[derive(Debug, Clone)]
@@ -20,17 +24,22 @@ pub(super) struct ModelColumns {
 }
 
 impl ModelColumns {
-    /// The base parameter columns `selected`, followed by the friction rates.
+    /// The base parameter columns `selected`, followed by the friction rates `late`.
     ///
     /// `None` if these columns are linearly dependent.
-    pub(super) fn new(scores: &Scores, selected: &[usize]) -> Option<Self> {
+    pub(super) fn new(
+        layout: &Layout,
+        runs: &[RunScores],
+        means: &[MotionMean],
+        selected: &[usize],
+        late: &[usize],
+    ) -> Option<Self> {
         let count = selected.len();
-        let selected: Vec<usize> = selected.iter().chain(&scores.late).copied().collect();
-        let products: Vec<Vec<DMatrix<f64>>> = scores
-            .runs
+        let selected: Vec<usize> = selected.iter().chain(late).copied().collect();
+        let products: Vec<Vec<DMatrix<f64>>> = runs
             .iter()
             .map(|run| {
-                let over = |m| run.cross_products(&scores.layout, m, &selected, &selected);
+                let over = |m| run.cross_products(layout, m, &selected, &selected);
                 (0..=2 * run.cosines).map(over).collect()
             })
             .collect();
@@ -39,8 +48,7 @@ impl ModelColumns {
         let whole = Scaled::new(&gram.view((0, 0), (count, count)).clone_owned())?;
         let gram = Scaled::new(&gram)?;
         let inverse = gram.solve(&DMatrix::identity(selected.len(), selected.len()));
-        let means = scores.means.iter();
-        let left = means.map(|own| own.mean.left(&selected, &inverse));
+        let left = means.iter().map(|own| own.mean.left(&selected, &inverse));
         Some(Self {
             count,
             left: left.collect(),

@@ -6,8 +6,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    columns::Layout, group::Group, model_columns::ModelColumns, scores::MotionMean,
-    sections::RunScores,
+    columns::Layout,
+    group::Group,
+    model_columns::ModelColumns,
+    sections::{MotionMean, RunScores},
 };
 use crate::estimation::periodic_variance::{SumVariance, VarianceRatio};
 

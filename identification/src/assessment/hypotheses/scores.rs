@@ -11,7 +11,7 @@ use super::{
     model_columns::ModelColumns,
     pass::Pass,
     scaled::{Scaled, independent_columns},
-    sections::{Frame, RunScores},
+    sections::{Frame, MotionMean, RunScores},
     shapes::{PositionRange, Shape},
     wald_test::WaldTest,
 };
@@ -63,13 +63,6 @@ pub(crate) struct Scores {
     pub(crate) narrower: usize,
     /// Cached tests with the estimate's own columns.
     pub(super) own: CachedTests,
-}
-
-/// Mean residual of a periodic motion, and the runs that have it.
-#[derive(Debug, Clone)]
-pub(super) struct MotionMean {
-    pub(super) runs: Vec<usize>,
-    pub(super) mean: Mean,
 }
 
 /// Products and results of the tests with the estimate's own columns, computed on demand.

@@ -10,7 +10,7 @@ use super::{
     shapes::{ActuatorState, PositionRange, Shape},
 };
 use crate::{
-    estimation::intervals::scores::cosines,
+    estimation::{intervals::scores::cosines, periodic_variance::Mean},
     regression::fold::{Fold, Folds, Phases},
 };
 
@@ -56,6 +56,13 @@ pub(super) struct RunScores {
     pub(super) tempo: Tempo,
     /// For periodic motion: mean rows and residual of each line at each phase.
     pub(super) folds: Folds,
+}
+
+/// Mean residual of a periodic motion, and the runs that have it.
+#[derive(Debug, Clone)]
+pub(super) struct MotionMean {
+    pub(super) runs: Vec<usize>,
+    pub(super) mean: Mean,
 }
 
 /// Timing of a run and pace of its motion.

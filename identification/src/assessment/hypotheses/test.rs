@@ -14,17 +14,22 @@ use super::{
 use crate::estimation::intervals::distributions::Hotelling;
 
 impl Scores {
+    /// The base parameter columns `selected`, followed by the friction rates.
+    fn model_columns(&self, selected: &[usize]) -> Option<ModelColumns> {
+        ModelColumns::new(&self.layout, &self.runs, &self.means, selected, &self.late)
+    }
+
     /// Tests a group with the base parameter columns `selected` in the model.
     ///
     /// `None` if the data do not separate the group from them.
     pub(crate) fn test(&self, group: &Group, selected: &[usize]) -> Option<WaldTest> {
         if selected != self.selected {
-            return self.tested(group, &ModelColumns::new(self, selected)?);
+            return self.tested(group, &self.model_columns(selected)?);
         }
         let model_columns = self
             .own
             .model_columns
-            .get_or_init(|| ModelColumns::new(self, selected));
+            .get_or_init(|| self.model_columns(selected));
         let model_columns = model_columns.as_ref()?;
         match group.run {
             // One request computes all hypotheses, since callers need them all.

@@ -121,7 +121,7 @@ fn bar(
         label: format!(
             "{}, {}: {value} {}, 95 % interval {}",
             one.name,
-            estimate.model.case(),
+            estimate.model.label(),
             one.unit,
             interval.unwrap_or_else(|| String::from("not known"))
         ),

@@ -228,7 +228,7 @@ fn base(identification: &Identification) -> String {
         .map(|one| {
             format!(
                 "{} {} %",
-                one.model.case(),
+                one.model.label(),
                 significant(one.relative_error_percent, 3)
             )
         })

@@ -303,7 +303,7 @@ pub(super) fn identification() -> Identification {
             verdict(ModelKind::Actuators, Grade::DoNotUse, &[]),
         ],
         thresholds: Thresholds::default(),
-        tracking: ["pd", "computed torque, case 1"]
+        tracking: ["pd", "computed torque, platform projection"]
             .iter()
             .zip([8e-3, 2e-3])
             .map(|(controller, largest)| TrackingError {
@@ -321,7 +321,7 @@ pub(super) fn identification() -> Identification {
 
 fn verdict(model: ModelKind, grade: Grade, listed: &[&str]) -> Verdict {
     Verdict {
-        subject: model.case().to_owned(),
+        subject: model.label().to_owned(),
         model,
         stage: Stage::Recommended,
         grade,
@@ -338,7 +338,7 @@ fn verdict(model: ModelKind, grade: Grade, listed: &[&str]) -> Verdict {
     }
 }
 
-/// One check of each outcome: failed for case 2, failed for one parameter, passed.
+/// One check of each outcome: failed for the actuator projection, failed for one parameter, passed.
 fn checks() -> Vec<Check> {
     let curve = |name: &str| Curve::new(name, &[0.0, 1.0, 2.0], &[0.1, f64::NAN, 0.3]);
     let evidence = Evidence {

@@ -134,7 +134,7 @@ fn no_name_reaches_the_terminal_but_as_text() {
     let hidden = |c: char| c != '\n' && overact_core::text::is_invisible(c);
     assert!(!told.contains(hidden), "{told:?}");
     for words in [
-        "case 1 (torques projected on the platform): USE IT FOR WHAT IS LISTED",
+        "platform projection (torques of all actuators): USE IT FOR WHAT IS LISTED",
         "  Usable if the named fault is the cause: m_platformR.\n",
         "DO NOT USE IT",
         "leg1: clipped",
@@ -244,7 +244,7 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
     assert_eq!(sections.len(), 14, "{sections:?}");
     let verdict = text(element(&document, "verdict"));
     for words in [
-        "Case 1, recommended parameters: use it for what is listed. Case 2, recommended parameters: do not use it.",
+        "Platform projection, recommended parameters: use it for what is listed. Actuator projection, recommended parameters: do not use it.",
         "Usable if the named fault is the cause: m_platformR.",
         "One parameter is biased. Details.",
         "leg1: clipped. Details.",
@@ -274,10 +274,13 @@ fn every_check_stands_with_what_shows_it() {
         .collect();
     let begins = |at: usize, words: &str| headings[at].starts_with(words);
     assert!(
-        begins(0, "Clipped torque: case 2"),
+        begins(0, "Clipped torque: actuator projection"),
         "most serious first: {headings:?}"
     );
-    assert!(begins(1, "Position noise in the regressor: case 1"));
+    assert!(begins(
+        1,
+        "Position noise in the regressor: platform projection"
+    ));
     let biased = text(element(&document, "check-2"));
     for words in [
         "Measured: 0.001 probability. Limit: 0.01 probability.",
