@@ -2,7 +2,7 @@
 
 use super::{Parts, home, unsuffixed};
 use crate::backends::rust::expression::{Writer, magnitude, number};
-use crate::backends::writing::statement::{Expression, Pair, Statement};
+use crate::backends::writing::statement::{Expression, SineCosinePair, Statement};
 use crate::float::Float;
 use crate::lowering::{Column, Condition, Elements, Lanes, OfLegs};
 use proc_macro2::{Literal, TokenStream};
@@ -62,7 +62,7 @@ impl<'a> Split<'a> {
                 }
             }
             // Columns are written to their places after all other statements.
-            Statement::Place { .. } => {}
+            Statement::Output { .. } => {}
         }
     }
 
@@ -74,8 +74,8 @@ impl<'a> Split<'a> {
         }
     }
 
-    fn pairs(&mut self, pairs: &[Pair]) {
-        let (own, shared): (Vec<Pair>, Vec<Pair>) = pairs
+    fn pairs(&mut self, pairs: &[SineCosinePair]) {
+        let (own, shared): (Vec<SineCosinePair>, Vec<SineCosinePair>) = pairs
             .iter()
             .cloned()
             .partition(|pair| self.is_own(&pair.angle));
