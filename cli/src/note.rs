@@ -23,20 +23,20 @@ pub(crate) fn is_quiet() -> bool {
 }
 
 /// Prints the note of a description on stderr; never with `--json`, because errors share stderr.
-pub(crate) fn tell_note(compiled: &CompiledFile, as_json: bool) {
-    tell(&compiled.file, compiled.note().as_deref(), as_json);
+pub(crate) fn print_description_note(compiled: &CompiledFile, as_json: bool) {
+    print_note(&compiled.file, compiled.note().as_deref(), as_json);
 }
 
-/// Prints on stderr which given parameters no body or joint can have; never with `--json`.
-pub(crate) fn tell_doubts(doubts: &[String], as_json: bool) {
-    for doubt in doubts.iter().filter(|_| !as_json && !is_quiet()) {
+/// Prints warnings on stderr; not with `--json`.
+pub(crate) fn print_warnings(warnings: &[String], as_json: bool) {
+    for warning in warnings.iter().filter(|_| !as_json && !is_quiet()) {
         // A closed stderr is ignored.
-        let _ = writeln!(io::stderr(), "warning: {}", visible(doubt));
+        let _ = writeln!(io::stderr(), "warning: {}", visible(warning));
     }
 }
 
 /// Prints a note about a file.
-pub(crate) fn tell(file: &str, note: Option<&str>, as_json: bool) {
+pub(crate) fn print_note(file: &str, note: Option<&str>, as_json: bool) {
     if let (Some(note), false) = (note, as_json || is_quiet()) {
         for line in note.lines() {
             // A closed stderr is ignored.
@@ -46,9 +46,9 @@ pub(crate) fn tell(file: &str, note: Option<&str>, as_json: bool) {
 }
 
 /// Prints warnings of a result on stderr, unless the result is shown on the same terminal.
-pub(crate) fn tell_warnings(warnings: &[String], is_written: bool, as_json: bool) {
+pub(crate) fn print_result_warnings(warnings: &[String], is_written: bool, as_json: bool) {
     let seen = !is_written && io::stdout().is_terminal() && io::stderr().is_terminal();
     if !seen {
-        tell_doubts(warnings, as_json);
+        print_warnings(warnings, as_json);
     }
 }

@@ -1,5 +1,6 @@
-//! Exact fractions of 128-bit integers. Every operation is checked: overflow gives `None`, and the
-//! caller continues with a float.
+//! Exact fractions of 128-bit integers.
+//!
+//! Operations return `None` on overflow, and the caller then continues with a float.
 
 use std::cmp::Ordering;
 
@@ -10,10 +11,11 @@ pub struct Ratio {
     denominator: i128,
 }
 
+/// Greatest common divisor (Euclid).
 #[inline]
 fn gcd(a: i128, b: i128) -> i128 {
     let (mut a, mut b) = (a.unsigned_abs(), b.unsigned_abs());
-    // Nearly all numbers have 64 bits, whose remainders are instructions and not calls.
+    // Most numbers fit into 64 bits. Their remainder is one instruction, that of 128 bits a call.
     if let (Ok(mut a), Ok(mut b)) = (u64::try_from(a), u64::try_from(b)) {
         while b != 0 {
             (a, b) = (b, a % b);
@@ -109,7 +111,7 @@ impl Ratio {
         self.numerator == 0
     }
 
-    /// The nearest float, up to the roundings of two conversions and a division.
+    /// Value as a float; two conversions and a division are rounded.
     #[must_use]
     #[inline]
     pub fn value(self) -> f64 {
@@ -122,7 +124,7 @@ impl Ratio {
         }
     }
 
-    /// Sum.
+    /// Sum; `None` on overflow.
     #[must_use]
     #[inline]
     pub fn plus(self, other: Self) -> Option<Self> {
@@ -134,7 +136,7 @@ impl Ratio {
         )
     }
 
-    /// Product.
+    /// Product; `None` on overflow.
     #[must_use]
     #[inline]
     pub fn times(self, other: Self) -> Option<Self> {
@@ -162,6 +164,8 @@ impl Ratio {
     }
 
     /// Square root, if it is a fraction.
+    ///
+    /// Roots of numbers above 2⁵³ may be missed, since candidates are computed with floats.
     #[must_use]
     pub fn square_root(self) -> Option<Self> {
         let root = |n: i128| {
@@ -175,6 +179,7 @@ impl Ratio {
     }
 }
 
+/// Compares the rounded values.
 impl PartialOrd for Ratio {
     #[inline]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {

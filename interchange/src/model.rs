@@ -245,9 +245,9 @@ impl Inertia {
         self.with(&negative)
     }
 
-    /// Inertia expressed in another frame, in which the body's frame has the pose `frame`.
+    /// Inertia in another frame, in which the body's frame has the pose `frame`.
     #[must_use]
-    pub(crate) fn seen(&self, frame: &Pose) -> Self {
+    pub(crate) fn transformed(&self, frame: &Pose) -> Self {
         let rotation = frame.rotation;
         Self {
             mass: self.mass,

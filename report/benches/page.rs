@@ -1,4 +1,4 @@
-//! Generation of the page for the virtual experiment of the EMPS.
+//! Time to write the HTML report of the EMPS's virtual experiment.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use overact::Model;

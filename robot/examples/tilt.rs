@@ -1,9 +1,13 @@
 //! Estimates whether a robot's base was tilted when its logs were recorded.
 //!
-//! It finds the gravity direction with the smallest residual in one run, and plots the effect of
-//! tilts on the prediction of another: `cargo run --release -p overact-robot --example tilt --
-//! robots/dvrk_mtm.toml TRAINING TEST docs/dvrk_mtm.svg`. The magnitude of gravity is that of the
-//! description's line `gravity = [...]`.
+//! It estimates the direction of gravity from one run, and plots the effect of tilts on the
+//! prediction of another. The example replaces the description's line `gravity = [...]`, by a vector
+//! of 9.81 m/s².
+//!
+//! ```text
+//! cargo run --release -p overact-robot --example tilt -- \
+//!     robots/dvrk_mtm.toml TRAINING TEST docs/dvrk_mtm.svg
+//! ```
 
 use nalgebra::{Matrix2, Vector2};
 use overact::Model;
@@ -17,7 +21,7 @@ use std::{error::Error, path::Path, process::ExitCode};
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.81;
 
-/// Number of steps from no tilt to twice the best one; even.
+/// Number of plotted steps from no tilt to twice the estimated one; even.
 const STEPS: u32 = 10;
 
 /// Step of the finite differences, rad.
@@ -29,7 +33,7 @@ fn main() -> ExitCode {
         eprintln!("a description, a log to identify from, another one, and the file to write");
         return ExitCode::FAILURE;
     };
-    match told(description, [training, test], file) {
+    match run(description, [training, test], file) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");
@@ -38,12 +42,13 @@ fn main() -> ExitCode {
     }
 }
 
-fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn Error>> {
+/// Estimates the tilt, prints the errors, and writes the plots.
+fn run(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn Error>> {
     let text = std::fs::read_to_string(description)?;
     let plain = Robot::from_text(description, &text)?;
     let files = logs.map(|log| (Path::new(log.as_str()), false));
     let logs = plain.read_logs(&files, &|_| {})?;
-    let tilt = best(&text, &logs[..1])?;
+    let tilt = estimate_tilt(&text, &logs[..1])?;
     println!(
         "tilt of gravity in the base's frame: {:.2} deg towards x, {:.2} deg towards y",
         tilt.x.to_degrees(),
@@ -73,7 +78,7 @@ fn told(description: &str, logs: [&String; 2], file: &str) -> Result<(), Box<dyn
     Ok(())
 }
 
-/// Robot with gravity tilted by these angles towards x and y.
+/// Robot with gravity tilted by two angles (rad), towards x and y.
 fn tilted(text: &str, tilt: Vector2<f64>) -> Result<Robot, overact_robot::Error> {
     let [x, y] = [tilt.x, tilt.y].map(|angle| -GRAVITY * angle.sin());
     let z = -(GRAVITY * GRAVITY - x * x - y * y).sqrt();
@@ -88,10 +93,10 @@ fn tilted(text: &str, tilt: Vector2<f64>) -> Result<Robot, overact_robot::Error>
     Robot::from_text("tilted.toml", &text)
 }
 
-/// Tilt with the smallest residual: Newton's method with finite differences.
+/// Tilt (rad) with the smallest residual, by one Newton step with finite differences.
 ///
-/// Each row is weighted by its residual without tilt.
-fn best(text: &str, runs: &[Log]) -> Result<Vector2<f64>, Box<dyn Error>> {
+/// The residual of each row of Γ is divided by its value without tilt.
+fn estimate_tilt(text: &str, runs: &[Log]) -> Result<Vector2<f64>, Box<dyn Error>> {
     let residuals = |tilt: Vector2<f64>| -> Result<Vec<f64>, Box<dyn Error>> {
         let robot = tilted(text, tilt)?;
         let settings = robot.settings(runs[0].sampling_frequency());
@@ -127,7 +132,7 @@ fn best(text: &str, runs: &[Log]) -> Result<Vector2<f64>, Box<dyn Error>> {
     Ok(-step)
 }
 
-/// Errors on the validation run, percent.
+/// Relative error of each actuator's torque on the validation run, percent.
 fn errors(result: &Identification, stage: Stage) -> Vec<f64> {
     let own = result
         .cross_validation
@@ -137,7 +142,7 @@ fn errors(result: &Identification, stage: Stage) -> Vec<f64> {
     torques.map(|one| one.relative_error_percent).collect()
 }
 
-/// Validation error of each actuator over the tilt, in the direction of the best one.
+/// Plots the validation error of each actuator over multiples of the estimated tilt.
 fn plots(names: &[String], tilts: &[f64], all: &[[Vec<f64>; 2]]) -> Vec<Plot> {
     let plot = |(joint, name): (usize, &String)| {
         let stages = ["base parameters", "consistent"].into_iter().enumerate();

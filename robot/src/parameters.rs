@@ -3,7 +3,7 @@
 use crate::{
     compiled_file::{CompiledFile, read, read_or},
     error::Error,
-    physical::doubts,
+    physical::physical_warnings,
 };
 use overact::{Info, Parameter};
 use overact_codegen::diagnostic::Code;
@@ -103,7 +103,7 @@ fn given(path: &Path, description: &Description) -> Result<(Source, GivenParamet
     let source = read_or(path, origin)?;
     match parse_parameters(&source, description) {
         Ok(values) => {
-            let doubts = doubts(&source, &values);
+            let doubts = physical_warnings(&source, &values);
             let pairs = values.into_iter().map(|one| (one.name.value, one.value));
             let values = pairs.collect();
             Ok((source, GivenParameters { values, doubts }))

@@ -1,9 +1,11 @@
-//! All partitions for the actuator projection.
+//! Partitions of the actuators for the actuator projection.
 
-/// Largest number of partitions.
-const LARGEST_NUMBER: usize = 1000;
+/// Largest number of partitions that are listed.
+const MAX_PARTITIONS: usize = 1000;
 
-/// Choices of `r` among `n` in lexicographic order, at most a thousand.
+/// Choices of r kept actuators among n ≥ r, in lexicographic order.
+///
+/// At most the first thousand choices are returned.
 ///
 /// ```
 /// assert_eq!(overact_robot::partitions(3, 2), [[0, 1], [0, 2], [1, 2]]);
@@ -11,7 +13,7 @@ const LARGEST_NUMBER: usize = 1000;
 #[must_use]
 pub fn partitions(n: usize, r: usize) -> Vec<Vec<usize>> {
     let mut all = vec![(0..r).collect::<Vec<usize>>()];
-    while all.len() < LARGEST_NUMBER
+    while all.len() < MAX_PARTITIONS
         && let Some(last) = all.last()
         && let Some(at) = (0..r).rev().find(|&i| last[i] < n - r + i)
     {

@@ -1,9 +1,9 @@
 //! Detects parameters that are not physically consistent.
 //!
 //! Masses, moments of inertia and friction are not negative. The ten inertial parameters of a body
-//! belong to a positive density exactly if the pseudo-inertia ∫ [p; 1] [p; 1]ᵀ dm is positive
-//! definite (Wensing, Kim, Slotine 2018). For a planar body, which has fewer columns, the condition
-//! is zz m ≥ mx² + my². Estimates may violate this, so it is not an error.
+//! are those of a mass distribution if and only if the pseudo-inertia ∫ [p; 1] [p; 1]ᵀ dm is
+//! positive definite (Wensing, Kim, Slotine 2018). A planar body has fewer parameters; the condition
+//! is then zz m ≥ mx² + my². Estimates may violate it, so a violation is only a warning.
 
 use nalgebra::Matrix4;
 use overact_codegen::{
@@ -11,43 +11,46 @@ use overact_codegen::{
     diagnostic::Source,
 };
 
-/// Tolerance for negative eigenvalues relative to the largest, since files contain rounded numbers.
+/// Tolerance of negative eigenvalues relative to the largest, for rounded numbers of files.
 const ROUNDING: f64 = 1e-6;
 
-/// Sentence with file and line for each inconsistent value or body.
-pub(crate) fn doubts(source: &Source, all: &[TrueParameter]) -> Vec<String> {
-    let mut doubts: Vec<String> = all.iter().filter_map(|one| negative(source, one)).collect();
+/// Warning, with file and line, for each inconsistent value or body.
+pub(crate) fn physical_warnings(source: &Source, all: &[TrueParameter]) -> Vec<String> {
+    let negative = all.iter().filter_map(|one| negative_value(source, one));
+    let mut warnings: Vec<String> = negative.collect();
     let mut bodies: Vec<Body> = Vec::new();
     for one in all.iter().filter(|one| one.symbol.is_inertial()) {
         if !bodies.contains(&one.body) {
             bodies.push(one.body);
         }
     }
-    doubts.extend(bodies.iter().filter_map(|&body| {
+    warnings.extend(bodies.iter().filter_map(|&body| {
         let own: Vec<&TrueParameter> = all.iter().filter(|one| one.body == body).collect();
-        impossible(source, &own)
+        inconsistent_inertia(source, &own)
     }));
-    doubts
+    warnings
 }
 
-fn place(source: &Source, one: &TrueParameter) -> String {
+/// File and line of a parameter.
+fn location(source: &Source, one: &TrueParameter) -> String {
     let line = source.position(&one.name.span).line;
     format!("{}:{line}", source.name)
 }
 
-fn negative(source: &Source, one: &TrueParameter) -> Option<String> {
+/// Warning about a negative value that must not be negative.
+fn negative_value(source: &Source, one: &TrueParameter) -> Option<String> {
     let TrueParameter { name, value, .. } = one;
     (one.symbol.is_nonnegative() && *value < 0.0).then(|| {
         format!(
             "{}: `{}` = {value} is negative, which is not physically consistent",
-            place(source, one),
+            location(source, one),
             name.value
         )
     })
 }
 
-/// Problem of a body's inertia, if its parameters are not negative.
-fn impossible(source: &Source, own: &[&TrueParameter]) -> Option<String> {
+/// Warning about the inertia of a body; `None` if a negative value is reported already.
+fn inconsistent_inertia(source: &Source, own: &[&TrueParameter]) -> Option<String> {
     if own
         .iter()
         .any(|one| one.symbol.is_nonnegative() && one.value < 0.0)
@@ -87,7 +90,7 @@ fn impossible(source: &Source, own: &[&TrueParameter]) -> Option<String> {
     }?;
     Some(format!(
         "{}: the inertia of the body with `{body}` is not physically consistent: {wrong}",
-        place(source, first)
+        location(source, first)
     ))
 }
 

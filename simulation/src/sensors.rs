@@ -1,8 +1,8 @@
 //! Sensors: delayed and quantised positions, noisy torques.
 //!
-//! An encoder of resolution δ shows δ round(q / δ): an error uniform in ±δ/2 with standard
+//! An encoder of resolution δ reports δ round(q / δ). Its error is uniform in ±δ/2, with standard
 //! deviation δ/√12. The torque measurement adds white Gaussian noise. Each pair of run and actuator
-//! has its own random stream, seeded by the run's name. The noise of a run therefore does not
+//! has its own random stream, which the run's name selects. The noise of a run therefore does not
 //! depend on the other runs or their order.
 
 use std::collections::VecDeque;
@@ -14,12 +14,15 @@ use crate::experiment::Experiment;
 
 /// The sensors of one run.
 pub(crate) struct Sensors<'a> {
-    /// Empty if all encoders are ideal; likewise the standard deviations.
+    /// Resolution of each encoder (rad, m); 0 or empty for ideal encoders.
     resolution: &'a [f64],
+    /// Standard deviation of each torque (N m, N); empty without noise.
     deviation: &'a [f64],
+    /// Random stream of each actuator.
     streams: Vec<Pcg64>,
-    /// Delayed positions, the oldest first, and the delay in samples.
-    late: VecDeque<Vec<f64>>,
+    /// Positions that are not yet reported, oldest first.
+    delayed: VecDeque<Vec<f64>>,
+    /// Delay of the encoders in samples.
     delay: usize,
 }
 
@@ -34,25 +37,26 @@ impl<'a> Sensors<'a> {
             resolution: &experiment.encoder_resolution,
             deviation: &experiment.torque_noise,
             streams,
-            late: VecDeque::new(),
+            delayed: VecDeque::new(),
             // The experiment is validated: the product is small and not negative.
             delay: (experiment.encoder_delay_s * experiment.sampling_hz).round() as usize,
         }
     }
 
-    /// Delays positions; called once per sample. Before the first sample, the robot is at its
-    /// start.
+    /// Replaces positions by those of `delay` samples ago; call it once per sample.
+    ///
+    /// Before the first sample, the robot is at rest at its first positions.
     pub(crate) fn delay(&mut self, positions: &mut [f64]) {
-        while self.late.len() < self.delay {
-            self.late.push_back(positions.to_vec());
+        while self.delayed.len() < self.delay {
+            self.delayed.push_back(positions.to_vec());
         }
-        if let Some(mut oldest) = self.late.pop_front() {
+        if let Some(mut oldest) = self.delayed.pop_front() {
             oldest.as_mut_slice().swap_with_slice(positions);
-            self.late.push_back(oldest);
+            self.delayed.push_back(oldest);
         }
     }
 
-    /// Quantises positions in place.
+    /// Rounds positions to the resolution of their encoders.
     pub(crate) fn encode(&self, positions: &mut [f64]) {
         for (position, resolution) in positions.iter_mut().zip(self.resolution) {
             if *resolution > 0.0 {
@@ -61,7 +65,7 @@ impl<'a> Sensors<'a> {
         }
     }
 
-    /// Adds noise to torques in place; once per sample.
+    /// Adds noise to torques; call it once per sample.
     pub(crate) fn disturb(&mut self, torques: &mut [f64]) {
         for ((torque, deviation), stream) in torques
             .iter_mut()
@@ -74,7 +78,7 @@ impl<'a> Sensors<'a> {
     }
 }
 
-/// FNV-1a hash, equal on all machines and in all versions.
+/// FNV-1a hash; unlike hashes of `std`, it is the same in all versions of Rust.
 fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
@@ -152,20 +156,20 @@ mod tests {
     }
 
     #[test]
-    fn positions_are_late_by_whole_samples() {
+    fn positions_are_delayed_by_whole_samples() {
         let experiment = Experiment {
             encoder_delay_s: 4e-4,
             ..Experiment::default()
         };
         let mut sensors = Sensors::new(&experiment, 1, "a");
-        let seen: Vec<f64> = (0..5)
+        let reported: Vec<f64> = (0..5)
             .map(|k| {
                 let mut q = [f64::from(k)];
                 sensors.delay(&mut q);
                 q[0]
             })
             .collect();
-        assert_eq!(seen, [0.0, 0.0, 0.0, 1.0, 2.0]);
+        assert_eq!(reported, [0.0, 0.0, 0.0, 1.0, 2.0]);
     }
 
     #[test]

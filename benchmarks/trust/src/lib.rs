@@ -23,7 +23,7 @@ pub mod traps;
 pub mod units;
 
 pub use draw::Noise;
-pub use measure::{Counted, measure};
+pub use measure::{DrawIntervals, measure};
 pub use subject::Subject;
 pub use tally::{Cell, Tally};
 

@@ -1,7 +1,7 @@
 //! `overact-trust ROBOTS…`: the coverage table, see the library.
 
 use clap::Parser;
-use overact_trust::{Cell, Counted, Failure, Noise, Subject, Tally, measure, table};
+use overact_trust::{Cell, DrawIntervals, Failure, Noise, Subject, Tally, measure, table};
 use rayon::prelude::*;
 use std::{
     fs,
@@ -53,7 +53,7 @@ fn cells(arguments: &Arguments, path: &Path) -> Result<Vec<Cell>, Failure> {
     let start = Instant::now();
     let draws = arguments.first..arguments.first + arguments.draws;
     let one = |draw| measure(&subject, draw, &arguments.noise);
-    let all: Vec<Result<Vec<Counted>, Failure>> = draws.into_par_iter().map(one).collect();
+    let all: Vec<Result<Vec<DrawIntervals>, Failure>> = draws.into_par_iter().map(one).collect();
     let mut tally = Tally::default();
     for (number, draw) in (arguments.first..).zip(all) {
         match draw {

@@ -1,4 +1,4 @@
-//! Evaluation of one draw: simulation, noise, identification, counting.
+//! Evaluation of one draw: simulation, noise, identification and intervals.
 
 use crate::{Failure, Noise, Subject, draw};
 use overact_identification::{
@@ -10,7 +10,7 @@ use overact_simulation::Experiment;
 
 /// Intervals of one estimate of one draw.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Counted {
+pub struct DrawIntervals {
     /// Factors on the description's noise.
     pub noise: Noise,
     /// Model of the estimate.
@@ -25,7 +25,7 @@ pub struct Counted {
     pub parameters: Vec<Interval>,
 }
 
-/// One interval.
+/// Comparison of one 95 % interval with the true value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interval {
     /// Name of the parameter.
@@ -42,7 +42,11 @@ pub struct Interval {
 ///
 /// # Errors
 /// A draw that cannot be simulated or identified.
-pub fn measure(subject: &Subject, draw: u64, noises: &[Noise]) -> Result<Vec<Counted>, Failure> {
+pub fn measure(
+    subject: &Subject,
+    draw: u64,
+    noises: &[Noise],
+) -> Result<Vec<DrawIntervals>, Failure> {
     let experiment = draw::varied(subject, draw)?;
     let mut encoders: Vec<f64> = noises.iter().map(|noise| noise.encoder).collect();
     encoders.sort_by(f64::total_cmp);
@@ -68,7 +72,7 @@ fn identified(
     experiment: &Experiment,
     noise: Noise,
     logs: Vec<Log>,
-) -> Result<Vec<Counted>, Failure> {
+) -> Result<Vec<DrawIntervals>, Failure> {
     let coarse = noise.encoder > 1.0;
     let settings = Settings {
         instruments: if coarse {
@@ -95,7 +99,7 @@ fn identified(
         let flagged = told.agreement.as_ref().map(|own| own.differs && spoils);
         let least_squares = [&outcome.base, &outcome.recommended, &outcome.essential];
         for estimate in least_squares.into_iter().chain(&outcome.instrumental) {
-            counted.push(Counted {
+            counted.push(DrawIntervals {
                 noise,
                 model: estimate.model,
                 stage: estimate.stage,

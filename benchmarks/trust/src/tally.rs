@@ -1,10 +1,10 @@
-//! Coverage over draws.
+//! Coverage of confidence intervals over independent draws.
 //!
-//! A draw contributes the fraction of its intervals that contain the truth. Draws are independent,
-//! their parameters are not. The coverage is therefore the mean of the fractions, with its standard
-//! error by Student's t distribution.
+//! The coverage is the mean over draws of the fraction of intervals that contain the true value.
+//! Parameters of one draw are dependent, but draws are independent. The interval of the coverage is
+//! therefore that of a mean of independent fractions, by Student's t distribution.
 
-use crate::{Counted, Noise, measure::Interval};
+use crate::{DrawIntervals, Noise, measure::Interval};
 use overact_identification::{Estimator, ModelKind, Stage};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -34,30 +34,30 @@ pub struct Cell {
     pub coverage_interval_percent: [f64; 2],
     /// Median width relative to the intervals of the base model.
     pub relative_width: f64,
-    /// Root mean square error relative to the half width, times 1.96.
+    /// Root mean square of the errors, each divided by its interval's half width over 1.96.
     ///
     /// It is 1 for intervals of the right width with many degrees of freedom.
     pub spread: f64,
     /// Parameter with the lowest coverage, and that coverage, percent.
     pub worst: (String, f64),
-    /// Results of each parameter.
-    pub each: BTreeMap<String, Each>,
+    /// Coverage of each parameter.
+    pub each: BTreeMap<String, ParameterCoverage>,
 }
 
-/// Intervals of one parameter.
+/// Coverage of one parameter's intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct Each {
+pub struct ParameterCoverage {
     /// Number of draws in which it was estimated.
     pub draws: usize,
     /// Number of intervals that contain the truth.
     pub covering: usize,
-    /// Mean error relative to the half width, times 1.96.
+    /// Mean of the errors, each divided by its interval's half width over 1.96.
     pub mean: f64,
-    /// Root mean square of the same.
+    /// Root mean square of these quotients.
     pub spread: f64,
 }
 
-impl Each {
+impl ParameterCoverage {
     fn new(intervals: &[&Interval]) -> Self {
         let draws = intervals.len();
         let over = |of: &dyn Fn(f64) -> f64| -> f64 {
@@ -73,15 +73,15 @@ impl Each {
     }
 }
 
-/// Collects the draws of one robot.
+/// Intervals of all draws of one robot.
 #[derive(Debug, Default)]
 pub struct Tally {
-    draws: Vec<Vec<Counted>>,
+    draws: Vec<Vec<DrawIntervals>>,
 }
 
 impl Tally {
     /// Adds a draw.
-    pub fn add(&mut self, draw: Vec<Counted>) {
+    pub fn add(&mut self, draw: Vec<DrawIntervals>) {
         self.draws.push(draw);
     }
 
@@ -92,10 +92,10 @@ impl Tally {
         first.iter().map(|key| self.cell(robot, key)).collect()
     }
 
-    fn cell(&self, robot: &str, key: &Counted) -> Cell {
-        let of = |one: &Counted| (one.noise, one.model, one.stage, one.estimator);
-        let same = |one: &&Counted| of(one) == of(key);
-        let own: Vec<&Counted> = self.draws.iter().flatten().filter(same).collect();
+    fn cell(&self, robot: &str, key: &DrawIntervals) -> Cell {
+        let of = |one: &DrawIntervals| (one.noise, one.model, one.stage, one.estimator);
+        let same = |one: &&DrawIntervals| of(one) == of(key);
+        let own: Vec<&DrawIntervals> = self.draws.iter().flatten().filter(same).collect();
         let fractions: Vec<f64> = own.iter().filter_map(|one| fraction(one)).collect();
         let (coverage, half) = mean(&fractions);
         let all = || own.iter().flat_map(|one| &one.parameters);
@@ -106,8 +106,9 @@ impl Tally {
             intervals.entry(one.name.clone()).or_default().push(one);
         }
         let each = intervals.into_iter();
-        let each: BTreeMap<String, Each> =
-            each.map(|(name, own)| (name, Each::new(&own))).collect();
+        let each: BTreeMap<String, ParameterCoverage> = each
+            .map(|(name, own)| (name, ParameterCoverage::new(&own)))
+            .collect();
         // A parameter that is rarely selected has too few draws.
         let often = each.iter().filter(|(_, one)| 2 * one.draws >= own.len());
         let rates = often.map(|(name, one)| (name.clone(), one.covering as f64 / one.draws as f64));
@@ -135,15 +136,15 @@ impl Tally {
     }
 }
 
-/// Percent of tested draws that are flagged.
-fn flagged(draws: &[&Counted]) -> Option<f64> {
+/// Percent of the tested draws in which position errors bias least squares.
+fn flagged(draws: &[&DrawIntervals]) -> Option<f64> {
     let tested: Vec<bool> = draws.iter().filter_map(|one| one.flagged).collect();
     let count = tested.iter().filter(|flagged| **flagged).count();
     (!tested.is_empty()).then(|| 100.0 * count as f64 / tested.len() as f64)
 }
 
-/// Fraction of a draw's intervals that contain the truth.
-fn fraction(one: &Counted) -> Option<f64> {
+/// Fraction of a draw's intervals that contain the true value; `None` without intervals.
+fn fraction(one: &DrawIntervals) -> Option<f64> {
     let count = one.parameters.len();
     let covering = one.parameters.iter().filter(|one| one.covers).count();
     (count > 0).then(|| covering as f64 / count as f64)
@@ -176,6 +177,7 @@ fn quantile_999(freedom: f64) -> f64 {
     })
 }
 
+/// Middle value; the upper one of an even number.
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)

@@ -2,7 +2,7 @@
 
 use crate::{
     failure::Failure,
-    note::tell,
+    note::print_note,
     output::{self, counted, json, print},
 };
 use overact_robot::{CheckedFile, check};
@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     for file in &arguments.files {
         match check(file) {
             Ok(found) => {
-                tell(&found.file, found.note.as_deref(), as_json);
+                print_note(&found.file, found.note.as_deref(), as_json);
                 good.push(Checked::new(found));
             }
             Err(failure) => bad.push(failure),

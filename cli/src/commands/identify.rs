@@ -176,7 +176,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let text = overact_report::parameters_file(&result).ok_or_else(no_parameters)?;
         written.push((path.clone(), text.into_bytes()));
     }
-    note::tell_warnings(&warnings(&result), output.is_some(), as_json);
+    note::print_result_warnings(&warnings(&result), output.is_some(), as_json);
     output::emit_with(&text, output, written)?;
     match result.grade() {
         Grade::DoNotUse if arguments.strict => Err(refused(&result)),

@@ -1,6 +1,6 @@
-//! Output files: checked before any work, then all written completely, or none.
+//! Checks the paths of output files, and writes them completely or not at all.
 //!
-//! The check ensures that no output overwrites an input or another output.
+//! The check comes before any work: no output may overwrite an input or another output.
 
 use crate::{
     failure::{Failure, Problem},
@@ -15,10 +15,10 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// Largest number of links that are followed, as in Linux.
-const LINKS: usize = 40;
+/// Largest number of symbolic links that are followed, as in Linux.
+const MAX_LINKS: usize = 40;
 
-/// [`check_distinct`], and the folder of every output must exist.
+/// Runs [`check_distinct`], and checks that the folder of every output exists.
 ///
 /// # Errors
 /// As [`check_distinct`], or a folder that does not exist.
@@ -34,12 +34,12 @@ pub(crate) fn check<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(),
     Ok(())
 }
 
-/// Fails early if an output is also an input or another output, or may not be written.
+/// Checks that every output differs from all inputs and other outputs, and may be written.
 ///
-/// Links are followed. Devices and pipes are exempt.
+/// Symbolic links are followed. Devices and pipes are not compared.
 ///
 /// # Errors
-/// Incompatible arguments, or files that may not be written.
+/// Arguments that name one file twice, or files that may not be written.
 pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(), Failure> {
     if outputs.iter().any(|output| is_stream(output)) {
         let message = "`-` is standard output, which is for the result of `-o` only: write `./-` for a file of that name";
@@ -50,8 +50,8 @@ pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> R
             "`-` is standard input, which can be read once: give the other inputs as files";
         return Err(Failure::Usage(message.to_owned()));
     }
-    let replaced = |path: &&&Path| fs::metadata(path).map_or(true, |existing| existing.is_file());
-    let outputs: Vec<&Path> = outputs.iter().filter(replaced).copied().collect();
+    let is_regular = |path: &&&Path| fs::metadata(path).map_or(true, |existing| existing.is_file());
+    let outputs: Vec<&Path> = outputs.iter().filter(is_regular).copied().collect();
     for (at, output) in outputs.iter().enumerate() {
         let identity = identity(output);
         if let Some(input) = inputs
@@ -75,7 +75,7 @@ pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> R
     }
     let problems: Vec<Problem> = outputs
         .iter()
-        .filter_map(|output| may_be_replaced(output).err().map(|e| (output, e)))
+        .filter_map(|output| check_writable(output).err().map(|e| (output, e)))
         .map(|(output, error)| unwritable_problem(output, &error))
         .collect();
     if problems.is_empty() {
@@ -85,13 +85,13 @@ pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> R
     }
 }
 
-/// Identity of a file.
+/// Identity of a file, equal for all paths to it.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// Numbers of device and file; they are equal for links and hard links to the same file.
+    /// Device and inode numbers, equal for symbolic and hard links to one file.
     #[cfg(unix)]
     Numbers(u64, u64),
-    /// Path without links, for a file that does not exist yet.
+    /// Path without symbolic links, for a file that does not exist yet.
     Path(PathBuf),
 }
 
@@ -110,10 +110,10 @@ fn identity(path: &Path) -> Identity {
     Identity::Path(resolved(path))
 }
 
-/// Path without links; its last component may not exist.
+/// Path without symbolic links; its last component may not exist.
 fn resolved(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
-    for _ in 0..LINKS {
+    for _ in 0..MAX_LINKS {
         let Ok(target) = fs::read_link(&path) else {
             break;
         };
@@ -136,11 +136,10 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Whether a file may be replaced.
+/// Checks the permission to write to a file, if it exists.
 ///
-/// Renaming over a file requires the folder's permission only, so the file's own permission is
-/// checked here.
-fn may_be_replaced(path: &Path) -> io::Result<()> {
+/// Renaming another file over it would only require the permission of the folder.
+fn check_writable(path: &Path) -> io::Result<()> {
     let Ok(existing) = fs::metadata(path) else {
         return Ok(());
     };
@@ -154,9 +153,10 @@ fn may_be_replaced(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes files by way of temporary files that are renamed when all are complete.
+/// Writes files through temporary files, which are renamed when all are complete.
 ///
-/// An error therefore leaves the old files unchanged.
+/// An error before the first rename leaves all old files unchanged. If a later rename fails, the
+/// files before it are already replaced.
 ///
 /// # Errors
 /// A folder that cannot be written, or a file that may not be replaced.
@@ -168,33 +168,34 @@ pub(crate) fn write(files: Vec<(PathBuf, Vec<u8>)>) -> Result<(), Failure> {
     }
     for (path, staging, bytes) in staged {
         let done = match staging {
-            Staged::Temporary(file, target) => signals::persist(file, &target),
-            Staged::Device => fs::write(&path, bytes),
+            StagedFile::Temporary(file, target) => signals::persist(file, &target),
+            StagedFile::Device => fs::write(&path, bytes),
         };
         done.map_err(|error| unwritable(&path, &error))?;
     }
     Ok(())
 }
 
-/// Complete file that is not yet visible under its name.
-enum Staged {
-    /// Temporary file and its final path.
+/// Output that is ready to become visible under its name.
+enum StagedFile {
+    /// Complete temporary file, and its final path.
     Temporary(NamedTempFile, PathBuf),
-    /// Devices and pipes, such as `/dev/stdout`, are written to and never replaced.
+    /// Device or pipe, such as `/dev/stdout`, which is written to and never replaced.
     Device,
 }
 
-fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
+/// Writes the temporary file of an output.
+fn stage(path: &Path, bytes: &[u8]) -> io::Result<StagedFile> {
     let existing = fs::metadata(path).ok();
     if let Some(existing) = &existing {
         if existing.is_dir() {
             return Err(io::Error::from(io::ErrorKind::IsADirectory));
         }
         if !existing.is_file() {
-            return Ok(Staged::Device);
+            return Ok(StagedFile::Device);
         }
     }
-    may_be_replaced(path)?;
+    check_writable(path)?;
     // Replace the target of a link, not the link.
     let target = resolved(path);
     let mut builder = tempfile::Builder::new();
@@ -210,10 +211,10 @@ fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
     let mut file = signals::guarded(|| builder.tempfile_in(folder))?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
-    Ok(Staged::Temporary(file, target))
+    Ok(StagedFile::Temporary(file, target))
 }
 
-/// Default permissions of new files; those of temporary files are private.
+/// Permissions of new files before the umask; temporary files are private by default.
 #[cfg(unix)]
 fn usual_permissions() -> Option<fs::Permissions> {
     use std::os::unix::fs::PermissionsExt;
@@ -225,11 +226,14 @@ fn usual_permissions() -> Option<fs::Permissions> {
     None
 }
 
+/// Failure with the reason why a file cannot be written.
 fn unwritable(path: &Path, error: &io::Error) -> Failure {
     unwritable_problem(path, error).into()
 }
 
-/// Problem with a generic reason, because the error's text may name the temporary file.
+/// Reason why a file cannot be written.
+///
+/// The text is that of the error's kind, since the error itself may name the temporary file.
 fn unwritable_problem(path: &Path, error: &io::Error) -> Problem {
     let reason = match error.kind() {
         io::ErrorKind::NotFound if folder(path).is_dir() => {
@@ -270,7 +274,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn one_file_by_whatever_path_is_one_file() -> std::io::Result<()> {
+    fn all_paths_to_one_file_are_recognised() -> std::io::Result<()> {
         use std::os::unix::fs::symlink;
         let folder = tempfile::tempdir()?;
         let at = |name: &str| folder.path().join(name);

@@ -82,17 +82,17 @@ impl<'a> Matrix3<'a> {
         Self(std::array::from_fn(|i| Vector3::unit(arena, i).0))
     }
 
-    /// Whether the matrix maps these components among themselves, and the others among themselves.
+    /// Whether the matrix is block diagonal: the components `own`, and the others.
     #[must_use]
-    pub(crate) fn keeps(&self, own: &[usize]) -> bool {
+    pub(crate) fn is_block_diagonal(&self, own: &[usize]) -> bool {
         let pairs = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
         let mut across = pairs.filter(|(i, j)| own.contains(i) != own.contains(j));
         across.all(|(i, j)| self.0[i][j].is_zero())
     }
 
-    /// Whether the matrix is a signed permutation.
+    /// Whether a rotation matrix is a signed permutation, that is, has three nonzero entries.
     #[must_use]
-    pub(crate) fn exchanges(&self) -> bool {
+    pub(crate) fn is_signed_permutation(&self) -> bool {
         let entries = || self.0.iter().flatten().filter(|entry| !entry.is_zero());
         entries().count() == 3
     }

@@ -1,4 +1,4 @@
-//! Why a function of a robot cannot be derived.
+//! Error type of the derivation, with its message in the description.
 
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, InternalError};
@@ -26,8 +26,9 @@ pub enum Underivable {
     },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
-    /// Requested functions that the robot does not have: for each a sentence, `has no function
-    /// ...`, and a remedy.
+    /// Requested functions that the robot does not have.
+    ///
+    /// Each has the end of a sentence, such as `has no function …`, and a remedy.
     NotOffered(Vec<(String, String)>),
     /// A function contains a number that its floating-point type cannot represent.
     Unrepresentable {
@@ -35,7 +36,7 @@ pub enum Underivable {
         function: String,
         /// The number.
         value: String,
-        /// The type of numbers.
+        /// Name of the floating-point type.
         float: &'static str,
     },
     /// A bug of the generator.
@@ -49,7 +50,7 @@ impl From<InternalError> for Underivable {
 }
 
 impl Underivable {
-    /// The error at its place in the description.
+    /// Diagnostics of the error, with the lines of the description that cause it.
     #[must_use]
     pub(crate) fn locate(&self, description: &Description) -> Diagnostics {
         let place = |leg: &str| description.legs.iter().find(|l| l.name.value == leg);
@@ -137,13 +138,13 @@ mod tests {
 
     #[test]
     fn an_internal_error_names_robot_version_and_pass_and_asks_for_a_report() {
-        let text = include_str!("../../../robots/emps.toml");
-        let source = Source::new("emps.toml", text);
+        let toml = include_str!("../../../robots/emps.toml");
+        let source = Source::new("emps.toml", toml);
         let description = overact_description::parse(&source).expect("a robot");
         let broken = "node 3 has lost its value".to_owned();
         let errors = Underivable::from(InternalError::new("walk", broken)).locate(&description);
         assert!(errors.internal().is_some());
-        let said = errors.render_plain(&source);
+        let text = errors.render_plain(&source);
         for part in [
             &format!("internal error of overact {}", env!("CARGO_PKG_VERSION")),
             &description.name.value,
@@ -151,7 +152,7 @@ mod tests {
             "node 3 has lost its value",
             "please report it",
         ] {
-            assert!(said.contains(part), "no {part} in\n{said}");
+            assert!(text.contains(part), "no {part} in\n{text}");
         }
         let other = Underivable::ForwardKinematics.locate(&description);
         assert!(other.internal().is_none());

@@ -1,9 +1,9 @@
 //! Dependent columns that are cheaper as combinations of others.
 //!
-//! A regrouping shows which parameters are indistinguishable, and that a column is a constant
-//! combination of others. For a planar leg, the first moment of the distal link is a point mass on
-//! the platform minus two moments of inertia, whose columns exist already. Columns that differ by
-//! the leg only are tried together, and those that lower the operation count are kept.
+//! Regrouping finds columns that are constant combinations of others. Such a column can be computed
+//! as this combination if that takes fewer operations. An example is the first moment of the distal
+//! link of a planar leg. Its column equals that of a point mass on the platform minus those of two
+//! moments of inertia. The same parameter of equal legs is tried for all legs together.
 
 use super::assemble::Assembler;
 use super::base::{BaseParameter, nearby_ratio};
@@ -13,7 +13,7 @@ use crate::cas::Number;
 use crate::derivation::{BodyParameter, Combination, MotionInput, Selection, Underivable};
 use crate::mechanism::Mechanism;
 
-/// The combinations that make the standard regressor from joint angles cheaper than without them.
+/// Chooses combinations that save operations in the standard regressor from joint angles.
 ///
 /// # Errors
 /// See [`Underivable`].
@@ -37,7 +37,7 @@ pub(super) fn cheaper_columns(
     };
     let mut chosen: Vec<Combination> = Vec::new();
     let mut best = regressor.operations();
-    // Multiples of a single column are shared anyway.
+    // The lowering already shares a column that is a multiple of another one.
     let candidates: Vec<Combination> = exact.iter().filter(|c| c.of.len() > 1).cloned().collect();
     for group in groups(mechanism, &candidates) {
         let trial: Vec<Combination> = chosen.iter().chain(&group).cloned().collect();
@@ -49,10 +49,10 @@ pub(super) fn cheaper_columns(
     Ok(chosen)
 }
 
-/// Guesses the fractions of the regroupings' coefficients and proves them.
+/// Finds exact fractions for the coefficients of regroupings.
 ///
-/// The combination has to equal the dependent column as an expression. Proved coefficients become
-/// exact in `base`; the others keep their computed values.
+/// A combination is returned if it equals the dependent column as an expression. Its coefficients in
+/// `base` become exact; all others keep their computed values.
 pub(super) fn exact_combinations(
     regressor: &Regressor,
     base: &mut [BaseParameter],
@@ -75,7 +75,7 @@ pub(super) fn exact_combinations(
     guesses
 }
 
-/// Dependent columns all of whose coefficients are close to fractions.
+/// Combinations whose coefficients are all close to simple fractions.
 fn guesses(base: &[BaseParameter]) -> Vec<Combination> {
     let mut all: Vec<Combination> = Vec::new();
     let mut inexact: Vec<BodyParameter> = Vec::new();
@@ -99,7 +99,7 @@ fn guesses(base: &[BaseParameter]) -> Vec<Combination> {
     all
 }
 
-/// Combinations of the same parameter of legs of one shape.
+/// Groups combinations by parameter and leg shape, and merges groups of equal combinations.
 fn groups(mechanism: &Mechanism, candidates: &[Combination]) -> Vec<Vec<Combination>> {
     let key = |c: &Combination| match c.parameter {
         BodyParameter::Leg { leg, joint, symbol } => (0, mechanism.legs[leg].shape, joint, symbol),
@@ -112,8 +112,8 @@ fn groups(mechanism: &Mechanism, candidates: &[Combination]) -> Vec<Vec<Combinat
     let mut merged: Vec<Vec<Combination>> = Vec::new();
     for group in groups {
         let group = group.iter().map(|c| (*c).clone());
-        // Columns that are the same combination are kept or left out together: the expression of
-        // one of them would serve for all.
+        // If one of several proportional columns had no combination, the others would share its
+        // expression and save nothing. They are therefore tried together.
         let first = group.clone().next();
         let same = |other: &Vec<Combination>| {
             let pair = first.as_ref().zip(other.first());

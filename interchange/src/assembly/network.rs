@@ -278,7 +278,9 @@ fn groups(model: &Model, of_body: &[usize], home: &State) -> Vec<Group> {
         let group = &mut groups[of_body[at]];
         group.bodies.push(at);
         group.has_unknown_inertia |= body.has_unknown_inertia;
-        let own = body.inertia.map(|inertia| inertia.seen(&home.poses[at]));
+        let own = body
+            .inertia
+            .map(|inertia| inertia.transformed(&home.poses[at]));
         group.inertia = match (group.inertia, own) {
             (Some(all), Some(own)) => Some(all.with(&own)),
             (all, own) => all.or(own),

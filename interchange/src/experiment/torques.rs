@@ -8,9 +8,10 @@ use crate::model::{Inertia, Model};
 use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 use std::collections::BTreeMap;
 
-/// Root mean square torque of each actuated joint for a fundamental frequency in Hz.
+/// Typical torque of each actuated joint (N m, N) for a fundamental frequency in Hz.
 ///
-/// `None` if the masses and inertias leave an acceleration undetermined.
+/// This is the root mean square of inertia and gravity along the run, plus the Coulomb friction.
+/// Centrifugal and Coriolis forces are neglected. `None` if the mass matrix is singular somewhere.
 pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) -> Option<Vec<f64>> {
     let model = guide.network.model;
     if guide.actuators.is_empty() {
@@ -19,13 +20,13 @@ pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) ->
     let mut sums = vec![0.0; guide.actuators.len()];
     for stop in &course.stops {
         let (mass, weight) = reduced(guide, stop);
-        if !is_positive(&mass) {
+        if !is_positive_definite(&mass) {
             return None;
         }
         let forces = mass * &stop.accelerations * fundamental.powi(2) - weight;
-        // Least-norm torques, as of a controller without internal torques.
-        let shared = stop.actuators.transpose().pseudo_inverse(1e-12).ok()? * forces;
-        for (sum, torque) in sums.iter_mut().zip(shared.iter()) {
+        // Distribute the forces over redundant actuators by least-norm torques.
+        let torques = stop.actuators.transpose().pseudo_inverse(1e-12).ok()? * forces;
+        for (sum, torque) in sums.iter_mut().zip(torques.iter()) {
             *sum += torque * torque;
         }
     }
@@ -36,15 +37,16 @@ pub(super) fn sizes(guide: &Guide<'_, '_>, course: &Course, fundamental: f64) ->
         .map(|(&joint, sum)| (sum / count).sqrt() + model.joints[joint].friction)
         .collect();
     let largest = sizes.iter().copied().fold(0.0, f64::max);
-    // A motor without torque still has sensor noise.
+    // A lower bound, since noise is proportional to the result.
     let noisy = sizes.iter().map(|size| size.max(1e-3 * largest).max(1e-6));
     Some(noisy.collect())
 }
 
-/// Largest growth of the reduced mass matrix along a run (generalised eigenvalue).
+/// Largest ratio by which the reduced mass matrix grows along a run.
 ///
-/// Controllers are designed for a robot of nearly constant inertia. The result is 1 if the mass
-/// matrix is singular.
+/// Each configuration has a largest generalised eigenvalue of M relative to M of the first one. The
+/// result is the largest of these values divided by the smallest, or 1 if M is singular. Large
+/// ratios are avoided, because the controller is designed for a nearly constant inertia.
 pub(super) fn growth(guide: &Guide<'_, '_>, course: &Course) -> f64 {
     let masses = course.stops.iter().map(|stop| reduced(guide, stop).0);
     let masses: Vec<DMatrix<f64>> = masses.collect();
@@ -55,8 +57,8 @@ pub(super) fn growth(guide: &Guide<'_, '_>, course: &Course) -> f64 {
         return 1.0;
     };
     let sizes = masses.iter().map(|mass| {
-        let beside = &inverse * mass * inverse.transpose();
-        beside.symmetric_eigenvalues().amax()
+        let relative = &inverse * mass * inverse.transpose();
+        relative.symmetric_eigenvalues().amax()
     });
     let (smallest, largest) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
         (low.min(size), high.max(size))
@@ -64,14 +66,14 @@ pub(super) fn growth(guide: &Guide<'_, '_>, course: &Course) -> f64 {
     largest / smallest.max(f64::MIN_POSITIVE)
 }
 
-/// Reduced mass matrix and gravity forces of the coordinates.
+/// Reduced mass matrix and gravity forces of the independent coordinates.
 fn reduced(guide: &Guide<'_, '_>, stop: &Stop) -> (DMatrix<f64>, DVector<f64>) {
     let model = guide.network.model;
     let gravity = Vector3::from(model.gravity);
     let twists = guide.motion.twists(&stop.state);
     let count = guide.motion.coordinates.len();
     let (mut mass, mut weight) = (DMatrix::zeros(count, count), DVector::zeros(count));
-    for (at, (inertia, wrench)) in moved_together(model, stop, &gravity) {
+    for (at, (inertia, wrench)) in rigid_groups(model, stop, &gravity) {
         mass += twists[at].transpose() * inertia * &*twists[at];
         weight += twists[at].transpose() * wrench;
     }
@@ -82,10 +84,10 @@ fn reduced(guide: &Guide<'_, '_>, stop: &Stop) -> (DMatrix<f64>, DVector<f64>) {
     (tree.transpose() * mass * tree, tree.transpose() * weight)
 }
 
-/// Spatial inertia and weight about the world origin of bodies that are fixed together.
+/// Spatial inertia and weight, about the world origin, of bodies that are fixed together.
 ///
-/// The key is the body of each group that a joint carries, or the ground.
-fn moved_together(
+/// The key is the first body of each group, which a joint moves, or the ground.
+fn rigid_groups(
     model: &Model,
     stop: &Stop,
     gravity: &Vector3<f64>,
@@ -96,7 +98,10 @@ fn moved_together(
         let is_fixed = at > 0 && body.joint.is_none();
         let carrier = if is_fixed { carriers[body.parent] } else { at };
         carriers.push(carrier);
-        let Some(inertia) = body.inertia.map(|own| own.seen(&stop.state.poses[at])) else {
+        let Some(inertia) = body
+            .inertia
+            .map(|own| own.transformed(&stop.state.poses[at]))
+        else {
             continue;
         };
         let force = gravity * inertia.mass;
@@ -110,8 +115,8 @@ fn moved_together(
     sums
 }
 
-/// Whether a mass matrix is positive definite.
-fn is_positive(mass: &DMatrix<f64>) -> bool {
+/// Whether a mass matrix, scaled to a unit diagonal, is positive definite.
+fn is_positive_definite(mass: &DMatrix<f64>) -> bool {
     let scale: Vec<f64> = mass.diagonal().iter().map(|v| v.sqrt()).collect();
     let scaled = DMatrix::from_fn(mass.nrows(), mass.ncols(), |i, j| {
         mass[(i, j)] / (scale[i] * scale[j])
@@ -119,7 +124,7 @@ fn is_positive(mass: &DMatrix<f64>) -> bool {
     scaled.iter().all(|v| v.is_finite()) && scaled.symmetric_eigenvalues().min() > 1e-9
 }
 
-/// Spatial inertia about the world origin, for (velocity, angular velocity).
+/// Spatial inertia (6 × 6) about the world origin, for twists (velocity, angular velocity).
 fn spatial(inertia: &Inertia) -> Matrix6<f64> {
     let mut all = Matrix6::zeros();
     let cross = inertia.centre.coords.cross_matrix() * inertia.mass;

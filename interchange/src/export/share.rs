@@ -23,7 +23,7 @@ pub(super) fn inertia(parameters: [f64; 10], frame: &Pose) -> Option<Inertia> {
             centre: Point3::origin(),
             tensor: about,
         };
-        return (first == Vector3::zeros()).then(|| own.seen(frame));
+        return (first == Vector3::zeros()).then(|| own.transformed(frame));
     }
     let centre = Point3::from(first / mass);
     let tensor = about - point(mass, &centre.coords);
@@ -33,7 +33,7 @@ pub(super) fn inertia(parameters: [f64; 10], frame: &Pose) -> Option<Inertia> {
             centre,
             tensor,
         }
-        .seen(frame),
+        .transformed(frame),
     )
 }
 
@@ -70,10 +70,10 @@ pub(super) fn among(network: &Network<'_>, group: usize, whole: &Inertia) -> (Ve
         let others = own.iter().filter(|(body, _)| *body != main);
         let others: Vec<(usize, Inertia)> = others.map(|(body, i)| (*body, scaled(i))).collect();
         let rest = others.iter().fold(*whole, |rest, (body, inertia)| {
-            rest.without(&inertia.seen(&pose(*body)))
+            rest.without(&inertia.transformed(&pose(*body)))
         });
         if factor == 0.0 || is_body(&rest) {
-            let heaviest = (main, rest.seen(&pose(main).inverse()));
+            let heaviest = (main, rest.transformed(&pose(main).inverse()));
             let all = std::iter::once(heaviest).chain(others.into_iter().filter(|_| factor != 1.0));
             let shares = all.map(|(body, inertia)| Share { body, inertia }).collect();
             return (shares, factor == 0.0 && own.len() > 1);

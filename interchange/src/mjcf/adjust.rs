@@ -182,7 +182,7 @@ fn inverse_masses(model: &Model) -> Option<BTreeMap<usize, f64>> {
         let Some(inertia) = body.inertia else {
             continue;
         };
-        let placed = inertia.seen(&state.poses[at]);
+        let placed = inertia.transformed(&state.poses[at]);
         let angular = twists[at].rows(3, 3);
         // Velocity of the centre of mass c: v + ω × c.
         let centre = placed.centre.coords.cross_matrix();

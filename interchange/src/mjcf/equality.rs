@@ -14,8 +14,9 @@ use crate::{
 };
 use nalgebra::{Point3, Vector3};
 
+/// Reads `<equality>`: closures into the model, couplings into its joints.
 pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &mut Model) {
-    // If one frame is given, the other follows from the file's own configuration.
+    // A constraint gives the frame on one body. The other follows from the poses of the file.
     let poses = Motion::new(model).start().poses;
     let mut couplings = Couplings::default();
     for section in root.all("equality") {
@@ -33,12 +34,12 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
             }
             match whole.name.as_str() {
                 "connect" | "weld" => {
-                    if let Some(kind) = frames(reader, &whole, sites, model, &poses) {
-                        let (name, place) = (named(&whole), whole.place.clone());
+                    if let Some(kind) = closure_kind(reader, &whole, sites, model, &poses) {
+                        let (name, place) = (name_of(&whole), whole.place.clone());
                         model.closures.push(Closure { name, kind, place });
                     }
                 }
-                "joint" => follow(reader, &whole, model, &mut couplings),
+                "joint" => read_coupling(reader, &whole, model, &mut couplings),
                 other => {
                     let message = format!("the equality <{other}> is not supported");
                     reader.files.report(
@@ -53,8 +54,8 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
     couplings.resolve(reader.files, model);
 }
 
-/// Name of a constraint, or the names of the elements that it connects.
-fn named(element: &Element) -> String {
+/// Name of a constraint, or of the elements that it connects.
+fn name_of(element: &Element) -> String {
     let ends = [["site1", "site2"], ["body1", "body2"], ["joint1", "joint2"]];
     let joined = ends.iter().find_map(|[a, b]| {
         let a = element.get(a)?;
@@ -67,7 +68,8 @@ fn named(element: &Element) -> String {
     own.or(joined).unwrap_or_else(|| element.name.clone())
 }
 
-fn frames(
+/// Closure of a `<connect>` or `<weld>`; `None` after an error.
+fn closure_kind(
     reader: &Reader<'_>,
     element: &Element,
     sites: &Sites,
@@ -144,8 +146,8 @@ fn frames(
     })
 }
 
-/// Linear coupling of a joint to another.
-fn follow(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut Couplings) {
+/// Reads `<joint>`: a linear coupling of one joint to another.
+fn read_coupling(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut Couplings) {
     let files = reader.files;
     let joint = |key: &str| {
         let name = element.get(key)?;
@@ -179,10 +181,10 @@ fn follow(reader: &Reader<'_>, element: &Element, model: &Model, couplings: &mut
         );
         return;
     }
-    // MuJoCo's default coefficients 0 1 0 0 0 complete a short list.
+    // Missing coefficients have MuJoCo's defaults 0 1 0 0 0.
     let coefficient = |at: usize, default| coefficients.get(at).copied().unwrap_or(default);
     let (c0, factor) = (coefficient(0, 0.0), coefficient(1, 1.0));
-    // Both positions count from their references.
+    // MuJoCo couples displacements from the reference positions (`ref`) of both joints.
     let offset = c0 + model.joints[own].reference - factor * model.joints[leader].reference;
     couplings.add(Coupling {
         follower: own,

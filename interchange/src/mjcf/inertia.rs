@@ -35,7 +35,7 @@ fn inertial(reader: &Reader<'_>, element: &Element, offset: &Pose) -> Option<Ine
             .report(&second.place, message, "keep one of them");
     }
     let (own, offset) = all.first()?;
-    Some(of_inertial(reader, own).seen(offset))
+    Some(of_inertial(reader, own).transformed(offset))
 }
 
 /// `<inertial>` elements of a body and of frames in it, with the poses of these frames.
@@ -67,14 +67,14 @@ fn of_inertial(reader: &Reader<'_>, inertial: &Element) -> Inertia {
         // MuJoCo rotates the inertial frame to the principal axes; `fullinertia` is in the body's
         // axes.
         let frame = Pose::from_parts(frame.translation, Rotation3::identity());
-        return about_centre(mass, tensor).seen(&frame);
+        return about_centre(mass, tensor).transformed(&frame);
     }
     let diagonal = inertial
         .numbers::<3>(files, "diaginertia")
         .unwrap_or_default();
     let rotation = exact::cleaned(&frame.rotation);
     let frame = Pose::from_parts(frame.translation, rotation);
-    about_centre(mass, Matrix3::from_diagonal(&Vector3::from(diagonal))).seen(&frame)
+    about_centre(mass, Matrix3::from_diagonal(&Vector3::from(diagonal))).transformed(&frame)
 }
 
 fn about_centre(mass: f64, tensor: Matrix3<f64>) -> Inertia {
@@ -98,7 +98,7 @@ fn of_geoms(
             "geom" => {
                 let whole = reader.defaults.apply(reader.files, child, class);
                 match geom(reader, &whole) {
-                    Shape::Body(own) => (Some(own.seen(offset)), false),
+                    Shape::Body(own) => (Some(own.transformed(offset)), false),
                     Shape::Empty => (None, false),
                     Shape::Unknown => {
                         let reason =
@@ -168,7 +168,7 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
             Pose::from_parts(frame.translation, exact::cleaned(&frame.rotation))
         }
     };
-    Shape::Body(about_centre(mass, Matrix3::from_diagonal(&(unit * mass))).seen(&frame))
+    Shape::Body(about_centre(mass, Matrix3::from_diagonal(&(unit * mass))).transformed(&frame))
 }
 
 /// Volume and principal moments for unit mass of a primitive; `None` for other shapes.

@@ -307,7 +307,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             }
             let Some(inertia) = inertia else { continue };
             joint.carries = Some((group, framed[at].frame));
-            let own = inertia.seen(&framed[at].frame.inverse());
+            let own = inertia.transformed(&framed[at].frame.inverse());
             let about = own.about_origin();
             let first = own.centre.coords * own.mass;
             let values = [

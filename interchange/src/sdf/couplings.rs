@@ -2,7 +2,7 @@
 //! angles.
 
 use super::{
-    frames::Name,
+    frames::FrameName,
     gather::{Gathered, JointItem},
     joints,
     tree::{self, Axes, Edge},
@@ -89,7 +89,7 @@ fn gearbox(
     let files = gathered.files;
     let reference = joints::reference_body(gathered, item)?;
     let base = tree::end(gathered, &reference)?;
-    let angle = |name: &Name, tag: &str| {
+    let angle = |name: &FrameName, tag: &str| {
         let link = tree::end(gathered, name)?;
         let found = turn(gathered, item, edges, [base, link], tag);
         if found.is_none() {
@@ -134,7 +134,7 @@ fn turn(
     })?;
     let edge = &edges[found];
     let frame = gathered.joints[edge.item].frame;
-    let own = gathered.frames.seen(frame, item.frame).rotation * edge.axes[0].joint.axis;
+    let own = gathered.frames.relative_pose(frame, item.frame).rotation * edge.axes[0].joint.axis;
     let along = own.dot(&wanted);
     let from = if edge.ends == links { 1.0 } else { -1.0 };
     (along.abs() > 1.0 - 1e-6).then_some((found, from * along.signum()))

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 /// Reference to a frame by name, with the scope in which the name is looked up.
 #[derive(Debug, Clone)]
-pub(super) struct Name {
+pub(super) struct FrameName {
     pub(super) scope: usize,
     pub(super) text: String,
     pub(super) place: Place,
@@ -21,17 +21,17 @@ pub(super) struct Name {
 
 /// Reference to a frame, by index or by name.
 #[derive(Debug, Clone)]
-pub(super) enum To {
+pub(super) enum FrameReference {
     Frame(usize),
-    Named(Name),
+    Named(FrameName),
 }
 
-/// Body that a frame is attached to.
+/// What a frame is attached to and moves with.
 #[derive(Debug, Clone)]
-pub(super) enum Holder {
+pub(super) enum Attachment {
     World,
     Link(usize),
-    Other(To),
+    Other(FrameReference),
     /// A model without links.
     Nothing,
 }
@@ -44,16 +44,16 @@ pub(super) struct Frame {
     pub(super) place: Place,
     /// Pose in the frame `to`, as written in the file.
     pub(super) pose: Pose,
-    pub(super) to: To,
-    pub(super) holder: Holder,
-    /// For a model with `placement_frame`: the inner frame that the pose applies to.
-    pub(super) placed_by: Option<Name>,
+    pub(super) to: FrameReference,
+    pub(super) attachment: Attachment,
+    /// Inner frame that the model's pose applies to (`placement_frame`).
+    pub(super) placed_by: Option<FrameName>,
 }
 
 /// Name scope: one model, or the world.
 #[derive(Debug, Clone)]
 pub(super) struct Scope {
-    /// Prefix of the scope's names in the whole file, as `outer::inner::`.
+    /// Prefix of the scope's names in the file, such as `outer::inner::`.
     pub(super) prefix: String,
     /// Frame of the model.
     pub(super) model: usize,
@@ -78,8 +78,8 @@ impl Frames {
             name: "world".to_owned(),
             place,
             pose: Pose::identity(),
-            to: To::Frame(0),
-            holder: Holder::World,
+            to: FrameReference::Frame(0),
+            attachment: Attachment::World,
             placed_by: None,
         };
         let scope = Scope {
@@ -131,7 +131,7 @@ impl Frames {
     }
 
     /// Finds a frame by its name; reports an error if it does not exist.
-    pub(super) fn named(&self, files: &Files, name: &Name) -> Option<usize> {
+    pub(super) fn find_or_report(&self, files: &Files, name: &FrameName) -> Option<usize> {
         let found = self.find(name.scope, &name.text);
         if found.is_none() {
             let scope = &self.scopes[name.scope];
@@ -150,10 +150,11 @@ impl Frames {
         found
     }
 
-    fn resolved(&self, files: &Files, to: &To) -> Option<usize> {
+    /// Finds the frame of a reference; `None` after an error.
+    fn resolve_one(&self, files: &Files, to: &FrameReference) -> Option<usize> {
         match to {
-            To::Frame(frame) => Some(*frame),
-            To::Named(name) => self.named(files, name),
+            FrameReference::Frame(frame) => Some(*frame),
+            FrameReference::Named(name) => self.find_or_report(files, name),
         }
     }
 
@@ -162,24 +163,24 @@ impl Frames {
         let to: Vec<Option<usize>> = self
             .all
             .iter()
-            .map(|frame| self.resolved(files, &frame.to))
+            .map(|frame| self.resolve_one(files, &frame.to))
             .collect();
         self.to = to.into_iter().collect::<Option<_>>()?;
-        self.check_circles(files)?;
+        self.check_cycles(files)?;
         self.place_models(files)
     }
 
     /// Checks that every chain of reference frames ends at the world.
-    fn check_circles(&self, files: &Files) -> Option<()> {
-        let mut leads = vec![false; self.all.len()];
-        leads[0] = true;
+    fn check_cycles(&self, files: &Files) -> Option<()> {
+        let mut ends_at_world = vec![false; self.all.len()];
+        ends_at_world[0] = true;
         for start in 1..self.all.len() {
-            let (mut way, mut at) = (Vec::new(), start);
-            while !leads[at] && way.len() <= self.all.len() {
-                way.push(at);
+            let (mut path, mut at) = (Vec::new(), start);
+            while !ends_at_world[at] && path.len() <= self.all.len() {
+                path.push(at);
                 at = self.to[at];
             }
-            if way.len() > self.all.len() {
+            if path.len() > self.all.len() {
                 // The walk took as many steps as there are frames, so `at` lies on the cycle. The
                 // message names the cycle's first frame in the file.
                 let mut first = at;
@@ -194,12 +195,12 @@ impl Frames {
                 files.report(&frame.place, message, help);
                 return None;
             }
-            way.into_iter().for_each(|at| leads[at] = true);
+            path.into_iter().for_each(|at| ends_at_world[at] = true);
         }
         Some(())
     }
 
-    /// Computes the model pose of models that are placed by an inner frame (`placement_frame`).
+    /// Computes the poses of models that are placed by an inner frame (`placement_frame`).
     ///
     /// Inner models follow their outer models in the list, so the reverse order places inner models
     /// first.
@@ -208,7 +209,7 @@ impl Frames {
             let Some(name) = self.all[model].placed_by.clone() else {
                 continue;
             };
-            let frame = self.named(files, &name)?;
+            let frame = self.find_or_report(files, &name)?;
             let mut inside = Pose::identity();
             let mut at = frame;
             while at != model {
@@ -228,38 +229,44 @@ impl Frames {
     }
 
     /// Pose of `frame` relative to the frame `from`.
-    pub(super) fn seen(&self, frame: usize, from: usize) -> Pose {
-        let way = |start: usize| {
-            let (mut way, mut at) = (vec![start], start);
+    pub(super) fn relative_pose(&self, frame: usize, from: usize) -> Pose {
+        let path_to_world = |start: usize| {
+            let (mut path, mut at) = (vec![start], start);
             while at != 0 {
                 at = self.to[at];
-                way.push(at);
+                path.push(at);
             }
-            way
+            path
         };
-        let (mut of, mut to) = (way(frame), way(from));
+        let (mut of, mut to) = (path_to_world(frame), path_to_world(from));
+        // Remove the common end of both paths.
         while of.len() > 1 && to.len() > 1 && of[of.len() - 2] == to[to.len() - 2] {
             of.pop();
             to.pop();
         }
-        let along = |way: &[usize]| {
-            way.iter()
+        let pose_along = |path: &[usize]| {
+            path.iter()
                 .rev()
                 .skip(1)
                 .fold(Pose::identity(), |pose, &at| pose * self.all[at].pose)
         };
-        along(&to).inv_mul(&along(&of))
+        pose_along(&to).inv_mul(&pose_along(&of))
     }
 
     /// Link that a frame moves with; `Some(None)` for the world, `None` after an error.
-    pub(super) fn link(&self, files: &Files, frame: usize, asked: &Name) -> Option<Option<usize>> {
+    pub(super) fn link(
+        &self,
+        files: &Files,
+        frame: usize,
+        asked: &FrameName,
+    ) -> Option<Option<usize>> {
         let mut at = frame;
         for _ in 0..=self.all.len() {
-            match &self.all[at].holder {
-                Holder::World => return Some(None),
-                Holder::Link(link) => return Some(Some(*link)),
-                Holder::Other(to) => at = self.resolved(files, to)?,
-                Holder::Nothing => {
+            match &self.all[at].attachment {
+                Attachment::World => return Some(None),
+                Attachment::Link(link) => return Some(Some(*link)),
+                Attachment::Other(to) => at = self.resolve_one(files, to)?,
+                Attachment::Nothing => {
                     let message = format!("the model `{}` has no link", self.all[at].name);
                     files.report(&asked.place, message, "name a link");
                     return None;

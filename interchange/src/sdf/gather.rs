@@ -1,9 +1,9 @@
 //! Collects links, joints and frames from nested models and included files.
 
 use super::{
-    frames::{Frame, Frames, Holder, Name, Scope, To},
+    frames::{Attachment, Frame, FrameName, FrameReference, Frames, Scope},
     include::{self, Included, Source},
-    value::{flag, pose, text, told_in},
+    value::{flag, pose, reference_frame, text},
 };
 use crate::{
     account::Use,
@@ -44,8 +44,8 @@ pub(super) struct JointItem {
     pub(super) frame: usize,
     pub(super) scope: usize,
     pub(super) owner: Owner,
-    pub(super) parent: Name,
-    pub(super) child: Name,
+    pub(super) parent: FrameName,
+    pub(super) child: FrameName,
     pub(super) element: Element,
 }
 
@@ -123,7 +123,7 @@ impl<'f> Gathered<'f> {
         } else {
             format!("{}{name}", outer.prefix)
         };
-        self.frame(element, &name, &whole, scope, Holder::Nothing);
+        self.frame(element, &name, &whole, scope, Attachment::Nothing);
         let prefix = if source.is_merged {
             outer.prefix
         } else {
@@ -139,7 +139,7 @@ impl<'f> Gathered<'f> {
         self.frames.all[frame].placed_by =
             placed_by
                 .filter(|(name, _)| !name.is_empty())
-                .map(|(name, place)| Name {
+                .map(|(name, place)| FrameName {
                     scope: own,
                     text: name.to_owned(),
                     place: place.clone(),
@@ -168,15 +168,15 @@ impl<'f> Gathered<'f> {
         let first_link = self.links.len();
         self.parts(element, scope, owner)?;
         let canonical = element.attribute("canonical_link");
-        self.frames.all[frame].holder = match canonical.filter(|(name, _)| !name.is_empty()) {
-            Some((name, place)) => Holder::Other(To::Named(Name {
+        self.frames.all[frame].attachment = match canonical.filter(|(name, _)| !name.is_empty()) {
+            Some((name, place)) => Attachment::Other(FrameReference::Named(FrameName {
                 scope,
                 text: name.to_owned(),
                 place: place.clone(),
             })),
-            None if owner == Owner::Ground => Holder::World,
-            None if self.links.len() > first_link => Holder::Link(first_link),
-            None => Holder::Nothing,
+            None if owner == Owner::Ground => Attachment::World,
+            None if self.links.len() > first_link => Attachment::Link(first_link),
+            None => Attachment::Nothing,
         };
         Some(())
     }
@@ -227,11 +227,11 @@ impl<'f> Gathered<'f> {
         name: &str,
         whole: &str,
         scope: usize,
-        holder: Holder,
+        attachment: Attachment,
     ) -> usize {
         let own = element.child("pose");
-        let to = told_in(own).map_or(
-            To::Frame(self.frames.scopes[scope].model),
+        let to = reference_frame(own).map_or(
+            FrameReference::Frame(self.frames.scopes[scope].model),
             |(text, place)| named(scope, text, place),
         );
         let frame = Frame {
@@ -239,7 +239,7 @@ impl<'f> Gathered<'f> {
             place: element.place.clone(),
             pose: pose(self.files, own),
             to,
-            holder,
+            attachment,
             placed_by: None,
         };
         let version = self.frames.scopes[scope].version;
@@ -263,11 +263,11 @@ impl<'f> Gathered<'f> {
 
     fn link(&mut self, element: &Element, scope: usize, owner: Owner) -> Option<()> {
         let (name, whole) = self.names(element, scope)?;
-        let holder = match owner {
-            Owner::Ground => Holder::World,
-            _ => Holder::Link(self.links.len()),
+        let attachment = match owner {
+            Owner::Ground => Attachment::World,
+            _ => Attachment::Link(self.links.len()),
         };
-        let frame = self.frame(element, &name, &whole, scope, holder);
+        let frame = self.frame(element, &name, &whole, scope, attachment);
         if owner == Owner::Ground {
             return Some(());
         }
@@ -296,17 +296,17 @@ impl<'f> Gathered<'f> {
                 self.files.report(&element.place, message, help);
             }
             let (text, place) = found?;
-            Some(Name {
+            Some(FrameName {
                 scope,
                 text: text.to_owned(),
                 place: place.clone(),
             })
         };
         let (parent, child) = (end("parent")?, end("child")?);
-        let holder = Holder::Other(To::Named(child.clone()));
-        let frame = self.frame(element, &name, &whole, scope, holder);
-        if told_in(element.child("pose")).is_none() {
-            self.frames.all[frame].to = To::Named(child.clone());
+        let attachment = Attachment::Other(FrameReference::Named(child.clone()));
+        let frame = self.frame(element, &name, &whole, scope, attachment);
+        if reference_frame(element.child("pose")).is_none() {
+            self.frames.all[frame].to = FrameReference::Named(child.clone());
         }
         if owner == Owner::Ground {
             return Some(());
@@ -338,19 +338,19 @@ impl<'f> Gathered<'f> {
         let attached = element.attribute("attached_to");
         let attached = attached.filter(|(name, _)| !name.is_empty());
         let to = attached.map_or(
-            To::Frame(self.frames.scopes[scope].model),
+            FrameReference::Frame(self.frames.scopes[scope].model),
             |(text, place)| named(scope, text, place),
         );
-        let frame = self.frame(element, &name, &whole, scope, Holder::Other(to.clone()));
-        if told_in(element.child("pose")).is_none() {
+        let frame = self.frame(element, &name, &whole, scope, Attachment::Other(to.clone()));
+        if reference_frame(element.child("pose")).is_none() {
             self.frames.all[frame].to = to;
         }
         Some(())
     }
 }
 
-fn named(scope: usize, text: &str, place: &Place) -> To {
-    To::Named(Name {
+fn named(scope: usize, text: &str, place: &Place) -> FrameReference {
+    FrameReference::Named(FrameName {
         scope,
         text: text.to_owned(),
         place: place.clone(),

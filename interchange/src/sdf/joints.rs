@@ -1,7 +1,7 @@
 //! Splits joints of SDFormat into axes with one degree of freedom each.
 
 use super::{
-    frames::Name,
+    frames::FrameName,
     gather::{Gathered, JointItem},
     value::{flag, limit, number, several, text},
 };
@@ -163,17 +163,17 @@ pub(super) fn direction(
     let in_model = scope.version <= (1, 4) || flag(files, element, "use_parent_model_frame");
     let frame = match named.filter(|(name, _)| !name.is_empty()) {
         Some((name, place)) => {
-            let name = Name {
+            let name = FrameName {
                 scope: item.scope,
                 text: name.to_owned(),
                 place: place.clone(),
             };
-            Some(frames.named(files, &name)?)
+            Some(frames.find_or_report(files, &name)?)
         }
         None => in_model.then_some(scope.model),
     };
     Some(frame.map_or(own, |frame| {
-        let turned = exact::cleaned(&frames.seen(frame, item.frame).rotation);
+        let turned = exact::cleaned(&frames.relative_pose(frame, item.frame).rotation);
         turned * own
     }))
 }
@@ -213,7 +213,7 @@ pub(super) fn is_coupling(item: &JointItem) -> bool {
 }
 
 /// Reference body of a gearbox.
-pub(super) fn reference_body(gathered: &Gathered<'_>, item: &JointItem) -> Option<Name> {
+pub(super) fn reference_body(gathered: &Gathered<'_>, item: &JointItem) -> Option<FrameName> {
     let found = text(&item.element, "gearbox_reference_body");
     if found.is_none() {
         let message = format!("the gearbox `{}` has no reference body", item.name);
@@ -221,7 +221,7 @@ pub(super) fn reference_body(gathered: &Gathered<'_>, item: &JointItem) -> Optio
         gathered.files.report(&item.element.place, message, help);
     }
     let (text, place) = found?;
-    Some(Name {
+    Some(FrameName {
         scope: item.scope,
         text: text.to_owned(),
         place: place.clone(),

@@ -2,7 +2,7 @@
 
 use super::{
     gather::{Gathered, Link},
-    value::{attribute_flag, flag, number, pose, told_in},
+    value::{attribute_flag, flag, number, pose, reference_frame},
 };
 use crate::model::{Inertia, Model};
 use nalgebra::{Matrix3, Point3};
@@ -19,7 +19,7 @@ pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>,
         return (None, true);
     }
     let own = inertial.child("pose");
-    if let Some((name, place)) = told_in(own) {
+    if let Some((name, place)) = reference_frame(own) {
         let message = format!("the pose of an <inertial> is relative to its link, not to `{name}`");
         let help = "give it in the frame of the link, without relative_to";
         files.report(place, message, help);
@@ -43,7 +43,7 @@ pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>,
         centre: Point3::origin(),
         tensor,
     };
-    (Some(about_centre.seen(&frame)), false)
+    (Some(about_centre.transformed(&frame)), false)
 }
 
 /// Default inertia of SDFormat.

@@ -4,7 +4,7 @@
 //! link. The choice of these joints does not change the model.
 
 use super::{
-    frames::Name,
+    frames::FrameName,
     gather::{Gathered, JointItem, Link, Owner},
     joints::{self, Axis},
     links,
@@ -106,8 +106,8 @@ fn edges(gathered: &Gathered<'_>) -> Option<Vec<Edge>> {
 }
 
 /// Link at a joint's end; `Some(None)` for the ground.
-pub(super) fn end(gathered: &Gathered<'_>, name: &Name) -> Option<Option<usize>> {
-    let frame = gathered.frames.named(gathered.files, name)?;
+pub(super) fn end(gathered: &Gathered<'_>, name: &FrameName) -> Option<Option<usize>> {
+    let frame = gathered.frames.find_or_report(gathered.files, name)?;
     let link = gathered.frames.link(gathered.files, frame, name)?;
     if link.is_some_and(|link| gathered.links[link].owner == Owner::Stranger) {
         let message = format!("`{}` is of another model of the world", name.text);
@@ -182,8 +182,8 @@ impl Tree<'_, '_> {
         };
         let frames = &self.gathered.frames;
         let to = self.frame(carried);
-        let mut placement = frames.seen(to, self.frame(carrier));
-        let joint_in = frames.seen(self.gathered.joints[*item].frame, to);
+        let mut placement = frames.relative_pose(to, self.frame(carrier));
+        let joint_in = frames.relative_pose(self.gathered.joints[*item].frame, to);
         let mut parent = self.body(carrier).unwrap_or(0);
         let mut order: Vec<&Axis> = axes.iter().collect();
         if is_against && axes.iter().all(|axis| axis.lead.is_none()) {
@@ -279,7 +279,7 @@ impl Tree<'_, '_> {
             "No joint leads from the world to `{}`; it is fixed here at its position.",
             link.name
         ));
-        let placement = self.gathered.frames.seen(link.frame, 0);
+        let placement = self.gathered.frames.relative_pose(link.frame, 0);
         let body = push(model, link.name.clone(), 0, placement, None);
         self.fill(body, base, model);
         Some(())
@@ -296,7 +296,7 @@ impl Tree<'_, '_> {
             let seen = self
                 .gathered
                 .frames
-                .seen(self.frame(child), self.frame(parent));
+                .relative_pose(self.frame(child), self.frame(parent));
             (from, seen)
         } else {
             let body = self.hang(edge, false, model);

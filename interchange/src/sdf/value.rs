@@ -112,7 +112,7 @@ pub(super) fn pose(files: &Files, element: Option<&Element>) -> Pose {
 }
 
 /// Reference frame that a pose names: `relative_to`, or `frame` before SDFormat 1.7.
-pub(super) fn told_in(element: Option<&Element>) -> Option<(&str, &Place)> {
+pub(super) fn reference_frame(element: Option<&Element>) -> Option<(&str, &Place)> {
     let pose = element?;
     let named = pose
         .attribute("relative_to")

@@ -1,7 +1,12 @@
-//! Loops in the URDF file itself, in three notations.
+//! Loop closures and couplings in a URDF file.
 //!
-//! `<loop>` of URDF+ (Chignoli, Slotine, Wensing, Kim 2024), `<constraint>` as proposed for
-//! urdfdom, and `<loop_joint>` of Isaac Sim.
+//! Four notations of closures are read:
+//! - `<loop>` of URDF+ (Chignoli, Slotine, Wensing, Kim 2024),
+//! - `<constraint>` as proposed for urdfdom,
+//! - `<loop_joint>` of Isaac Sim,
+//! - `<drake:ball_constraint>` of Drake.
+//!
+//! Couplings are `<coupling>` of URDF+.
 
 use super::{Tree, joints, origin};
 use crate::{
@@ -13,6 +18,7 @@ use crate::{
 };
 use nalgebra::{Point3, Rotation3, Vector3};
 
+/// Reads all closures of a file into the model.
 pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
     let named = |element: &Element| element.get("name").unwrap_or(&element.name).to_owned();
     ball_constraints(files, root, tree, model);
@@ -51,7 +57,7 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
     }
 }
 
-/// `<drake:ball_constraint>`: coincident points of two bodies.
+/// Reads `<drake:ball_constraint>`: coincident points of two bodies.
 fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Model) {
     for element in root.all("ball_constraint") {
         let end = |body: &str, point: &str| {
@@ -80,8 +86,9 @@ fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Mode
     }
 }
 
-/// Closure elements, elements of their two ends, and of the frames there (in the end itself if
-/// empty).
+/// Tags of each notation: the closure, its two ends, and the frames of the ends.
+///
+/// An empty frame tag means that the end contains the frame: in `<origin>`, or as attributes.
 const NOTATIONS: [(&str, [&str; 2], [&str; 2]); 3] = [
     ("loop", ["predecessor", "successor"], ["", ""]),
     (
@@ -92,6 +99,7 @@ const NOTATIONS: [(&str, [&str; 2], [&str; 2]); 3] = [
     ("loop_joint", ["link1", "link2"], ["", ""]),
 ];
 
+/// Kind of a closure from its `type`; `None` after an error.
 fn kind(
     files: &Files,
     element: &Element,
@@ -114,7 +122,7 @@ fn kind(
                 return None;
             };
             let [frame_a, frame_b] = frames;
-            let at = [frame_a * upright(&a), frame_b * upright(&b)];
+            let at = [frame_a * frame_with_z(&a), frame_b * frame_with_z(&b)];
             Some(ClosureKind::Pin { bodies, at })
         }
         other => {
@@ -126,7 +134,7 @@ fn kind(
     }
 }
 
-/// Axis in a child element; URDF's default if `axis` is absent.
+/// Axis in a child element; without `<axis>`, the default of URDF.
 fn axis_of(files: &Files, element: &Element, tag: &str) -> Option<Vector3<f64>> {
     if tag == "axis" {
         return joints::axis(files, element);
@@ -135,15 +143,17 @@ fn axis_of(files: &Files, element: &Element, tag: &str) -> Option<Vector3<f64>> 
     exact::unit(&Vector3::new(x, y, z), exact::SHORTEST)
 }
 
-/// Frame with a given z axis.
-fn upright(axis: &Vector3<f64>) -> Pose {
-    let turned = Rotation3::rotation_between(&Vector3::z(), axis);
-    let turned = turned
+/// Frame with a given z axis, by the smallest rotation.
+fn frame_with_z(axis: &Vector3<f64>) -> Pose {
+    let rotation = Rotation3::rotation_between(&Vector3::z(), axis);
+    let rotation = rotation
         .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-    Pose::from_parts(Vector3::zeros().into(), turned)
+    Pose::from_parts(Vector3::zeros().into(), rotation)
 }
 
-/// `<coupling>` of URDF+: motion between two links proportional to that between two others.
+/// Reads `<coupling>` of URDF+: the successor's joint follows the predecessor's.
+///
+/// Position of the successor's joint = `ratio` × position of the predecessor's joint.
 pub(super) fn couplings(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
     for element in root.all("coupling") {
         let end = |tag: &str| element.child(tag).and_then(|end| end.get("link"));

@@ -130,7 +130,7 @@ fn inertia(files: &Files, inertial: &Element) -> Inertia {
         centre: Point3::origin(),
         tensor,
     }
-    .seen(&frame)
+    .transformed(&frame)
 }
 
 /// Bodies by link name, and frames that joints name.

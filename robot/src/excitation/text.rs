@@ -1,4 +1,4 @@
-//! Formats runs as tables, and replaces the runs of a description.
+//! Formats runs as TOML tables, and replaces the training runs of a description.
 
 use super::fourier_run::FourierRun;
 use crate::error::{Error, Problem};
@@ -8,32 +8,29 @@ use overact_simulation::{Term, Trajectory};
 use std::fmt::Write;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
-/// Heading of the runs.
+/// Comment above the runs.
 const COMMENT: &str = "\n# Computed by `overact excite`: they determine the base parameters best within the limits.\n";
 
 /// Formats runs as `[[experiment.run]]` tables.
 ///
-/// `coordinates` has the model's name, the description's name, and whether each is a length.
+/// For each coordinate, `coordinates` has its names in the model and in the description, and
+/// whether it is a length.
 pub(super) fn tables(
     runs: &[(FourierRun, Trajectory)],
     coordinates: &[(&str, String, bool)],
 ) -> String {
     let mut text = COMMENT.to_owned();
-    for (frame, trajectory) in runs {
-        let mut table = format!("\n[[experiment.run]]\nname = \"{}\"\n", frame.name);
-        match &frame.payload_name {
+    for (run, trajectory) in runs {
+        let mut table = format!("\n[[experiment.run]]\nname = \"{}\"\n", run.name);
+        match &run.payload_name {
             Some(name) => _ = writeln!(table, "payload = \"{name}\""),
-            None if frame.payload => table += "payload = true\n",
+            None if run.payload => table += "payload = true\n",
             None => {}
         }
-        if let Some(duration) = frame.own_duration {
+        if let Some(duration) = run.own_duration {
             let _ = writeln!(table, "duration = \"{duration} s\"");
         }
-        let _ = writeln!(
-            table,
-            "fundamental = \"{} Hz\"\nterms = [",
-            frame.fundamental
-        );
+        let _ = writeln!(table, "fundamental = \"{} Hz\"\nterms = [", run.fundamental);
         if let Trajectory::Periodic { terms, .. } = trajectory {
             terms
                 .iter()
@@ -44,7 +41,7 @@ pub(super) fn tables(
     text
 }
 
-/// Formats a line of `terms`.
+/// Formats one term as a line of `terms`.
 fn term(term: &Term, coordinates: &[(&str, String, bool)]) -> String {
     let known = coordinates
         .iter()
@@ -64,10 +61,10 @@ fn term(term: &Term, coordinates: &[(&str, String, bool)]) -> String {
     )
 }
 
-/// Description in which the runs of `tables` replace the training runs; validation runs stay.
+/// Replaces the training runs of a description by `tables`; validation runs stay.
 ///
 /// # Errors
-/// Runs that are not separate tables.
+/// Runs of the description that are not `[[experiment.run]]` tables.
 pub(super) fn description(robot: &Robot, tables: &str) -> Result<String, Error> {
     let source = robot.source();
     let problem = |message: String| {
@@ -83,15 +80,15 @@ pub(super) fn description(robot: &Robot, tables: &str) -> Result<String, Error> 
         document.map_err(|error| problem(format!("the runs can't be written: {}", error.message())))
     };
     let (mut document, found) = (read(&source.text)?, read(tables)?);
-    let place = || problem("the runs of the description are not separate tables".to_owned());
+    let not_separate = || problem("the runs of the description are not separate tables".to_owned());
     let mut implied = Table::new();
     implied.set_implicit(true);
     let experiment = document.entry("experiment").or_insert(Item::Table(implied));
-    let experiment = experiment.as_table_mut().ok_or_else(place)?;
+    let experiment = experiment.as_table_mut().ok_or_else(not_separate)?;
     let own = experiment
         .entry("run")
         .or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
-    let own = own.as_array_of_tables_mut().ok_or_else(place)?;
+    let own = own.as_array_of_tables_mut().ok_or_else(not_separate)?;
     let first = own.iter().next().and_then(Table::position);
     let found = found
         .get("experiment")

@@ -1,6 +1,6 @@
 //! Implements [`overact::Model`] by interpreting a robot's programs, without a compiler.
 //!
-//! For serial robots, the pose consists of the joint positions and the twist of their velocities.
+//! The pose of a serial robot is its joint positions, and the twist its joint velocities.
 
 mod follow;
 mod forward;
@@ -21,14 +21,14 @@ use overact_codegen::{
 };
 use std::sync::{Mutex, PoisonError};
 
-/// Largest number of inputs of a program, including joints that are solved for first.
-const INPUTS: usize = 6;
+/// Largest number of inputs of a program, including joints found by Newton's method.
+const MAX_INPUTS: usize = 6;
 
 /// Source of a program's input.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Given {
+enum InputSource {
     /// Input of the function with this index.
-    At(usize),
+    Argument(usize),
     /// Joints from Newton's method.
     Joints,
     /// The program does not read it.
@@ -42,18 +42,18 @@ pub struct InterpretedRobot {
     names: Names,
     /// For platforms with parasitic motion: the independent coordinates among the six.
     independent: Option<Vec<usize>>,
-    functions: Vec<Served>,
+    functions: Vec<ServedFunction>,
     scratch: Pool<Scratch>,
 }
 
-/// A function of the trait and the program that computes it.
+/// A function of [`Model`] with the program that computes it.
 #[derive(Debug)]
-struct Served {
+struct ServedFunction {
     function: Function,
     /// Index among the model's functions.
     index: usize,
     /// Source of each input of the program.
-    inputs: Vec<Given>,
+    inputs: Vec<InputSource>,
     evaluators: Pool<Evaluator>,
 }
 
@@ -71,8 +71,9 @@ impl<T> Default for Pool<T> {
 }
 
 impl<T> Pool<T> {
+    /// Calls `work` with memory of the pool, which `make` creates if none is free.
     fn with<R>(&self, make: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
-        // Memory that a panicking thread left behind is as good as any other.
+        // A panic elsewhere does not invalidate the memory, so a poisoned lock is used.
         let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut memory = free().pop().unwrap_or_else(|| Box::new(make()));
         let result = work(&mut memory);
@@ -97,7 +98,7 @@ impl InterpretedRobot {
             functions: Vec::new(),
             scratch: Pool::default(),
         };
-        let served = |function| robot.serve(function);
+        let served = |function| robot.program_of(function);
         robot.functions = Function::ALL.into_iter().filter_map(served).collect();
         robot
     }
@@ -112,7 +113,7 @@ impl InterpretedRobot {
 
     /// Whether a function computes pose and joints from encoder positions.
     ///
-    /// These are the functions of `serves` that a caller of one other function needs.
+    /// A caller of any single function needs these functions as well.
     #[must_use]
     pub fn finds_pose(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
         let finds = matches!(
@@ -137,40 +138,41 @@ impl InterpretedRobot {
         &self.model
     }
 
-    /// Name of a leg with static lifetime, for errors.
+    /// Name of a leg, for errors, which need a static lifetime.
     pub(crate) fn leg_name(&self, index: usize) -> &'static str {
         let leg = self.model.mechanism.legs.get(index);
         leg.map_or("", |leg| self.names.leg(&leg.name))
     }
 
-    fn serve(&self, function: Function) -> Option<Served> {
+    /// The program of a function, with the sources of its inputs; `None` if the model lacks it.
+    fn program_of(&self, function: Function) -> Option<ServedFunction> {
         let wanted = self.model.served(function)?;
         let all = &self.model.functions;
         let index = all.iter().position(|f| std::ptr::eq(f, wanted))?;
         let finds_joints = self.model.finds_joints(wanted);
-        let place = |(array, used): (&Array, bool)| {
+        let source = |(array, used): (&Array, bool)| {
             if finds_joints && array.name == "joints" {
-                return Some(Given::Joints);
+                return Some(InputSource::Joints);
             }
             if !used {
-                return Some(Given::Unread);
+                return Some(InputSource::Unread);
             }
             let mut known = function.inputs().iter();
             known
-                .position(|&i| self.called(i) == array.name)
-                .map(Given::At)
+                .position(|&i| self.input_name(i) == array.name)
+                .map(InputSource::Argument)
         };
         let arrays = wanted.program.inputs.iter();
-        let inputs: Option<Vec<Given>> = arrays
+        let inputs: Option<Vec<InputSource>> = arrays
             .zip(wanted.program.used_inputs())
-            .map(place)
+            .map(source)
             .collect();
         let (rows, columns) = function.shape(&self.names.sizes);
         // Omit a program that does not match the table.
         let inputs = inputs
-            .filter(|i| i.len() <= INPUTS && wanted.program.entries.len() == rows * columns)?;
+            .filter(|i| i.len() <= MAX_INPUTS && wanted.program.entries.len() == rows * columns)?;
         let evaluators = Pool::default();
-        Some(Served {
+        Some(ServedFunction {
             function,
             index,
             inputs,
@@ -178,7 +180,7 @@ impl InterpretedRobot {
         })
     }
 
-    fn program(&self, served: &Served) -> &Program {
+    fn program(&self, served: &ServedFunction) -> &Program {
         &self.model.functions[served.index].program
     }
 
@@ -228,13 +230,13 @@ impl InterpretedRobot {
         }
     }
 
-    /// First sample with an input that is not finite or too large, with the input's name.
+    /// Error of the first sample with an input that is not finite or too large.
     fn first_out_of_range(&self, function: Function, inputs: &[&[f64]]) -> Option<SampleError> {
         let sizes = &self.names.sizes;
         let kinds = function.inputs().iter().zip(inputs);
         let of = |(kind, values): (&Input, &&[f64])| {
             // Such inputs are rare: test all without branches, then search only if needed.
-            let input = self.called(*kind);
+            let input = self.input_name(*kind);
             let most = DOUBLE.largest.of(input);
             let is_good = |value: &f64| value.abs() <= most;
             if values.iter().fold(true, |all, value| all & is_good(value)) {
@@ -250,7 +252,7 @@ impl InterpretedRobot {
         kinds.filter_map(of).min_by_key(|error| error.sample)
     }
 
-    /// Pose for the programs: a quaternion at its end is normalised.
+    /// Normalises the quaternion at the end of a pose, if the pose has one.
     ///
     /// # Errors
     /// A quaternion of length zero.
@@ -273,8 +275,8 @@ impl InterpretedRobot {
         (unit, bad)
     }
 
-    /// Name of an input as in generated code.
-    fn called(&self, input: Input) -> &'static str {
+    /// Name of an input in generated code.
+    fn input_name(&self, input: Input) -> &'static str {
         if self.model.is_tree() {
             input.name_without_platform()
         } else {
@@ -287,16 +289,16 @@ impl InterpretedRobot {
         platform.is_some_and(|platform| platform.motion.has_quaternion())
     }
 
-    /// Runs a program for the first samples of a block.
+    /// Evaluates a function at the first `samples` samples of a block.
     fn run_samples(
         &self,
-        served: &Served,
+        served: &ServedFunction,
         inputs: &[&[f64]],
         samples: usize,
         output: &mut [f64],
     ) -> Result<(), SampleError> {
         let kinds = served.function.inputs();
-        // An input with a single row serves all samples.
+        // An input with a single row is used for all samples.
         let rows = |at: usize| {
             let (values, row) = (inputs[at], self.names.sizes.of(kinds[at]));
             let shared = values.len() == row;
@@ -312,7 +314,7 @@ impl InterpretedRobot {
             shared: false,
         };
         let poses = rows(0);
-        let found = if served.inputs.contains(&Given::Joints) {
+        let found = if served.inputs.contains(&InputSource::Joints) {
             self.find_joints(poses.values)?
         } else {
             Vec::new()
@@ -324,15 +326,15 @@ impl InterpretedRobot {
                 .for_each(|(out, found)| out.copy_from_slice(found));
             return Ok(());
         }
-        let mut given = [NOTHING; INPUTS];
+        let mut given = [NOTHING; MAX_INPUTS];
         for (slot, &at) in given.iter_mut().zip(&served.inputs) {
             *slot = match at {
-                Given::At(at) => rows(at),
-                Given::Joints => Rows {
+                InputSource::Argument(at) => rows(at),
+                InputSource::Joints => Rows {
                     values: &found,
                     shared: poses.shared,
                 },
-                Given::Unread => NOTHING,
+                InputSource::Unread => NOTHING,
             };
         }
         let given = &given[..served.inputs.len()];
@@ -367,7 +369,7 @@ impl Model for InterpretedRobot {
         if samples == 0 {
             return Ok(());
         }
-        // As in compiled robots, report the first failing sample, whatever its error.
+        // As in compiled robots, report the first failing sample, of whatever kind.
         let mut bad = self.first_out_of_range(function, inputs);
         let (mut scaled, unit);
         let mut inputs = inputs;

@@ -7,7 +7,7 @@ use crate::{
     failure::{Failure, Problem},
     function_options::{ColumnsOf, Source},
     input,
-    note::tell_doubts,
+    note::print_warnings,
     output,
     states::States,
 };
@@ -112,7 +112,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } = input::compiled(&arguments.file, &request, as_json)?;
     let states = States::read(&arguments.states)?;
     let unknown = states.unknown(&QUANTITIES);
-    tell_doubts(unknown.as_slice(), as_json);
+    print_warnings(unknown.as_slice(), as_json);
     if let Some(names) = &arguments.kept {
         model = with_kept(model, names, &request)?;
     }
@@ -123,7 +123,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let given = match &arguments.parameters {
         Some(path) => {
             let given = read_parameters(path, &description, &robot.info())?;
-            tell_doubts(&given.doubts, as_json);
+            print_warnings(&given.doubts, as_json);
             GivenParameters::new(&given.values, &robot)
         }
         None => GivenParameters::default(),

@@ -6,7 +6,7 @@ use crate::{
     effort,
     failure::Failure,
     functions,
-    note::{tell, tell_doubts, tell_note},
+    note::{print_description_note, print_note, print_warnings},
     output::{self, json, print, write},
     progress::Progress,
 };
@@ -213,7 +213,7 @@ fn load_all(
             let done = at as f64 + progress.done as f64 / whole;
             bar.at(done / count as f64, &format!("{name}: {}", progress.work));
             if progress.functions == 0 {
-                tell(&name, large(progress.mechanism).as_deref(), as_json);
+                print_note(&name, large(progress.mechanism).as_deref(), as_json);
             }
         };
         let request = Request {
@@ -229,8 +229,8 @@ fn load_all(
         };
         match compiled {
             Ok(robot) => {
-                tell_note(&robot, as_json);
-                tell_doubts(&robot.doubts, as_json);
+                print_description_note(&robot, as_json);
+                print_warnings(&robot.doubts, as_json);
                 good.push(robot);
             }
             Err(failure) => bad.push(failure),

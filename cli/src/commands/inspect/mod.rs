@@ -2,7 +2,7 @@
 
 mod table;
 
-use crate::{effort, failure::Failure, input, note::tell_note, output};
+use crate::{effort, failure::Failure, input, note::print_description_note, output};
 use overact_robot::{Inspection, drawing};
 use std::path::PathBuf;
 
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let outputs = written.into_iter().chain(arguments.svg.as_deref());
     output::check(&[&arguments.file], &outputs.collect::<Vec<_>>())?;
     let robot = input::compiled(&arguments.file, &arguments.effort.request(), as_json)?;
-    tell_note(&robot, as_json);
+    print_description_note(&robot, as_json);
     let drawing = arguments.svg.clone().map(|file| {
         let text = drawing::svg(&robot.model.mechanism);
         (file, text.into_bytes())

@@ -1,4 +1,4 @@
-//! `overact simulate`: writes logs of a virtual experiment; `fleet`: of many robots.
+//! `overact simulate`: writes logs of a virtual experiment, or of a fleet of virtual robots.
 
 mod fleet;
 
@@ -6,7 +6,7 @@ use crate::{
     failure::{Failure, Problem},
     input,
     names::file_stem,
-    note::{is_quiet, tell_doubts},
+    note::{is_quiet, print_warnings},
     output::{self, json, print},
     progress::Progress,
 };
@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     fleet: fleet::Arguments,
 }
 
-/// Result of a run.
+/// Summary of a simulated run.
 #[derive(Debug, Serialize)]
 struct Summary {
     name: String,
@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(path) = &arguments.parameters {
         let info = robot.model().info();
         let given = read_parameters(path, robot.description(), &info)?;
-        tell_doubts(&given.doubts, as_json);
+        print_warnings(&given.doubts, as_json);
         experiment.set_parameters(&given.values);
     }
     if let Some(seed) = arguments.seed {
@@ -117,7 +117,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// Prints parameters without effect once; never with `--json`, because errors share stderr.
+/// Prints the parameters without effect; not with `--json`, since JSON errors share stderr.
 pub(super) fn warn(without_effect: &[String], as_json: bool) {
     if !without_effect.is_empty() && !as_json && !is_quiet() {
         let names = without_effect.join(", ");
@@ -126,7 +126,7 @@ pub(super) fn warn(without_effect: &[String], as_json: bool) {
     }
 }
 
-/// Keeps only the runs with these names; all if there are none.
+/// Removes the runs that are not in `names`; keeps all if `names` is empty.
 fn keep_runs(experiment: &mut VirtualExperiment<'_>, names: &[String]) -> Result<(), Failure> {
     experiment.check_runs(names)?;
     if !names.is_empty() {
@@ -136,7 +136,7 @@ fn keep_runs(experiment: &mut VirtualExperiment<'_>, names: &[String]) -> Result
     Ok(())
 }
 
-/// File of each run; `None` if the only one goes to stdout.
+/// Output file of each run; `None` if the only run goes to stdout.
 fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<PathBuf>>, Failure> {
     let runs = &experiment.runs;
     let Some(output) = output else {
@@ -179,6 +179,7 @@ fn files(experiment: &Experiment, output: Option<&Path>) -> Result<Vec<Option<Pa
     Ok(files.into_iter().map(Some).collect())
 }
 
+/// Log of a run as CSV.
 fn csv(record: &Record) -> Result<Vec<u8>, Problem> {
     let mut log = Vec::new();
     write_csv(record, &mut log)
@@ -198,6 +199,7 @@ fn summary(record: &Record, file: Option<&Path>) -> Summary {
     }
 }
 
+/// Table of all runs.
 fn text(summaries: &[Summary]) -> String {
     let header = [
         "file",

@@ -5,7 +5,9 @@ use super::lines::{code, comment_text};
 use super::naming::Naming;
 use super::tables::number;
 use crate::backends::writing::body::Body;
-use crate::backends::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
+use crate::backends::writing::statement::{
+    Binding, Call, Expression, Operator, SineCosinePair, Statement,
+};
 use crate::lowering::{Array, Condition};
 use crate::model::RobotModel;
 
@@ -56,7 +58,7 @@ impl Writer<'_> {
             Statement::Pairs(pairs) => pairs.iter().map(|pair| self.pair(pair, body)).collect(),
             Statement::Pair(pair) => self.pair(pair, body),
             Statement::Guard { value, condition } => self.guard(value, condition),
-            Statement::Place {
+            Statement::Output {
                 row,
                 columns,
                 value,
@@ -81,7 +83,7 @@ impl Writer<'_> {
     }
 
     /// Sine and cosine of an angle, which is computed once.
-    fn pair(&mut self, pair: &Pair, body: &Body) -> String {
+    fn pair(&mut self, pair: &SineCosinePair, body: &Body) -> String {
         let is_atom = matches!(pair.angle, Expression::Input { .. } | Expression::Value(_));
         let (mut out, mut angle) = (String::new(), pair.angle.clone());
         if !is_atom && pair.sine.is_some() && pair.cosine.is_some() {
@@ -206,7 +208,7 @@ pub fn fails(holds: &str, error: &str) -> String {
 
 /// Whether a statement assigns a name, alone or with another one.
 fn assigns(statement: &Statement, name: &str) -> bool {
-    let in_pair = |pair: &Pair| {
+    let in_pair = |pair: &SineCosinePair| {
         let names = [&pair.sine, &pair.cosine];
         names.into_iter().flatten().any(|own| own == name)
     };
@@ -214,6 +216,6 @@ fn assigns(statement: &Statement, name: &str) -> bool {
         Statement::Assign { name: own, .. } => own == name,
         Statement::Pairs(pairs) => pairs.iter().any(in_pair),
         Statement::Pair(pair) => in_pair(pair),
-        Statement::Guard { .. } | Statement::Place { .. } => false,
+        Statement::Guard { .. } | Statement::Output { .. } => false,
     }
 }

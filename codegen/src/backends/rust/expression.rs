@@ -1,7 +1,9 @@
 //! The body of a function as tokens.
 
 use crate::backends::writing::body::Body;
-use crate::backends::writing::statement::{Binding, Call, Expression, Operator, Pair, Statement};
+use crate::backends::writing::statement::{
+    Binding, Call, Expression, Operator, SineCosinePair, Statement,
+};
 use crate::float::Float;
 use crate::lowering::{Array, Condition};
 use overact_core::ActuatorGroup;
@@ -127,7 +129,7 @@ impl<'a> Writer<'a> {
                 quote!(let #names = #math::sin_cos(#angle);)
             }
             Statement::Guard { value, condition } => self.guard(value, condition),
-            Statement::Place {
+            Statement::Output {
                 row,
                 columns,
                 value,
@@ -265,7 +267,7 @@ impl<'a> Writer<'a> {
 }
 
 /// The pattern of a sine and a cosine.
-fn sine_and_cosine(pair: &Pair) -> TokenStream {
+fn sine_and_cosine(pair: &SineCosinePair) -> TokenStream {
     let name = |name: &Option<String>| match name {
         Some(name) => {
             let name = ident(name);

@@ -7,8 +7,8 @@
 use super::angles;
 use super::labels::Labels;
 use super::names::Names;
-use super::places::{Place, Places};
-use super::statement::{Call, Expression, Operator, Pair, Statement};
+use super::output_ranges::{OutputRange, OutputRanges};
+use super::statement::{Call, Expression, Operator, SineCosinePair, Statement};
 use crate::lowering::{Entry, Operand, Operation, Program, schedule_min_live};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -56,8 +56,8 @@ impl Body {
     pub fn placed(program: &Program, labels: &Labels, reserved: &dyn Fn(&str) -> bool) -> Self {
         let program = schedule_min_live(program);
         let mut writer = Writer::new(&program, labels, reserved, &|_| false);
-        writer.places = Some(Places::new(&program));
-        writer.known_places();
+        writer.output_ranges = Some(OutputRanges::new(&program));
+        writer.write_known_output();
         writer.steps();
         writer.body(Vec::new())
     }
@@ -106,8 +106,8 @@ struct Writer<'p> {
     written: Vec<bool>,
     /// Number of guards written.
     guarded: usize,
-    /// Places of the steps' values in the output, if statements write it.
-    places: Option<Places>,
+    /// Output elements of each step, if statements write the output.
+    output_ranges: Option<OutputRanges>,
 }
 
 impl<'p> Writer<'p> {
@@ -136,7 +136,7 @@ impl<'p> Writer<'p> {
             section: String::new(),
             written: vec![false; count],
             guarded: 0,
-            places: None,
+            output_ranges: None,
         }
     }
 
@@ -146,7 +146,7 @@ impl<'p> Writer<'p> {
         let mut at = 0;
         while at < self.program.steps.len() {
             let count = self.step(at);
-            (at..at + count).for_each(|at| self.place(at));
+            (at..at + count).for_each(|at| self.write_output_of(at));
             at += count;
         }
     }
@@ -162,25 +162,26 @@ impl<'p> Writer<'p> {
         }
     }
 
-    /// Writes the numbers of the output that need no step.
-    fn known_places(&mut self) {
-        let known = self.places.as_mut().map(Places::known);
-        for (place, entry) in known.unwrap_or_default() {
-            self.put(place, entry);
+    /// Writes the output elements that need no step.
+    fn write_known_output(&mut self) {
+        let known = self.output_ranges.as_mut().map(OutputRanges::take_known);
+        for (range, entry) in known.unwrap_or_default() {
+            self.write_range(range, entry);
         }
     }
 
-    /// Writes the numbers of the output that a step computes.
-    fn place(&mut self, step: usize) {
-        let places = self.places.as_mut().map(|places| places.of(step));
-        for (place, entry) in places.unwrap_or_default() {
-            self.put(place, entry);
+    /// Writes the output elements that a step computes.
+    fn write_output_of(&mut self, step: usize) {
+        let ranges = self.output_ranges.as_mut();
+        let own = ranges.map(|ranges| ranges.take_of_step(step));
+        for (range, entry) in own.unwrap_or_default() {
+            self.write_range(range, entry);
         }
     }
 
-    fn put(&mut self, Place { row, columns }: Place, entry: Entry) {
+    fn write_range(&mut self, OutputRange { row, columns }: OutputRange, entry: Entry) {
         let value = self.entry(entry);
-        self.statements.push(Statement::Place {
+        self.statements.push(Statement::Output {
             row,
             columns,
             value,
@@ -215,7 +216,7 @@ impl<'p> Writer<'p> {
                 Some(self.declare(at))
             };
             let (sine, cosine) = (name(pair.sine), name(pair.cosine));
-            pairs.push(Pair {
+            pairs.push(SineCosinePair {
                 angle,
                 sine,
                 cosine,
@@ -278,7 +279,7 @@ impl<'p> Writer<'p> {
         } else {
             (first, second)
         };
-        self.statements.push(Statement::Pair(Pair {
+        self.statements.push(Statement::Pair(SineCosinePair {
             angle,
             sine: Some(sine),
             cosine: Some(cosine),

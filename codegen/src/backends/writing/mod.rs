@@ -15,7 +15,7 @@ pub mod legend;
 mod names;
 pub mod operations;
 pub mod outline;
-mod places;
+mod output_ranges;
 pub mod statement;
 #[cfg(test)]
 mod tests;

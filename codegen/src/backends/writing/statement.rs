@@ -3,7 +3,7 @@
 use crate::lowering::Condition;
 use std::ops::Range;
 
-/// Binding strength of an expression: sums, products, atoms.
+/// Precedence of an expression, lowest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Binding {
     /// a + b, a - b.
@@ -32,15 +32,15 @@ pub enum Operator {
 pub enum Call {
     /// Square root.
     Sqrt,
-    /// -1, 0 or 1.
+    /// Sign: -1, 0 or 1.
     Sign,
-    /// The first operand with the sign of the second.
+    /// The first operand times the sign of the second.
     Signed,
-    /// The angle of a direction, y first.
+    /// atan2(y, x).
     Atan2,
-    /// A sine without its cosine.
+    /// Sine of an angle whose cosine is not needed.
     Sine,
-    /// A cosine without its sine.
+    /// Cosine of an angle whose sine is not needed.
     Cosine,
 }
 
@@ -76,7 +76,10 @@ pub enum Expression {
 }
 
 impl Operator {
-    /// Binding strength of the operator, and that required of its right operand.
+    /// Precedence of the operator, and the lowest one of a right operand without parentheses.
+    ///
+    /// The right operand of + may be a sum: a + (b + c) is written as a + b + c, which languages
+    /// evaluate from the left.
     #[must_use]
     pub const fn binding(self) -> (Binding, Binding) {
         match self {
@@ -88,7 +91,7 @@ impl Operator {
 }
 
 impl Expression {
-    /// Binding strength of the expression.
+    /// Precedence of the expression.
     #[must_use]
     pub fn binding(&self) -> Binding {
         match self {
@@ -100,9 +103,9 @@ impl Expression {
     }
 }
 
-/// Sine and cosine of an angle, each with a name if it is needed.
+/// Sine and cosine of one angle; a value that is not needed has no name.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pair {
+pub struct SineCosinePair {
     /// The angle.
     pub angle: Expression,
     /// Name of the sine.
@@ -122,9 +125,9 @@ pub enum Statement {
         value: Expression,
     },
     /// Sines and cosines of several independent angles.
-    Pairs(Vec<Pair>),
+    Pairs(Vec<SineCosinePair>),
     /// Sine and cosine of one angle.
-    Pair(Pair),
+    Pair(SineCosinePair),
     /// A condition on a value.
     Guard {
         /// The value.
@@ -132,11 +135,11 @@ pub enum Statement {
         /// The condition.
         condition: Condition,
     },
-    /// Equal numbers of the output.
-    Place {
-        /// Their row.
+    /// Writes one value to adjacent elements of an output row.
+    Output {
+        /// The row.
         row: usize,
-        /// Their columns.
+        /// The columns.
         columns: Range<usize>,
         /// The value.
         value: Expression,

@@ -95,12 +95,15 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// This inertia, with origin at `at` in a frame of equal axes, added to that of the frame.
+    /// Adds this inertia to `onto`, after a translation by `at` (parallel axis theorem).
+    ///
+    /// Both frames have parallel axes; the origin of this one is at `at` in that of `onto`.
     pub(crate) fn moved_onto(&self, onto: &Self, at: Vector3<'a>) -> Self {
         let arm = at.scaled(self.mass);
         let (before, after) = (self.first, self.first + arm);
         let mut second = onto.second;
-        // Σ m (r² 1 - r rᵀ) at r + l: with g = 2 h + m l, the products g_k l_k.
+        // Σ m ((r + l)² 1 - (r + l)(r + l)ᵀ) exceeds Σ m (r² 1 - r rᵀ) by products of h = Σ m r and
+        // l; the diagonal has g_k l_k with g = 2 h + m l.
         let along: [Expr<'a>; 3] = std::array::from_fn(|k| (before.0[k] + after.0[k]) * at.0[k]);
         for i in 0..3 {
             for j in i..3 {
@@ -120,10 +123,10 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// Splits the inertia into the part that is invariant under rotation about z, and the rest.
+    /// Splits off the inertia that is invariant under rotation about z; also returns the rest.
     ///
-    /// The first part is the mass, the first moment along the axis, and equal inertias about x and
-    /// y: those of a rod along the axis.
+    /// The invariant part is that of a rod along z: the mass, the first moment along z, and equal
+    /// moments of inertia about x and y.
     pub(crate) fn split_about_z(&self) -> [Self; 2] {
         let arena = self.mass.arena();
         let (mut rod, mut rest) = (Self::zero(arena), *self);
@@ -139,7 +142,9 @@ impl<'a> Inertia<'a> {
         [rod, rest]
     }
 
-    /// Splits the inertia into the part that is invariant under translation along z, and the rest.
+    /// Splits off the inertia that is invariant under translation along z; also returns the rest.
+    ///
+    /// The invariant part is the second moments without mass and first moment.
     pub(crate) fn split_along_z(&self) -> [Self; 2] {
         let (mut kept, mut rest) = (Self::zero(self.mass.arena()), *self);
         kept.second = self.second;
@@ -147,7 +152,7 @@ impl<'a> Inertia<'a> {
         [kept, rest]
     }
 
-    /// Moment about the body's axes at an angular velocity and acceleration: h(ω̇) + ω × h(ω).
+    /// Moment I ω̇ + ω × I ω in the body's axes.
     pub(crate) fn turning_moment(&self, omega: Vector3<'a>, alpha: Vector3<'a>) -> Vector3<'a> {
         use StandardParameter as P;
         let arena = self.mass.arena();
@@ -156,11 +161,13 @@ impl<'a> Inertia<'a> {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             s[i][i] * alpha.0[i] + (s[k][k] - s[j][j]) * (omega.0[j] * omega.0[k])
         };
-        let beside = [(P::Xy, s[0][1]), (P::Xz, s[0][2]), (P::Yz, s[1][2])];
+        let off_diagonal = [(P::Xy, s[0][1]), (P::Xz, s[0][2]), (P::Yz, s[1][2])];
         let start = Vector3(std::array::from_fn(diagonal));
-        beside.into_iter().fold(start, |sum, (symbol, value)| {
-            sum + second_moment(arena, symbol, omega, alpha).scaled(value)
-        })
+        off_diagonal
+            .into_iter()
+            .fold(start, |sum, (symbol, value)| {
+                sum + second_moment(arena, symbol, omega, alpha).scaled(value)
+            })
     }
 
     /// Wrench about the origin that accelerates the body from rest.
@@ -172,7 +179,7 @@ impl<'a> Inertia<'a> {
         }
     }
 
-    /// Names composite quantities: `mass2_leg1`, `first2_x_leg1`, `inertia2_xy_leg1`.
+    /// Names the components in generated code, such as `mass2_leg1` and `inertia2_xy_leg1`.
     pub(crate) fn name(&self, names: &mut Names<'a>, body: &str, place: &str) {
         let end = if place.is_empty() {
             String::new()

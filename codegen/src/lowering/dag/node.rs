@@ -78,7 +78,7 @@ pub(crate) enum Definition {
     Sign(Edge),
     /// The angle of the direction (b, a).
     ArcTangent(Edge, Edge),
-    /// a × the sign of b, as a selection.
+    /// a × sign(b); the backends call `signed`.
     Selection(Edge, Edge),
 }
 

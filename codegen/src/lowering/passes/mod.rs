@@ -1,19 +1,21 @@
 //! The optimiser: passes over the DAG of a function, in order.
 //!
-//! Every node has a fingerprint, its values at two random points of the field
+//! Every node has a fingerprint, its values at two random points of a finite field
 //! ([`cas`](crate::cas)). An expression with the same fingerprint can replace the node. For an
-//! expensive node, the search looks in a table of values whether it is the sum, difference, product
-//! or quotient of two existing nodes. Then it looks for forms of one existing node and one that a
-//! single operation gives, preferably an operation that serves several nodes. This finds what one
-//! does by hand (1 + cot² = 1/sin², factoring, common parts of sums), without rules for it.
+//! expensive node, a table of values shows whether it is the sum, difference, product or quotient
+//! of two existing nodes. Otherwise one operand may be new if a single operation on existing nodes
+//! computes it. New operands that several nodes can use are preferred. The search has no rules for
+//! identities: it finds factorings, common subsums and 1 + cot² = 1/sin² by their values.
 //!
-//! The saving of a replacement is counted exactly: the operations that become unused minus those
-//! that it adds. The former are the node's *maximal fan-out free cone*, as in the resubstitution of
-//! logic synthesis. The dominator tree gives these cones, so among millions of sums and products
-//! only the few that may save something are tried. When nothing saves any more, a walk among forms
-//! of equal cost goes on. Finally, factors that products share across terms of a sum are collected.
-//! No new divisor is introduced, so the function's domain stays the same. No replacement cancels
-//! near singular configurations if the original form does not.
+//! The saving of a replacement is exact: the operations that become unused minus those that it
+//! adds. The former are the node's *maximal fan-out free cone*, as in the resubstitution of logic
+//! synthesis. The dominator tree gives these cones. They exclude most of the millions of possible
+//! sums and products. When no replacement saves operations, the search walks among forms of equal
+//! cost. Then factors that products share across terms of a sum are collected. The
+//! remaining passes restore accuracy and simplify guards, angles and signs.
+//!
+//! No new divisor is introduced, so the function's domain stays the same. Near singular
+//! configurations, no replacement loses digits by cancellation if the original form does not.
 
 mod angles;
 mod common_factors;

@@ -2,7 +2,7 @@
 
 use super::{Parts, home, unsuffixed};
 use crate::backends::rust::expression::{Writer, ident, magnitude, number};
-use crate::backends::writing::statement::{Expression, Pair, Statement};
+use crate::backends::writing::statement::{Expression, SineCosinePair, Statement};
 use crate::float::Float;
 use crate::lowering::{Column, Condition, Elements, Lanes, OfLegs};
 use proc_macro2::{Literal, TokenStream};
@@ -68,7 +68,7 @@ impl<'a> Split<'a> {
                 }
             }
             // Columns are written to their places after all other statements.
-            Statement::Place { .. } => {}
+            Statement::Output { .. } => {}
         }
     }
 
@@ -98,8 +98,8 @@ impl<'a> Split<'a> {
         }
     }
 
-    fn pairs(&mut self, pairs: &[Pair]) {
-        let (own, shared): (Vec<Pair>, Vec<Pair>) = pairs
+    fn pairs(&mut self, pairs: &[SineCosinePair]) {
+        let (own, shared): (Vec<SineCosinePair>, Vec<SineCosinePair>) = pairs
             .iter()
             .cloned()
             .partition(|pair| self.is_own(&pair.angle));

@@ -166,7 +166,7 @@ pub(crate) fn distinct<'a>(
     for (at, one) in axes.iter().enumerate() {
         let is_known = own.iter().any(|&other| {
             let turn = one.relative(&axes[other], arena, configuration);
-            turn.is_some_and(|turn| turn.exchanges())
+            turn.is_some_and(|turn| turn.is_signed_permutation())
         });
         if !is_known {
             own.push(at);
@@ -212,7 +212,7 @@ pub(crate) fn keep_rows<'a>(
     };
     axes.iter().all(|other| {
         let turn = other.relative(first, arena, configuration);
-        turn.is_some_and(|turn| parts().all(|part| turn.keeps(part)))
+        turn.is_some_and(|turn| parts().all(|part| turn.is_block_diagonal(part)))
     })
 }
 

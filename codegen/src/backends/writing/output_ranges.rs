@@ -1,31 +1,33 @@
-//! Places of a program's values in an output that is written number by number.
+//! Output elements that become known with each step of a program.
+//!
+//! A function that writes into a caller's matrix stores each value as soon as it is computed.
 
 use crate::lowering::{Entry, Operand, Program};
 use std::ops::Range;
 
-/// Adjacent numbers in a row of an output.
+/// Adjacent elements of one row of an output.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct OutputRange {
     /// The row.
     pub row: usize,
     /// The columns.
     pub columns: Range<usize>,
 }
 
-/// The numbers of an output with their places.
+/// Elements of an output, grouped by the step that computes them.
 #[derive(Debug)]
-pub struct Places {
-    /// Numbers that are known before the first step.
-    known: Vec<(Place, Entry)>,
-    /// Numbers that each step computes.
-    of_steps: Vec<Vec<(Place, Entry)>>,
+pub struct OutputRanges {
+    /// Constants and inputs, which no step computes.
+    known: Vec<(OutputRange, Entry)>,
+    /// Elements that each step computes.
+    of_steps: Vec<Vec<(OutputRange, Entry)>>,
 }
 
-impl Places {
-    /// The places of a program's output.
+impl OutputRanges {
+    /// Groups the output of a program by steps.
     #[must_use]
     pub fn new(program: &Program) -> Self {
-        let mut places = Self {
+        let mut ranges = Self {
             known: Vec::new(),
             of_steps: vec![Vec::new(); program.steps.len()],
         };
@@ -38,29 +40,29 @@ impl Places {
             // Adjacent equal constants, such as zeros, are written at once.
             for same in entries.chunk_by(|a, b| a == b && step(*a).is_none()) {
                 let end = first + same.len();
-                let place = Place {
+                let range = OutputRange {
                     row,
                     columns: first..end,
                 };
                 match step(same[0]) {
-                    Some(at) => places.of_steps[at].push((place, same[0])),
-                    None => places.known.push((place, same[0])),
+                    Some(at) => ranges.of_steps[at].push((range, same[0])),
+                    None => ranges.known.push((range, same[0])),
                 }
                 first = end;
             }
         }
-        places
+        ranges
     }
 
-    /// Numbers that are known before the first step.
+    /// Removes and returns the constants and inputs.
     #[must_use]
-    pub fn known(&mut self) -> Vec<(Place, Entry)> {
+    pub fn take_known(&mut self) -> Vec<(OutputRange, Entry)> {
         std::mem::take(&mut self.known)
     }
 
-    /// Numbers that a step computes.
+    /// Removes and returns the elements that a step computes.
     #[must_use]
-    pub fn of(&mut self, step: usize) -> Vec<(Place, Entry)> {
+    pub fn take_of_step(&mut self, step: usize) -> Vec<(OutputRange, Entry)> {
         self.of_steps
             .get_mut(step)
             .map(std::mem::take)
@@ -68,7 +70,7 @@ impl Places {
     }
 }
 
-/// The step that computes a number.
+/// Step that computes an entry; `None` for constants and inputs.
 fn step(entry: Entry) -> Option<usize> {
     match entry.operand {
         Operand::Step(at) => Some(at),
