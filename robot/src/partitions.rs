@@ -3,7 +3,7 @@
 /// Largest number of partitions that are listed.
 const MAX_PARTITIONS: usize = 1000;
 
-/// Choices of r kept actuators among n ≥ r, in lexicographic order.
+/// Choices of r kept actuators among n, in lexicographic order; none if r > n.
 ///
 /// At most the first thousand choices are returned.
 ///
@@ -12,6 +12,9 @@ const MAX_PARTITIONS: usize = 1000;
 /// ```
 #[must_use]
 pub fn partitions(n: usize, r: usize) -> Vec<Vec<usize>> {
+    if r > n {
+        return Vec::new();
+    }
     let mut all = vec![(0..r).collect::<Vec<usize>>()];
     while all.len() < MAX_PARTITIONS
         && let Some(last) = all.last()

@@ -6,7 +6,7 @@ use crate::robot::Robot;
 use overact_codegen::diagnostic::Code;
 use overact_simulation::{Term, Trajectory};
 use std::fmt::Write;
-use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
 /// Comment above the runs.
 const COMMENT: &str = "\n# Computed by `overact excite`: they determine the base parameters best within the limits.\n";
@@ -21,7 +21,10 @@ pub(super) fn tables(
 ) -> String {
     let mut text = COMMENT.to_owned();
     for (run, trajectory) in runs {
-        let mut table = format!("\n[[experiment.run]]\nname = \"{}\"\n", run.name);
+        let mut table = format!(
+            "\n[[experiment.run]]\nname = {}\n",
+            Value::from(run.name.as_str())
+        );
         match &run.payload_name {
             Some(name) => _ = writeln!(table, "payload = \"{name}\""),
             None if run.payload => table += "payload = true\n",

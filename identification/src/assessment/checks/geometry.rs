@@ -46,7 +46,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }
     let level = level(tests);
     let Some(worst) = most_significant(&found, level) else {
-        return Ok(vec![passed_check(context, scores, &found, level)]);
+        return Ok(vec![passed_check(context, scores, &found, tests, level)]);
     };
     let hypothesis = worst.hypothesis(scores);
     let harm = worst_harm(context, scores, &found, worst, level);
@@ -136,7 +136,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 }
 
 /// The passed check, with its detection limits.
-fn passed_check(context: &Context<'_>, scores: &Scores, found: &[Tested], level: f64) -> Check {
+fn passed_check(
+    context: &Context<'_>,
+    scores: &Scores,
+    found: &[Tested],
+    tests: usize,
+    level: f64,
+) -> Check {
     let limits = detection_limits(context, scores, found, level);
     let visible = |of: fn(&FaultHypothesis) -> bool| -> String {
         let own = limits.iter().filter(|(hypothesis, _)| of(hypothesis));
@@ -165,7 +171,7 @@ fn passed_check(context: &Context<'_>, scores: &Scores, found: &[Tested], level:
         .map_or(f64::NAN, |one| one.wald.quantile(level));
     Check::new(CheckKind::EncoderOffset, About::Model, words.join("; "))
         .measured(largest, "standard deviations")
-        .against(threshold, origin(found.len()))
+        .against(threshold, origin(tests))
         .detecting(limits.into_iter().map(|(_, limit)| limit).collect())
 }
 
