@@ -182,7 +182,7 @@ fn deviations_of_gains_are_honest() {
     let robot = robot(&coarse(KNOWN));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
     let settings = robot.settings(1000.0);
-    let draws = drawn([4, 100]);
+    let draws = drawn([4, 50, 100]);
     let noise = [0.5, 1.0, 2.0, 1.0];
     let (mut squares, mut sums) = ([0.0; 4], [0.0; 4]);
     let mut plain = [0.0; 4];
@@ -299,7 +299,7 @@ fn a_serial_robot_tells_its_gains_by_the_mass_of_a_payload_alone() {
 fn intervals_behind_gains_contain_the_truth() {
     let robot = robot(&coarse(KNOWN));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
-    let draws = drawn([1, 20]);
+    let draws = drawn([1, 10, 20]);
     // Consider parameters that are well known compared to the gains, for which the gains matter.
     let (mut all, mut within, mut narrow) = (0, 0, 0);
     for seed in 1..=draws {

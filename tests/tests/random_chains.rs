@@ -15,8 +15,8 @@ use overact_tier::drawn;
 /// dependent. The worst of 200 draws has an error of 2e-7 of an entry and 3e-10 of its matrix.
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 const STATES: usize = 3;
-/// Robots in the default and full tier.
-const COUNT: [u64; 2] = [2, 50];
+/// Robots in the default, full and nightly tier.
+const COUNT: [u64; 3] = [2, 25, 50];
 /// Largest number of draws for each robot.
 const DRAWS: u64 = 20;
 

@@ -40,7 +40,7 @@ const TOLERANCE: f64 = 1e-9;
 const OF_BASE: f64 = 1e-8;
 const STATES: usize = 3;
 /// Mechanisms in the default and full tier; the latter must cover every feature and defect.
-const COUNT: [u64; 2] = [16, 208];
+const COUNT: [u64; 3] = [16, 208, 208];
 /// Largest condition number of the model's own partition for the plain comparison.
 const PLAIN: f64 = 1e3;
 /// Largest joint rate on the path for differentiating the energy, rad/s and m/s.
@@ -60,7 +60,7 @@ fn setting(name: &str) -> Option<u64> {
 
 fn seeds() -> std::ops::Range<u64> {
     match setting("OVERACT_RANDOM_SEED") {
-        Some(seed) => seed..seed + drawn([1; 2]),
+        Some(seed) => seed..seed + drawn([1; 3]),
         None => 0..drawn(COUNT),
     }
 }

@@ -17,7 +17,7 @@ use overact_tier::drawn;
 const TOLERANCES: [f64; 2] = [1e-7, 1e-9];
 const STATES: usize = 3;
 /// Robots in the default and full tier.
-const COUNT: [u64; 2] = [1, 20];
+const COUNT: [u64; 3] = [1, 10, 20];
 /// Functions to compare, by seed: all, or those of a group.
 const GROUPS: [Option<&str>; 4] = [
     None,

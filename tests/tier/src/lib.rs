@@ -69,15 +69,20 @@ pub fn of_many<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
     }
 }
 
-/// Number of random robots or draws of noise: from the environment, or that of the tier.
+/// Number of random robots or draws of noise: from the environment, or that of the tier, from
+/// `[default, full, night]`.
 ///
 /// # Panics
 ///
 /// If the variable is not a number.
 #[must_use]
-pub fn drawn(by_tier: [u64; 2]) -> u64 {
+pub fn drawn([default, full, night]: [u64; 3]) -> u64 {
     let Some(count) = std::env::var_os(COUNT) else {
-        return self::by_tier(by_tier);
+        return match tier() {
+            Tier::Default => default,
+            Tier::Full => full,
+            Tier::Night => night,
+        };
     };
     let number = count.to_str().and_then(|text| text.parse().ok());
     number.unwrap_or_else(|| panic!("{COUNT} is a number, not {}", count.display()))
