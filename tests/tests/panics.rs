@@ -43,7 +43,7 @@ fn a_way_to_a_panic_is_found() -> Result<(), Failure> {
         return Ok(());
     }
     let (stem, text) = ("emps".to_owned(), module("emps")?);
-    let checked = "::overact::guard::within(&[(\"joints\", joints, 1e12)])?;";
+    let checked = "guard::within(&[(\"joints\", joints, 1e12)])?;";
     assert!(text.contains(checked));
     let panics = format!("{checked} assert!(joints[0] < 3.0);");
     let said = link("panics", &[(stem, text.replacen(checked, &panics, 1))])?;
