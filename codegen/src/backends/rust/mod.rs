@@ -5,7 +5,7 @@
 //! the parameters are known, or if functions that it needs were left out. The code does not
 //! allocate, does not panic and has no unsafe code. A singular configuration is an error that names
 //! the leg. The code may be in any scope: it is in a block that imports what it uses by absolute
-//! paths ([`short_paths`]).
+//! paths (`short_paths`).
 //!
 //! The code follows the paper: `writing` names its values and explains the names in the type's
 //! documentation, and `layout` adds headings to the sections of a body.
