@@ -182,7 +182,7 @@ fn deviations_of_gains_are_honest() {
     let robot = robot(&coarse(KNOWN));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
     let settings = robot.settings(1000.0);
-    let draws = drawn([4, 50, 100]);
+    let draws = drawn([4, 100, 100]);
     let noise = [0.5, 1.0, 2.0, 1.0];
     let (mut squares, mut sums) = ([0.0; 4], [0.0; 4]);
     let mut plain = [0.0; 4];
