@@ -62,7 +62,7 @@ const STATES: Columns = ["time", "position.elbow", "effort.shoulder"];
 
 /// A file written by the usual libraries.
 fn written(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../identification/tests/written");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../logs/tests/written");
     folder.join(name).display().to_string()
 }
 

@@ -8,11 +8,8 @@ use overact_fleet::{
     robots::Robots,
     session::{Fleet, Options},
 };
-use overact_identification::{
-    Log,
-    data::write_parquet,
-    factors::{Pool, Record},
-};
+use overact_identification::{Log, factors::{Pool, Record}};
+use overact_logs::write_parquet;
 use overact_robot::Robot;
 use std::{
     fs,

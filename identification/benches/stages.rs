@@ -12,12 +12,11 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use dualv::{DualV, experiment, logs, records, truth};
 use overact::Model;
 use overact_identification::{
-    Dataset, Log, Mapping, Motions, Projection, Settings,
-    data::read,
-    estimate_projection,
+    Dataset, Log, Mapping, Motions, Projection, Settings, estimate_projection,
     filters::{Decimator, ZeroPhase, butterworth},
     identify, prepare,
 };
+use overact_logs::read;
 
 const SAMPLES: usize = 50_000;
 

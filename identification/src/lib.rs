@@ -3,19 +3,18 @@
 //! It implements sections 3.2, 4 and 5.3 of Briot, Krut, Gautier 2015 for parallel robots,
 //! overactuated or not, and for serial robots. [`identify()`] is the complete procedure.
 //! [`study()`] compares the actuator projection for all partitions. Robots are accessed through
-//! [`overact::Model`] only, so compiled and interpreted models are equivalent.
+//! [`overact::Model`] only, so compiled and interpreted models are equivalent. Runs are
+//! [`Log`]s, read by [`overact_logs`].
 //!
 //! Each folder imports only from those above it in this table, and a test checks the order:
 //!
 //! | folder | content |
 //! |---|---|
-//! | `error`, `significant`, `with_avx2`, `blocks` | problems with location and remedy; numbers in sentences; vectorisation; evaluation of a model in blocks |
+//! | `with_avx`, `units`, `blocks` | vectorisation; plausible ranges of quantities; evaluation of a model in blocks |
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series for plots |
-//! | [`data`] | runs from files, with checks; mappings of columns and units |
-//! | [`filters`] | zero-phase filtering, decimation, differences |
+//! //! | [`filters`] | zero-phase filtering, decimation, differences |
 //! | `prior`, `settings` | prior values of standard parameters; settings of an identification |
-//! | `monitor` | statistics and plausibility of raw numbers |
-//! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
+//! //! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
 //! | `regression` | columns of the model; decimated systems (39)-(41) of all projections, as R factors |
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
 //! | `calibration` | encoder offsets and lengths from the closure of redundant loops |
@@ -32,9 +31,6 @@ mod assessment;
 mod blocks;
 mod calibration;
 mod consistent;
-pub mod data;
-mod display_names;
-mod error;
 mod estimation;
 pub mod factors;
 pub mod filters;
@@ -42,13 +38,11 @@ mod gains;
 mod gravity;
 mod identify;
 mod kinematics;
-mod monitor;
 mod prior;
 mod regression;
 mod result;
 mod series;
 mod settings;
-mod significant;
 mod thresholds;
 mod units;
 mod validation;
@@ -64,9 +58,6 @@ pub use calibration::{
     Geometry, GeometryParameter, HeldParameter, ParameterKind, Reached, SensorNoise, calibrate,
 };
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
-pub use data::{Dataset, Gain, Load, Log, Mapping, Periods, Scales, Time, Variant};
-pub use display_names::{called, titled};
-pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
     essential::{Drift, Essential, Removal, essential},
@@ -85,6 +76,10 @@ pub use identify::{
     tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};
+pub use overact_logs::{
+    Dataset, Error, Gain, Load, Log, Mapping, Periods, Problem, Scales, Time, Variant, called,
+    significant, titled,
+};
 pub use prior::Prior;
 pub use regression::{
     columns::{Column, ColumnSet, Direction, is_carried},
@@ -99,6 +94,5 @@ pub use result::{
 };
 pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
 pub use settings::{Instruments, Normalisation, Settings};
-pub use significant::significant;
 pub use thresholds::Thresholds;
 pub use validation::{TorqueComparison, Validation};

@@ -11,10 +11,10 @@ use overact::Info;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    error::{Error, Problem},
     filters::{DECIMATION_PADDING, Decimator, butterworth, settling},
     prior::Prior,
 };
+use overact_logs::{Error, Problem};
 
 /// Largest frequency after decimation, in multiples of f_dyn.
 const DECIMATION_BAND: f64 = 4.0;
@@ -45,7 +45,7 @@ pub enum Instruments {
     #[default]
     Periods,
     /// Motion of the simulated robot, supplied with each run
-    /// ([`Log::with_instruments`](crate::Log::with_instruments)).
+    /// ([`Log::with_instruments`](overact_logs::Log::with_instruments)).
     Simulated,
     /// No instruments.
     None,

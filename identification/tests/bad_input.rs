@@ -7,8 +7,9 @@ use std::{fs, path::Path};
 use common::{EMPS, PAIR};
 use overact::Model;
 use overact_identification::{
-    Dataset, Error, Gain, Log, Mapping, Settings, Time, data::read, identify, motion,
+    Dataset, Error, Gain, Log, Mapping, Settings, Time, identify, motion,
 };
+use overact_logs::read;
 
 /// Text of an error, without the test's folder.
 fn text<T: std::fmt::Debug>(result: Result<T, Error>, folder: &Path) -> String {

@@ -5,8 +5,9 @@ mod common;
 use common::EMPS;
 use overact_identification::{
     Dataset, Gain, Identification, Log, Mapping, ModelKind, Normalisation, Settings, Stage, Time,
-    data::read, identify,
+    identify,
 };
+use overact_logs::read;
 
 /// Reads one of the benchmark's files.
 fn log(file: &str) -> Option<Log> {

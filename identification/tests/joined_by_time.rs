@@ -1,7 +1,7 @@
 //! Files of one run with separate clocks: one is interpolated to the times of the other.
 
 mod common;
-#[path = "common/drive.rs"]
+#[path = "../../logs/tests/common/drive.rs"]
 mod drive;
 
 use common::EMPS;

@@ -6,7 +6,8 @@ use std::{fmt::Write as _, fs};
 
 use common::EMPS;
 use overact::Model;
-use overact_identification::{Log, Mapping, Settings, Time, data::read, motion};
+use overact_identification::{Log, Mapping, Settings, Time, motion};
+use overact_logs::read;
 
 const FREQUENCY: f64 = 500.0;
 

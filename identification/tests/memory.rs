@@ -16,9 +16,8 @@ use std::{
 
 use dualv::{DualV, experiment, records, settings};
 use overact::Model;
-use overact_identification::{
-    Dataset, Instruments, Mapping, Progress, Settings, data::read, identify,
-};
+use overact_identification::{Dataset, Instruments, Mapping, Progress, Settings, identify};
+use overact_logs::read;
 use overact_simulation::Record;
 use overact_tier::by_tier;
 use peak_alloc::PeakAlloc;

@@ -4,7 +4,7 @@
 //! and are written again if Python has these libraries.
 
 mod common;
-#[path = "common/drive.rs"]
+#[path = "../../logs/tests/common/drive.rs"]
 mod drive;
 
 use std::{
@@ -14,7 +14,8 @@ use std::{
 
 use common::EMPS;
 use overact::Model;
-use overact_identification::{Dataset, Gain, Log, Mapping, Settings, Time, data::read, identify};
+use overact_identification::{Dataset, Gain, Log, Mapping, Settings, Time, identify};
+use overact_logs::read;
 
 /// Two joints, with velocities.
 fn mapping(time: &str, [positions, velocities, torques]: [[&str; 2]; 3]) -> Mapping {
@@ -182,7 +183,7 @@ fn every_format_gives_the_same_estimates() {
 }
 
 fn kept() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/written")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../logs/tests/written")
 }
 
 #[test]

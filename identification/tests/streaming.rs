@@ -6,7 +6,7 @@ use std::{fmt::Write as _, fs, path::Path};
 
 use common::EMPS;
 use overact::Model;
-use overact_identification::{Dataset, Identification, Log, Mapping, Settings, data, identify};
+use overact_identification::{Dataset, Identification, Log, Mapping, Settings, identify};
 use overact_tier::is_full;
 
 const SAMPLES: usize = 530_000;
@@ -43,7 +43,7 @@ fn identified(log: &Log, validation: &[Log]) -> Identification {
 }
 
 fn read(path: &Path) -> Log {
-    data::read(path, &Mapping::for_robot(&EMPS.info()), false).expect("a log")
+    overact_logs::read(path, &Mapping::for_robot(&EMPS.info()), false).expect("a log")
 }
 
 #[test]
@@ -98,7 +98,8 @@ fn a_time_that_is_not_uniform_far_inside_is_located() {
         let _ = writeln!(text, "{},0,0", (k + missing) as f64 / FREQUENCY);
     }
     fs::write(&path, text).expect("written");
-    let error = data::read(&path, &Mapping::for_robot(&EMPS.info()), false).expect_err("a gap");
+    let error =
+        overact_logs::read(&path, &Mapping::for_robot(&EMPS.info()), false).expect_err("a gap");
     assert_eq!(error.problems[0].line, Some(8002));
     assert!(error.to_string().contains("between samples 7999 and 8000"));
 }

@@ -1,7 +1,8 @@
 //! Runs from Python: files, arrays by column name, or samples in SI units.
 
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use overact_identification::{Log, data::Array};
+use overact_identification::Log;
+use overact_logs::Array;
 use overact_robot::{Error, Robot};
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyTuple};
 use std::path::{Path, PathBuf};

@@ -4,10 +4,8 @@ use crate::{error::Error, experiment::VirtualExperiment, robot::Robot};
 use overact::Model;
 use overact_codegen::description::{self, Instruments};
 use overact_codegen::diagnostic::Code;
-use overact_identification::{
-    Gain, Log, Mapping,
-    data::{self, Array},
-};
+use overact_identification::{Gain, Log, Mapping};
+use overact_logs::Array;
 use overact_simulation::Record;
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
@@ -44,7 +42,7 @@ impl Robot {
     ) -> Result<Vec<Log>, Error> {
         let mapping = self.mapping();
         let (mut logs, mut errors) = (Vec::new(), Vec::new());
-        for log in data::read_all(files, &mapping, progress) {
+        for log in overact_logs::read_all(files, &mapping, progress) {
             match log.and_then(|log| self.meant(log)) {
                 Ok(log) => logs.push(log),
                 Err(error) => errors.push(self.located(error).into()),
@@ -75,13 +73,14 @@ impl Robot {
         payload: bool,
     ) -> Result<Log, Error> {
         let mapping = self.mapping();
-        let log = data::read_arrays(name, arrays, &mapping, payload);
+        let log = overact_logs::read_arrays(name, arrays, &mapping, payload);
         let log = log.and_then(|log| self.meant(log));
         let log = log.map_err(|error| self.located(error))?;
         match self.references(&mapping) {
             None => Ok(log),
             Some(mapping) => {
-                Ok(log.with_instruments(data::read_arrays(name, arrays, &mapping, payload)?))
+                Ok(log
+                    .with_instruments(overact_logs::read_arrays(name, arrays, &mapping, payload)?))
             }
         }
     }
@@ -92,14 +91,14 @@ impl Robot {
     /// As [`read_logs`](Self::read_logs).
     pub fn log_of_bytes(&self, name: &str, bytes: Arc<[u8]>, payload: bool) -> Result<Log, Error> {
         let mapping = self.mapping();
-        let log = data::read_bytes(name, &bytes, &mapping, payload);
+        let log = overact_logs::read_bytes(name, &bytes, &mapping, payload);
         let log = log.and_then(|log| self.meant(log));
         let log = log.map_err(|error| self.located(error))?;
         match self.references(&mapping) {
             None => Ok(log),
-            Some(mapping) => {
-                Ok(log.with_instruments(data::read_bytes(name, &bytes, &mapping, payload)?))
-            }
+            Some(mapping) => Ok(
+                log.with_instruments(overact_logs::read_bytes(name, &bytes, &mapping, payload)?)
+            ),
         }
     }
 
@@ -175,7 +174,7 @@ fn beside_references(
     files: &[(&Path, bool)],
     mapping: &Mapping,
 ) -> Result<Vec<Log>, Error> {
-    let references = data::read_all(files, mapping, &|_| ());
+    let references = overact_logs::read_all(files, mapping, &|_| ());
     let pairs = logs.into_iter().zip(references);
     let beside = |(log, reference): (Log, Result<Log, _>)| {
         let reference = reference.map_err(Error::from)?;

@@ -1,6 +1,7 @@
 //! Continuously rotating joints: angles over many turns, and angles logged within one turn.
 
-use overact_identification::{CheckKind, Grade, Identification, Log, data::Array};
+use overact_identification::{CheckKind, Grade, Identification, Log};
+use overact_logs::Array;
 use overact_robot::{Identifier, Robot};
 use std::f64::consts::{PI, TAU};
 

@@ -17,7 +17,7 @@ struct LayerOrder {
     order: &'static [&'static str],
 }
 
-const LAYER_ORDERS: [LayerOrder; 9] = [
+const LAYER_ORDERS: [LayerOrder; 10] = [
     LayerOrder {
         folder: "description",
         module: "",
@@ -80,22 +80,38 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
         ],
     },
     LayerOrder {
-        folder: "identification",
+        folder: "logs",
         module: "",
         order: &[
             "error",
+            "problems",
             "significant",
-            "with_avx",
             "display_names",
+            "samples",
+            "bytes",
+            "formats",
+            "mapping",
+            "unwrapping",
+            "resampling",
+            "period_sums",
+            "run",
+            "periods",
+            "monitor",
+            "read",
+        ],
+    },
+    LayerOrder {
+        folder: "identification",
+        module: "",
+        order: &[
+            "with_avx",
             "units",
             "blocks",
             "thresholds",
             "series",
-            "data",
             "filters",
             "prior",
             "settings",
-            "monitor",
             "kinematics",
             "regression",
             "estimation",
@@ -243,11 +259,9 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
 
 /// Remaining cycles, as folder and files; new ones are rejected.
 ///
-/// An expression is a handle into the arena that creates it. A log in a file is read through that
-/// file, and reading a file creates a log. The others are to be resolved.
-const CIRCLES: [(&str, &[&str]); 3] = [
+/// An expression is a handle into the arena that creates it. The other is to be resolved.
+const CIRCLES: [(&str, &[&str]); 2] = [
     ("codegen/cas", &["arena", "expr"]),
-    ("identification/data", &["log", "periods"]),
     (
         "identification/estimation",
         &["instruments", "total_least_squares"],

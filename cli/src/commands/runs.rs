@@ -10,7 +10,7 @@ use crate::{
     progress::Progress,
 };
 use clap::ValueEnum;
-use overact_identification::{Log, Progress as Doing, Settings, data};
+use overact_identification::{Log, Progress as Doing, Settings};
 use overact_robot::{Error, Robot, Runs};
 use std::{
     cell::OnceCell,
@@ -89,7 +89,7 @@ impl Arguments {
         let held_out = held_out.into_iter().filter(|_| !self.are_virtual());
         let all = logs.into_iter().chain(held_out).flatten();
         std::iter::once(description)
-            .chain(all.flat_map(|path| data::parts(payloads::file(path))))
+            .chain(all.flat_map(|path| overact_logs::parts(payloads::file(path))))
             .collect()
     }
 

@@ -4,7 +4,6 @@
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::diagnostic::Code;
-use overact_identification::data;
 use std::{fs, path::Path};
 
 /// Rejects logs with equal content; the first `estimated` ones are training data, the others
@@ -60,12 +59,12 @@ fn problem(log: &Path, other: &Path, is_estimated: bool, is_other_estimated: boo
 /// Sizes of a log's files; `None` if one is not a file, which is reported when the log is read.
 fn sizes(log: &Path) -> Option<Vec<u64>> {
     let size = |path: &Path| Some(fs::metadata(path).ok().filter(fs::Metadata::is_file)?.len());
-    data::parts(log).into_iter().map(size).collect()
+    overact_logs::parts(log).into_iter().map(size).collect()
 }
 
 /// Contents of a log's files.
 fn content(log: &Path) -> Option<Vec<Vec<u8>>> {
-    let parts = data::parts(log).into_iter();
+    let parts = overact_logs::parts(log).into_iter();
     parts.map(|path| fs::read(path).ok()).collect()
 }
 

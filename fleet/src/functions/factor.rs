@@ -20,10 +20,8 @@ use datafusion::{
     scalar::ScalarValue,
 };
 use overact::Model;
-use overact_identification::{
-    Log,
-    data::{Array as Column, Time},
-};
+use overact_identification::Log;
+use overact_logs::{Array as Column, Time};
 use overact_robot::Robot;
 use std::sync::Arc;
 

@@ -12,8 +12,8 @@ use super::{
 use crate::{
     kinematics::conditioning::couples,
     regression::{columns::ColumnSet, projection::ModelKind},
-    significant,
 };
+use overact_logs::significant;
 
 /// Quantities estimated before the parameters, which are therefore no assumptions.
 #[derive(Debug, Clone, Copy, Default)]

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::evidence::Evidence;
-use crate::{display_names::titled, regression::projection::ModelKind, result::Stage};
+use crate::{regression::projection::ModelKind, result::Stage};
+use overact_logs::titled;
 
 /// Result of one check.
 ///

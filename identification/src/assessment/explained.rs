@@ -6,7 +6,7 @@ use super::{
     checks::{raw_samples, units},
     positions,
 };
-use crate::{data::Log, error::Error, monitor::Monitor};
+use overact_logs::{Error, Log, monitor::Monitor};
 
 /// Tolerance of the loop closure (m, rad) after a hypothetical correction of positions.
 const CLOSED: f64 = 0.01;
@@ -32,7 +32,7 @@ pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
     if let (Some(problem), false) = (problems.first_mut(), hints.is_empty()) {
         problem.help = Some(hints.join("; "));
     }
-    Error { problems }
+    problems.into()
 }
 
 /// Statistics of a whole run; `None` if the file cannot be read.

@@ -6,11 +6,10 @@ use overact::{Function, Model, math::wrap_angle};
 
 use super::check::{About, Check, CheckKind, Grade};
 use crate::{
-    data::Log,
-    error::Error,
     kinematics::approach,
     units::{Signal, UNIT_ERRORS, UnitError},
 };
+use overact_logs::{Error, Log};
 
 /// Number of rows of a run that are tested, and their distance in time (s).
 const ROWS: usize = 200;

@@ -8,7 +8,8 @@ use super::{
     check::{About, Check, CheckKind, Grade},
     positions,
 };
-use crate::{data::Log, error::Error, kinematics::conditioning::couples};
+use crate::kinematics::conditioning::couples;
+use overact_logs::{Error, Log};
 
 /// Largest fraction of the error that may remain after a correction of gravity.
 ///

@@ -46,12 +46,9 @@ pub use result::{CalibratedParameter, Calibration, CalibrationScope, HeldParamet
 use overact::Code;
 use overact::Model;
 
-use crate::{
-    data::Log,
-    error::{Error, Problem},
-};
 use elimination::Normal;
 use fit::{Fit, inverted, restricted};
+use overact_logs::{Error, Log, Problem};
 use report::Report;
 use samples::Samples;
 use selection::{Choice, independent_part};

@@ -9,11 +9,8 @@
 use overact::Code;
 use overact::{Model, math::wrap_angle};
 
-use crate::{
-    data::Log,
-    error::{Error, Problem},
-    kinematics::approach,
-};
+use crate::kinematics::approach;
+use overact_logs::{Error, Log, Problem};
 
 /// Samples of all runs together.
 const SAMPLES: usize = 2000;

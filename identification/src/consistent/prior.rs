@@ -10,7 +10,8 @@ use super::{
     pseudo_inertia::{Inertia, divergence},
     values::{Values, ball, suffix},
 };
-use crate::{error::Problem, prior::Prior};
+use crate::prior::Prior;
+use overact_logs::Problem;
 
 /// Name and symbol of a standard parameter.
 pub(super) type NamedParameter<'a> = (&'a str, StandardParameter);

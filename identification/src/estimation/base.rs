@@ -15,15 +15,12 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use overact::{Body, Info, Model, StandardParameter};
 
-use crate::{
-    data::Log,
-    error::{Error, Problem},
-    regression::{
-        columns::{Column, ColumnSet, Direction, has_payload},
-        elimination::{Elimination, eliminate},
-        states::random_states,
-    },
+use crate::regression::{
+    columns::{Column, ColumnSet, Direction, has_payload},
+    elimination::{Elimination, eliminate},
+    states::random_states,
 };
+use overact_logs::{Error, Log, Problem};
 
 /// A column is dependent if its part outside the kept ones is below this fraction of its norm.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-9;

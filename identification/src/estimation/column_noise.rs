@@ -16,16 +16,13 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::position_noise::with_added_noise;
-use crate::{
-    data::Log,
-    error::Error,
-    regression::{
-        factor::Factor,
-        observation::MeasuredRun,
-        observer::Observer,
-        system::{Observed, System},
-    },
+use crate::regression::{
+    factor::Factor,
+    observation::MeasuredRun,
+    observer::Observer,
+    system::{Observed, System},
 };
+use overact_logs::{Error, Log};
 
 /// Samples of a run that are used in addition to those that the filters need.
 const SAMPLES: usize = 4096;
@@ -75,7 +72,7 @@ impl ColumnNoise {
                 log: &piece,
                 instruments: Some(&noisy),
                 budget: 0,
-                returns: None,
+                periodic_motion: None,
             };
             // Skip this run if the noise leaves the workspace.
             let Ok((observed, _)) = observer.run(&measured, &|_, _| {}) else {

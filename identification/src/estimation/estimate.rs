@@ -12,7 +12,6 @@ use overact::Code;
 use serde::Serialize;
 
 use crate::{
-    error::{Error, Problem},
     regression::{
         elimination::residual,
         factor::{DATA_RANK_TOLERANCE, Factor},
@@ -20,6 +19,7 @@ use crate::{
     },
     settings::{Normalisation, Settings},
 };
+use overact_logs::{Error, Problem};
 
 /// A line whose residual is below this fraction of its norm is exact up to rounding.
 const EXACT: f64 = 1e-9;

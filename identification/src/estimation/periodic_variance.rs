@@ -229,11 +229,9 @@ impl SumVariance {
 #[cfg(test)]
 mod tests {
     use super::{Mean, SumVariance};
-    use crate::{
-        data::periods::Return,
-        regression::fold::{Fold, Phases},
-    };
+    use crate::regression::fold::{Fold, Phases};
     use nalgebra::{DMatrix, DVector};
+    use overact_logs::periods::PeriodicMotion;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -251,7 +249,7 @@ mod tests {
             all.sum::<f64>()
         };
         let error: Vec<f64> = (0..PERIOD).map(|_| returning.sqrt() * white()).collect();
-        let motion = Return {
+        let motion = PeriodicMotion {
             samples: PERIOD,
             motion: 0,
         };
@@ -308,7 +306,7 @@ mod tests {
         let half = 0.5 * (10 * PERIOD) as f64;
         assert!((sum_variance.square - half).abs() < 1e-9 * half);
         // The same with the sine itself in the residual; subtracting its size removes it.
-        let motion = Return {
+        let motion = PeriodicMotion {
             samples: PERIOD,
             motion: 0,
         };

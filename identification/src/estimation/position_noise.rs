@@ -5,7 +5,7 @@
 //! therefore that of the noise. Quantisation with step s has the noise variance s²/12, even if it
 //! hides other noise.
 
-use crate::{data::Log, error::Error};
+use overact_logs::{Error, Log};
 
 /// Orders of the differences.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=8;

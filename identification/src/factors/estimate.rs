@@ -5,11 +5,11 @@ use serde::Serialize;
 
 use super::{excluded_run::ExcludedRun, gather::CollectedRuns, restore::restored, run::RunFactors};
 use crate::{
-    error::Error,
     identify::{BaseParameter, Progress, estimates_of},
     result::{Estimate, RunSummary},
     settings::{Instruments, Settings},
 };
+use overact_logs::Error;
 
 /// Result of an estimation from the factors of runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]

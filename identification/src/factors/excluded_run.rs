@@ -3,7 +3,7 @@
 use overact::Code;
 use serde::Serialize;
 
-use crate::error::Problem;
+use overact_logs::Problem;
 
 /// A run, or a whole file, that was left out.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

@@ -11,7 +11,7 @@ use super::{
     read::read_factors,
     run::RunFactors,
 };
-use crate::error::{Error, Problem};
+use overact_logs::{Error, Problem};
 
 /// Runs of several files, and what was left out.
 #[derive(Debug, Clone)]
@@ -86,7 +86,7 @@ pub fn gather(
             Problem::new(Code::FACTORS, "no run is left in the factor files")
                 .help("give at least one"),
         );
-        return Err(Error { problems });
+        return Err(problems.into());
     }
     Ok(CollectedRuns { runs, left_out })
 }

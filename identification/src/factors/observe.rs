@@ -10,8 +10,6 @@ use super::{
 };
 use crate::{
     assessment::{self, check::Check},
-    data::Log,
-    error::Error,
     estimation::base::{PayloadUse, base_parameters},
     identify::{LARGEST_STRETCHES, Progress},
     kinematics,
@@ -26,6 +24,7 @@ use crate::{
     result::RunSummary,
     settings::{Instruments, Normalisation, Settings},
 };
+use overact_logs::{Error, Log};
 
 /// Metadata of runs.
 #[derive(Debug, Clone, Default)]
@@ -155,7 +154,7 @@ impl<'a> Factory<'a> {
             log,
             instruments: None,
             budget: budget.unwrap_or(0),
-            returns: None,
+            periodic_motion: None,
         };
         let (systems, observation) = observer
             .run(&measured, &report)

@@ -15,7 +15,6 @@ use serde::Serialize;
 
 use super::pool::{Kind, Pool};
 use crate::{
-    error::Error,
     estimation::{
         estimate::{Estimation, fit_with},
         intervals::{Intervals, distributions::fisher_tail},
@@ -28,6 +27,7 @@ use crate::{
     },
     settings::Normalisation,
 };
+use overact_logs::Error;
 
 /// Estimate of a pool of factors.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

@@ -9,7 +9,6 @@ use super::{
     run::RunFactors,
 };
 use crate::{
-    error::{Error, Problem},
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
     identify::Prepared,
     regression::{
@@ -19,6 +18,7 @@ use crate::{
     },
     settings::Settings,
 };
+use overact_logs::{Error, Problem};
 
 /// Combines the factors of runs.
 ///

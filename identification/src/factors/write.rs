@@ -17,7 +17,7 @@ use super::{
     run::{ModelFactors, RunFactors},
     schema::{Cell, Row, SCHEMA, VERSION},
 };
-use crate::error::{Error, Problem};
+use overact_logs::{Error, Problem};
 
 /// The bytes of a factor file of runs; equal runs give equal bytes.
 ///

@@ -24,7 +24,7 @@ use super::{
     modes::{Mode, Modes},
     zero_phase::{TRANSIENT, ZeroPhase, check_length},
 };
-use crate::error::{Error, Problem};
+use overact_logs::{Error, Problem};
 
 /// Order of the Chebyshev low-pass.
 pub const DECIMATION_ORDER: usize = 8;

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Complex;
 
-use crate::error::{Error, Problem};
+use overact_logs::{Error, Problem};
 
 /// Largest order; higher orders have no benefit for identification.
 const LARGEST_ORDER: usize = 50;

@@ -12,8 +12,8 @@ use super::{
     cascade::{Cascade, reflected, settling, started},
     design::LowPass,
 };
-use crate::error::{Error, Problem};
 use overact::Code;
+use overact_logs::{Error, Problem};
 
 /// Relative size of the transient at the block's end: below the signals' rounding.
 pub(super) const TRANSIENT: f64 = 1e-15;

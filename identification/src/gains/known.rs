@@ -9,14 +9,13 @@ use overact::Code;
 use overact::Model;
 
 use crate::{
-    data::Log,
-    error::{Error, Problem, suggestion},
     estimation::base::{
         BaseParameters, Combination, PayloadUse, base_parameters_with_known, payload_names,
     },
     regression::columns::ColumnSet,
     settings::Settings,
 };
+use overact_logs::{Error, Log, Problem, suggestion};
 
 /// Largest number of names in a sum.
 const NAMES: usize = 5;

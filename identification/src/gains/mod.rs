@@ -34,16 +34,11 @@ pub(crate) use uncertainty_propagation::propagate_gain_uncertainty;
 use overact::Code;
 use overact::Model;
 
-use crate::{
-    data::Log,
-    error::{Error, Problem},
-    regression::factor::Factor,
-    settings::Settings,
-    significant,
-};
+use crate::{regression::factor::Factor, settings::Settings};
 use deviations::deviations;
 use known::Split;
 use observation::Observer;
+use overact_logs::{Error, Log, Problem, significant};
 use selection::{Selection, undetermined};
 use solve::{solve, total_least_squares};
 

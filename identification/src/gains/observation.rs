@@ -11,8 +11,6 @@ use rayon::prelude::*;
 use super::known::Split;
 use crate::{
     blocks::{BLOCK, slice},
-    data::Log,
-    error::{Error, Problem},
     kinematics::{self, Motion, Motions},
     regression::{
         projection::Projection,
@@ -22,6 +20,7 @@ use crate::{
     },
     settings::Settings,
 };
+use overact_logs::{Error, Log, Problem};
 
 /// Largest number of values kept as successive equations, over all runs (64 MB).
 const LARGEST_STRETCHES: usize = 1 << 23;

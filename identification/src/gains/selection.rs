@@ -1,14 +1,12 @@
 //! Choice of independent columns, and errors for drives without one.
 
 use super::observation::Equations;
-use crate::{
-    error::{Error, Problem},
-    regression::{
-        elimination::eliminate,
-        factor::{DATA_RANK_TOLERANCE, Factor},
-    },
+use crate::regression::{
+    elimination::eliminate,
+    factor::{DATA_RANK_TOLERANCE, Factor},
 };
 use overact::Code;
+use overact_logs::{Error, Problem};
 
 /// Smallest independent part of a drive's column, by its norm.
 const RANK_TOLERANCE: f64 = 1e-7;

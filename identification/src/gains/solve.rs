@@ -28,10 +28,8 @@ use super::{
     observation::Equations,
     selection::{Selection, size},
 };
-use crate::{
-    error::{Error, Problem},
-    regression::factor::Factor,
-};
+use crate::regression::factor::Factor;
+use overact_logs::{Error, Problem};
 
 /// Largest number of iterations for a given noise of the drives.
 const INNER: usize = 200;

@@ -14,8 +14,6 @@ use overact::Function;
 use super::result::Gains;
 use crate::{
     blocks::{BLOCK, slice},
-    data::Log,
-    error::Error,
     kinematics::{
         Motion, Motions,
         conditioning::{KeptActuators, home_scales},
@@ -29,6 +27,7 @@ use crate::{
         uncertainty_propagation::PropagatedUncertainty,
     },
 };
+use overact_logs::{Error, Log};
 
 /// Reads runs whose torques have been multiplied by gains.
 ///

@@ -10,8 +10,6 @@ use overact::{Model, StandardParameter as P};
 
 use super::Fields;
 use crate::{
-    data::Log,
-    error::{Error, Problem},
     estimation::base::{PayloadUse, RANK_TOLERANCE, payload_names},
     regression::{
         columns::ColumnSet,
@@ -20,6 +18,7 @@ use crate::{
     },
     settings::Settings,
 };
+use overact_logs::{Error, Log, Problem};
 
 /// Ratio of the rows of random states to the number of columns.
 const STATES: usize = 2;

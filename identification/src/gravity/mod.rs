@@ -37,16 +37,13 @@ use nalgebra::Vector3;
 use overact::Code;
 use overact::Model;
 
-use crate::{
-    data::Log,
-    error::{Error, Problem},
-    settings::Settings,
-};
+use crate::settings::Settings;
 use columns::Extended;
 use determined::free_turns;
 use deviations::covariance;
 use direction::Frame;
 use observation::Observer;
+use overact_logs::{Error, Log, Problem};
 use solve::solve;
 use uncertainty_propagation::Turned;
 

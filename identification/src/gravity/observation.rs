@@ -8,8 +8,6 @@ use overact::{Function, Model};
 use super::{Fields, columns::Extended};
 use crate::{
     blocks::{BLOCK, slice},
-    data::Log,
-    error::Error,
     kinematics::{
         self, Motion, Motions,
         conditioning::{KeptActuators, home_scales},
@@ -24,6 +22,7 @@ use crate::{
     },
     settings::Settings,
 };
+use overact_logs::{Error, Log};
 
 /// Largest number of values kept as successive equations, over all runs (64 MB).
 const LARGEST_STRETCHES: usize = 1 << 23;

@@ -5,7 +5,6 @@ use overact::Code;
 
 use super::{columns::Extended, direction::Frame, observation::combined};
 use crate::{
-    error::{Error, Problem},
     estimation::estimate::{Estimation, fit},
     regression::{
         elimination::eliminate,
@@ -14,6 +13,7 @@ use crate::{
     },
     settings::Settings,
 };
+use overact_logs::{Error, Problem};
 
 /// Largest number of updates of the weights.
 const OUTER: usize = 20;

@@ -5,10 +5,10 @@ use std::fmt;
 use nalgebra::{DMatrix, DVector};
 
 use super::{columns::Extended, solve::Solution};
-use crate::{
-    error::Error,
-    regression::{factor::Factor, system::System, uncertainty_propagation::PropagatedUncertainty},
+use crate::regression::{
+    factor::Factor, system::System, uncertainty_propagation::PropagatedUncertainty,
 };
+use overact_logs::Error;
 
 /// Columns and angle derivatives in the estimated direction, and equations of each projection.
 #[derive(Clone, PartialEq)]

@@ -6,14 +6,13 @@ use super::{prepare::Prepared, progress::Progress};
 use crate::{
     assessment::{self, RunMonitor},
     consistent::Consistent,
-    data::Log,
-    error::Error,
     regression::{observer::Observer, projection::ModelKind},
     result::{CrossValidation, Estimate, Stage},
     series::RunFigures,
     settings::Settings,
     validation::{Candidate, Validation, validate},
 };
+use overact_logs::{Error, Log};
 
 /// Results on the validation runs.
 #[derive(Default)]

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use super::{prepare::Prepared, progress::Progress};
 use crate::{
-    error::{Error, Problem},
     estimation::{
         correlation::Noise,
         essential::essential,
@@ -28,6 +27,7 @@ use crate::{
     result::{Estimate, Estimator, ParameterEstimate, Stage},
     settings::Settings,
 };
+use overact_logs::{Error, Problem};
 
 /// Condition number of a partition above which the actuator projection is unreliable.
 const LARGEST_PARTITION_CONDITION: f64 = 30.0;

@@ -1,8 +1,6 @@
 //! Instruments of all runs, according to the settings.
 
 use crate::{
-    data::{Log, periods},
-    error::{Error, Problem},
     estimation::{
         estimate::percent,
         instruments::regressor::{RepeatedRun, SimulatedRun},
@@ -10,6 +8,7 @@ use crate::{
     settings::{Instruments, Settings},
 };
 use overact::Code;
+use overact_logs::{Error, Log, Problem, periods};
 
 /// Instruments of all runs.
 #[derive(Debug, Clone, Default)]

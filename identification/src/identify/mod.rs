@@ -39,8 +39,6 @@ use crate::{
         hypotheses::{PositionRange, ScoreTest},
         verdict::verdicts,
     },
-    data::Dataset,
-    error::Error,
     estimation::instruments::regressor::ErrorsInRegressor,
     gains::Gains,
     gravity::GravityDirection,
@@ -49,6 +47,7 @@ use crate::{
     settings::Settings,
     thresholds::Thresholds,
 };
+use overact_logs::{Dataset, Error};
 
 /// Identifies a robot from the runs of a data set and cross-validates the estimates.
 ///
@@ -143,7 +142,7 @@ pub fn identify_after(
         base: &prepared.base.columns,
         estimate,
         position_ranges: &position_ranges,
-        returns: &prepared.returns,
+        periodic_motions: &prepared.periodic_motions,
         settings,
     });
     let scores = test.as_ref().map(|test| test.scores(1)).transpose()?;

@@ -8,7 +8,6 @@ use super::{
     prepare::Prepared,
 };
 use crate::{
-    error::Error,
     estimation::correlation::line_residual,
     kinematics::distribution::{least_norm, product},
     regression::{projection::Projection, system::System},
@@ -17,6 +16,7 @@ use crate::{
     settings::Settings,
     validation::platform_input,
 };
+use overact_logs::Error;
 
 /// Plots of an identification.
 ///
@@ -153,7 +153,7 @@ fn prediction(
     let mut jacobians = vec![0.0; time.len() * n * r];
     model
         .evaluate(Function::InverseJacobian, &[&poses], &mut jacobians)
-        .map_err(|error| crate::error::Problem::new(Code::NO_EFFECT, error.to_string()))?;
+        .map_err(|error| overact_logs::Problem::new(Code::NO_EFFECT, error.to_string()))?;
     let mut torques: Vec<Series> = info
         .actuators
         .iter()

@@ -7,11 +7,6 @@ use super::{instruments::InstrumentRuns, progress::Progress};
 use crate::{
     assessment,
     consistent::{ConsistencySearch, Consistent},
-    data::{
-        Log,
-        periods::{Return, returns},
-    },
-    error::Error,
     estimation::{
         base::{BaseParameters, PayloadUse, base_parameters, payload_names},
         column_noise::ColumnNoise,
@@ -31,6 +26,10 @@ use crate::{
     },
     result::{Estimate, RunSummary},
     settings::{Settings, check_partition},
+};
+use overact_logs::{
+    Error, Log,
+    periods::{PeriodicMotion, periodic_motions},
 };
 
 /// Largest number of values kept as successive equations, over runs and projections (64 MB).
@@ -59,7 +58,7 @@ pub struct Prepared {
     /// Instruments.
     pub(super) instrument_runs: InstrumentRuns,
     /// Periodic motion of each run, if it has one.
-    pub(super) returns: Vec<Option<Return>>,
+    pub(super) periodic_motions: Vec<Option<PeriodicMotion>>,
     /// Effect of the uncertainty of previous identifications.
     pub(super) propagated_uncertainty: Option<PropagatedUncertainty>,
 }
@@ -83,7 +82,7 @@ impl Prepared {
             observations: Vec::new(),
             points: Vec::new(),
             instrument_runs: InstrumentRuns::default(),
-            returns: Vec::new(),
+            periodic_motions: Vec::new(),
             propagated_uncertainty: None,
         }
     }
@@ -260,7 +259,7 @@ pub fn prepare(
         let with = |system: Result<System, Error>| system.map(System::with_instruments);
         systems = systems.into_iter().map(with).collect();
     }
-    let returns = returns(runs, settings.period_s);
+    let periodic_motions = periodic_motions(runs, settings.period_s);
     for (number, log) in runs.iter().enumerate() {
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
@@ -270,7 +269,7 @@ pub fn prepare(
             log,
             instruments: instrument_runs.of(number),
             budget,
-            returns: returns[number],
+            periodic_motion: periodic_motions[number],
         };
         match observer.run(&measured, &report) {
             Ok((equations, told)) => {
@@ -290,7 +289,7 @@ pub fn prepare(
         observations,
         points,
         instrument_runs,
-        returns,
+        periodic_motions,
         ..Prepared::new(columns, base, payload, projections.to_vec(), systems)
     })
 }

@@ -15,15 +15,13 @@ use super::{
     progress::Progress,
 };
 use crate::{
-    data::Dataset,
-    error::Error,
     estimation::essential::CrossValidationFolds,
     regression::{projection::Projection, system::PartitionCondition},
     result::{CrossValidation, Estimate, ParameterEstimate, Stage},
     settings::{Instruments, Settings},
-    significant,
     thresholds::Thresholds,
 };
+use overact_logs::{Dataset, Error, significant};
 
 /// Comparison of the platform projection and all actuator projections.
 #[derive(Debug, Clone, PartialEq, Serialize)]

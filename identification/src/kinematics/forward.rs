@@ -15,7 +15,8 @@ use rayon::prelude::*;
 use super::conditioning::couples;
 use super::gauss_newton::refine_poses;
 use super::motion::outside;
-use crate::{blocks::evaluate, data::Log, error::Error};
+use crate::blocks::evaluate;
+use overact_logs::{Error, Log};
 
 /// Number of steps from the home pose to the first sample.
 const APPROACH_STEPS: usize = 50;

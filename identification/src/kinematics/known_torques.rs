@@ -3,7 +3,7 @@
 use overact::{Columns, Function, Model};
 
 use super::motion::Motion;
-use crate::error::Error;
+use overact_logs::Error;
 
 /// Number of poses at which they are looked for.
 const PROBES: u32 = 4;

@@ -18,15 +18,8 @@ mod stream;
 use overact::Code;
 use overact::{Function, Model, math::wrap_angle};
 
-use crate::{
-    blocks::evaluate,
-    data::Log,
-    error::{Error, Problem},
-    monitor::Monitor,
-    settings::Settings,
-    significant,
-    units::time_of_sampling,
-};
+use crate::{blocks::evaluate, settings::Settings, units::time_of_sampling};
+use overact_logs::{Error, Log, Problem, monitor::Monitor, significant};
 
 use forward::Forward;
 pub(crate) use forward::approach;

@@ -1,7 +1,7 @@
 //! Motion of the platform over some samples.
 
-use crate::{data::Load, error::Problem};
 use overact::Code;
+use overact_logs::{Load, Problem};
 
 /// Motion of the platform and actuator torques in some successive samples of a run.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,12 +1,10 @@
 //! Filtered positions of a run, their derivatives, and torques, block by block.
 
 use crate::{
-    data::{Log, Reader},
-    error::Error,
     filters::{SampledSignals, ZeroPhase, butterworth},
-    monitor::Monitor,
     settings::Settings,
 };
+use overact_logs::{Error, Log, Reader, monitor::Monitor};
 
 /// Largest number of samples of a block.
 const BLOCK_SAMPLES: usize = 4096;

@@ -24,8 +24,9 @@ use super::{
     friction::{Rate, friction_rates},
     states::SampledStates,
 };
-use crate::{data::Load, error::Error, settings::Settings};
+use crate::settings::Settings;
 use StandardParameter as P;
+use overact_logs::{Error, Load};
 
 thread_local! {
     /// Buffer for the numbers of the model's columns, reused between blocks.

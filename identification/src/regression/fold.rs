@@ -5,7 +5,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::data::periods::Return;
+use overact_logs::periods::PeriodicMotion;
 
 /// Fewest equations of a period.
 const FEWEST: usize = 16;
@@ -25,7 +25,7 @@ pub(crate) struct Phases {
 
 impl Phases {
     /// Phases of a run with this decimation; `None` for a period of too few equations.
-    pub(crate) fn new(motion: Return, decimation: usize) -> Option<Self> {
+    pub(crate) fn new(motion: PeriodicMotion, decimation: usize) -> Option<Self> {
         let period = motion.samples as f64 / decimation as f64;
         let largest = (period as usize).min(MOST_PHASES);
         (largest >= FEWEST).then(|| Self {
@@ -120,10 +120,10 @@ pub(crate) fn add(all: &mut Vec<Folds>, own: Folds) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{Fold, Phases, add};
-    use crate::data::periods::Return;
+    use overact_logs::periods::PeriodicMotion;
 
     fn phases(samples: usize, decimation: usize) -> Option<Phases> {
-        let motion = Return { samples, motion: 0 };
+        let motion = PeriodicMotion { samples, motion: 0 };
         Phases::new(motion, decimation)
     }
 
@@ -169,7 +169,7 @@ mod tests {
         let mut all = Vec::new();
         assert_eq!(add(&mut all, vec![one(1.0)]), 0);
         assert_eq!(add(&mut all, vec![one(3.0)]), 0);
-        let other = Return {
+        let other = PeriodicMotion {
             samples: 16,
             motion: 2,
         };

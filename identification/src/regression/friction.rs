@@ -14,7 +14,7 @@ use overact::Code;
 use overact::{Columns, Function, Model, StandardParameter};
 
 use super::states::{States, random_states};
-use crate::error::{Error, Problem};
+use overact_logs::{Error, Problem};
 
 /// States for the recognition of a rate, in addition to those for a combination of joints.
 const RECOGNITION_STATES: usize = 12;

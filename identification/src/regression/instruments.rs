@@ -9,11 +9,10 @@ use super::{
     observer::{Conditioning, Observer},
 };
 use crate::{
-    data::Log,
-    error::{Error, Problem},
     kinematics::{Motion, Motions},
     settings::Settings,
 };
+use overact_logs::{Error, Log, Problem};
 
 /// A run of instruments.
 ///

@@ -21,16 +21,14 @@ use super::{
 };
 use crate::{
     blocks::{BLOCK, slice},
-    data::{Log, periods::Return},
-    error::Error,
     filters::Decimator,
     kinematics::{
         Motion, Motions,
         conditioning::{KeptActuators, home_scales},
     },
-    monitor::Monitor,
     series::RunFigures,
 };
+use overact_logs::{Error, Log, monitor::Monitor, periods::PeriodicMotion};
 
 /// A run to observe.
 pub(crate) struct MeasuredRun<'a> {
@@ -42,7 +40,7 @@ pub(crate) struct MeasuredRun<'a> {
     /// Largest number of values in stretches.
     pub(crate) budget: usize,
     /// Its periodic motion, if it has one.
-    pub(crate) returns: Option<Return>,
+    pub(crate) periodic_motion: Option<PeriodicMotion>,
 }
 
 /// Other results of a pass over a run.
@@ -93,7 +91,7 @@ impl Observer<'_> {
             run.budget / (lines * width * self.projections.len()).max(1),
         )
         .with_phases(
-            run.returns
+            run.periodic_motion
                 .and_then(|motion| Phases::new(motion, self.settings.decimation)),
         );
         let mut sinks = self.sinks(&plan, &decimator, samples, instrument_run.is_some())?;

@@ -3,12 +3,12 @@
 use super::{observer::Observer, projection::Projection, sink::Plan, system::PartitionCondition};
 use crate::{
     blocks::BLOCK,
-    data::Log,
     filters::Decimator,
     kinematics::{Motion, conditioning::Condition},
     series::{ConditionSeries, RunFigures},
     settings::Settings,
 };
+use overact_logs::Log;
 
 /// Relative difference of conditions that are equal up to rounding.
 const SAME: f64 = 1e-9;

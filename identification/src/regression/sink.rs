@@ -8,7 +8,8 @@ use super::{
     system::{Observed, Part, PartitionCondition, Stretch},
     transpose::transpose,
 };
-use crate::{error::Error, filters::Decimation, series::LARGEST_SERIES};
+use crate::{filters::Decimation, series::LARGEST_SERIES};
+use overact_logs::Error;
 
 /// Number of parts of a run, which are folds of the cross-validation.
 const PARTS: usize = 5;

@@ -8,12 +8,8 @@ use overact::{Columns, Function, Model};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::{
-    blocks::slice,
-    data::Load,
-    error::{Error, Problem},
-    kinematics::Motion,
-};
+use crate::{blocks::slice, kinematics::Motion};
+use overact_logs::{Error, Load, Problem};
 
 /// Initial spread of the poses around home (m, rad).
 const SPREAD: f64 = 1.0;

@@ -20,7 +20,8 @@ use super::{
     fold::{self, Folds},
     projection::Projection,
 };
-use crate::{error::Problem, kinematics::Motion};
+use crate::kinematics::Motion;
+use overact_logs::Problem;
 
 /// Worst condition number of the kept rows J_a of J_p^inv along a trajectory, and its place.
 ///

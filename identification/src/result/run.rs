@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::{data::Log, regression::observation::RunObservation};
+use crate::regression::observation::RunObservation;
+use overact_logs::Log;
 
 /// A training run.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -16,17 +16,15 @@ use serde::Serialize;
 
 use crate::{
     blocks::{BLOCK, slice},
-    data::Log,
-    error::Error,
     estimation::estimate::{LineError, overall, percent},
     kinematics::{
         Motion, Motions,
         distribution::{least_multipliers, least_norm, product, transposed_product},
     },
-    monitor::Monitor,
     regression::{Chunk, observer::Observer, points::Points, projection::Projection, sink::Plan},
     series::{RunFigures, Series},
 };
+use overact_logs::{Error, Log, monitor::Monitor};
 
 use layout::{Layout, Pair, Sums};
 

@@ -1,7 +1,8 @@
 //! Times reading and checking a log: `overact-read DESCRIPTION LOG` prints processor seconds.
 
 use overact_codegen::{Source, compile};
-use overact_identification::{Mapping, data::read};
+use overact_identification::Mapping;
+use overact_logs::read;
 use overact_robot::InterpretedRobot;
 use std::{env, fs, path::Path, process::ExitCode};
 

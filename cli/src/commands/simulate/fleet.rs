@@ -13,7 +13,8 @@ use crate::{
 };
 use overact::Model;
 use overact_codegen::diagnostic::Code;
-use overact_identification::{data::write_parquet, factors::write_factors};
+use overact_identification::factors::write_factors;
+use overact_logs::write_parquet;
 use overact_robot::{Error, Robot, VirtualExperiment};
 use overact_simulation::{Fault, Fleet, Member, Record};
 use std::path::{Path, PathBuf};

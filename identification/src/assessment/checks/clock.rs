@@ -5,14 +5,11 @@ use super::{
     fault_hypotheses::{harm, only, parabola},
     level::{level, origin},
 };
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind},
-        hypotheses::FaultHypothesis,
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind},
+    hypotheses::FaultHypothesis,
 };
+use overact_logs::{Error, significant};
 
 /// Larger relative errors are reported without a number: the first-order test is invalid there.
 const LARGEST: f64 = 0.5;

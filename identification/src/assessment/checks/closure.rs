@@ -18,12 +18,11 @@ use crate::{
         evidence::{Axis, Curve, Evidence},
         positions,
     },
-    error::Error,
     estimation::intervals::distributions::student_quantile,
     kinematics::conditioning::couples,
     result::Stage,
-    significant,
 };
+use overact_logs::{Error, significant};
 
 /// Factor for the ringing of the position filter at steps.
 const RINGING: f64 = 1.5;

@@ -3,10 +3,9 @@
 use super::{Context, negative_parameters::is_positive};
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
-    error::Error,
     result::{Estimate, Stage},
-    significant,
 };
+use overact_logs::{Error, significant};
 
 /// Checks the base parameters of models without a physically consistent solution.
 ///

@@ -5,14 +5,11 @@ use super::{
     fault_hypotheses::{Tested, parabola, tested, worst_harm},
     level::{level, origin},
 };
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind},
-        hypotheses::{FaultHypothesis, Group, Scores},
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind},
+    hypotheses::{FaultHypothesis, Group, Scores},
 };
+use overact_logs::{Error, significant};
 
 /// Harmless delay, in sampling intervals.
 ///
@@ -107,7 +104,7 @@ fn shifted(delay: f64, context: &Context<'_>) -> String {
         .dataset
         .runs
         .first()
-        .map_or(0.0, crate::data::Log::sampling_frequency);
+        .map_or(0.0, overact_logs::Log::sampling_frequency);
     let samples = (1e-3 * delay.abs() * rate).round();
     let direction = if delay > 0.0 { "up" } else { "down" };
     if samples >= 1.0 {

@@ -6,7 +6,6 @@
 use super::Context;
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
-    error::Error,
     estimation::column_noise::Directions,
     regression::{
         elimination::eliminate,
@@ -14,8 +13,8 @@ use crate::{
         system::System,
     },
     result::{Estimate, ParameterEstimate, Stage},
-    significant,
 };
+use overact_logs::{Error, significant};
 
 /// Directions of the columns with a larger noise fraction have too little motion.
 const LARGEST_NOISE: f64 = 0.1;

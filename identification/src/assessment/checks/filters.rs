@@ -1,14 +1,11 @@
 //! Checks the cutoff of the filters, and that positions and torques keep the same frequencies.
 
 use super::{Context, fault_hypotheses::dry_friction};
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind, Grade},
-        hypotheses::Pace,
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind, Grade},
+    hypotheses::Pace,
 };
+use overact_logs::{Error, significant};
 
 /// Smallest ratio of filter cutoff to frequency of the motion.
 ///

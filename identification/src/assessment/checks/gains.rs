@@ -5,14 +5,11 @@ use super::{
     fault_hypotheses::{Harm, Tested, most_significant, only, parabola, worst_harm},
     level::{level, origin},
 };
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind, Detectable},
-        hypotheses::FaultHypothesis,
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind, Detectable},
+    hypotheses::FaultHypothesis,
 };
+use overact_logs::{Error, significant};
 
 /// Larger relative errors are reported without a number.
 const LARGEST: f64 = 0.5;

@@ -7,14 +7,11 @@ use super::{
     fault_hypotheses::{HARMFUL, Tested, harm, most_significant, parabola, tested, worst_harm},
     level::{level, origin},
 };
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind, Detectable},
-        hypotheses::{FaultHypothesis, Group, Misreading, Scores},
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind, Detectable},
+    hypotheses::{FaultHypothesis, Group, Misreading, Scores},
 };
+use overact_logs::{Error, significant};
 
 /// Tests offset, scale, eccentricity and play of each encoder, and each requested length.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {

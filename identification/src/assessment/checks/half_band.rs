@@ -9,7 +9,8 @@
 //! the same size in every band that it passes.
 
 use super::{Context, fault_hypotheses::only};
-use crate::{assessment::hypotheses::FaultHypothesis, error::Error};
+use crate::assessment::hypotheses::FaultHypothesis;
+use overact_logs::Error;
 
 /// Fraction of the size that must remain in half the band if there is a filter.
 const LEFT: f64 = 0.5;

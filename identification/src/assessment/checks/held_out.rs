@@ -10,12 +10,11 @@ use crate::{
         check::{About, Check, CheckKind, Grade},
         evidence::{Axis, Curve, Evidence},
     },
-    error::Error,
     estimation::intervals::distributions::student_quantile,
     result::{CrossValidation, Estimate},
-    significant,
     thresholds::Thresholds,
 };
+use overact_logs::{Error, significant};
 
 /// Fewest parts from which the spread is estimated.
 const FEWEST_PARTS: usize = 3;

@@ -7,16 +7,12 @@ use super::{
     fault_hypotheses::{Harm, Tested, harm, most_significant, tested, worst_harm},
     level::{level, origin},
 };
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind, Grade},
-        evidence::{Axis, Curve, Evidence},
-        hypotheses::{FaultHypothesis, Group, Scores, Shape},
-    },
-    display_names::called,
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind, Grade},
+    evidence::{Axis, Curve, Evidence},
+    hypotheses::{FaultHypothesis, Group, Scores, Shape},
 };
+use overact_logs::{Error, called, significant};
 
 /// Tests all torques and forces that the model may lack.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {

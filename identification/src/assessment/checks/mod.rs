@@ -39,17 +39,14 @@ use super::{
     hypotheses::{Pace, Scores},
 };
 use crate::{
-    data::{Dataset, Log},
-    display_names::with_joints,
-    error::Error,
     estimation::{
         base::BaseParameters, column_noise::ColumnNoise, instruments::regressor::ErrorsInRegressor,
     },
-    monitor::Monitor,
     regression::{columns::ColumnSet, projection::ModelKind, system::System},
     result::{CrossValidation, Estimate, Estimator, Stage},
     settings::Settings,
 };
+use overact_logs::{Dataset, Error, Log, monitor::Monitor, with_joints};
 
 /// Input of the checks.
 pub(crate) struct Context<'a> {

@@ -1,14 +1,11 @@
 //! Checks outliers and the length of the motion.
 
 use super::{Context, relative_error::times_the_noise};
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind, Grade},
-        hypotheses::Pace,
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind, Grade},
+    hypotheses::Pace,
 };
+use overact_logs::{Error, significant};
 
 /// Largest fraction of the squared residual in the worst 1 % of the samples.
 ///

@@ -5,10 +5,9 @@ use overact::StandardParameter;
 use super::Context;
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
-    error::Error,
     result::{Estimate, ParameterEstimate, Stage},
-    significant,
 };
+use overact_logs::{Error, significant};
 
 /// Standard deviations below zero from which an estimate is clearly negative.
 const CLEARLY_NEGATIVE: f64 = 5.0;

@@ -5,12 +5,11 @@ use std::fmt::Write as _;
 use super::Context;
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
-    error::Error,
     regression::{projection::ModelKind, system::PartitionCondition},
     result::{Estimate, Stage},
-    significant,
     thresholds::Thresholds,
 };
+use overact_logs::{Error, significant};
 
 /// Checks the actuator projection.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {

@@ -12,11 +12,9 @@ use crate::{
         check::{About, Check, CheckKind, Grade},
         hypotheses::{Group, Scores},
     },
-    data::Log,
-    error::Error,
     result::{ParameterEstimate, Stage},
-    significant,
 };
+use overact_logs::{Error, Log, significant};
 
 /// Fraction of a run's squared residual explained by another payload that makes its label wrong.
 const WRONG: f64 = 0.1;

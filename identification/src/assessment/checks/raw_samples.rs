@@ -6,20 +6,22 @@ use super::Context;
 use super::rotation;
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
-    error::Error,
     kinematics::conditioning::couples,
+};
+use overact_logs::{
+    Error,
     monitor::{DataFault, Monitor, Suspicion},
 };
 
 /// Checks all runs.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
-    let of_run = |(log, watched): (&crate::data::Log, &super::RunMonitor)| {
+    let of_run = |(log, watched): (&overact_logs::Log, &super::RunMonitor)| {
         suspicions(context.model, log.name(), watched.monitor.clone())
     };
     let mut checks: Vec<Check> = context.runs().flat_map(of_run).collect();
     checks.extend(rotation::checks(context)?);
     checks.extend(unmoved(context));
-    let stands = |run: &crate::data::Log| {
+    let stands = |run: &overact_logs::Log| {
         let mut own = checks
             .iter()
             .filter(|one| one.kind == CheckKind::Standstill);

@@ -3,11 +3,10 @@
 use super::Context;
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
-    error::Error,
     estimation::instruments::regressor::{Agreement, ErrorsInRegressor, RepeatedRun},
     settings::Instruments,
-    significant,
 };
+use overact_logs::{Error, significant};
 
 /// Checks all models.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {

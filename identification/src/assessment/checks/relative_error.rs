@@ -3,10 +3,9 @@
 use super::Context;
 use crate::{
     assessment::check::{About, Check, CheckKind, Grade},
-    error::Error,
     result::{Estimate, Stage},
-    significant,
 };
+use overact_logs::{Error, significant};
 
 /// Largest relative residual beyond noise, in percent.
 ///

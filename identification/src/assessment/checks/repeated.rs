@@ -3,12 +3,8 @@
 //! Repeated samples make intervals too narrow, and validation on training data tests nothing.
 
 use super::{Context, RunMonitor};
-use crate::{
-    assessment::check::{About, Check, CheckKind, Grade},
-    data::Log,
-    error::Error,
-    significant,
-};
+use crate::assessment::check::{About, Check, CheckKind, Grade};
+use overact_logs::{Error, Log, significant};
 
 /// Harmless overlap, as a fraction of the shorter run.
 ///

@@ -12,10 +12,9 @@ use crate::{
         evidence::{Axis, Curve, Evidence},
         hypotheses::Correlation,
     },
-    error::Error,
     estimation::intervals::distributions::student_quantile,
-    significant,
 };
+use overact_logs::{Error, significant};
 
 /// Smaller correlations are ignored.
 const SMALLEST: f64 = 0.1;

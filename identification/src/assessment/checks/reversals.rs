@@ -16,14 +16,11 @@ use super::{
     level::{level, origin},
     smoothing::{OF_MEAN, UNIT, harmless},
 };
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind},
-        hypotheses::{FaultHypothesis, Scores},
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind},
+    hypotheses::{FaultHypothesis, Scores},
 };
+use overact_logs::{Error, significant};
 
 /// Tests for a filter of all signals, and for dry friction smoother than the velocity signs.
 pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {

@@ -11,10 +11,9 @@ use overact::Model;
 use super::Context;
 use crate::{
     assessment::{check::Check, positions::Fault, torques},
-    error::Error,
     kinematics::conditioning::couples,
-    monitor::Monitor,
 };
+use overact_logs::{Error, monitor::Monitor};
 
 /// Largest angle (rad) that is not tested.
 const LARGEST_ANGLE: f64 = 2.0 * TAU;

@@ -16,14 +16,11 @@ use super::{
     half_band::confirms,
     level::{level, origin},
 };
-use crate::{
-    assessment::{
-        check::{About, Check, CheckKind},
-        hypotheses::FaultHypothesis,
-    },
-    error::Error,
-    significant,
+use crate::assessment::{
+    check::{About, Check, CheckKind},
+    hypotheses::FaultHypothesis,
 };
+use overact_logs::{Error, significant};
 
 /// Harmless length of a moving average, in sampling intervals; drives hold their torque.
 const HARMLESS: f64 = 2.0;

@@ -3,10 +3,9 @@
 use super::Context;
 use crate::{
     assessment::{check::Check, torques},
-    data::Log,
-    error::Error,
     result::Stage,
 };
+use overact_logs::{Error, Log};
 
 /// Relative residual of the base parameters (percent) above which faults are looked for.
 const SUSPICIOUS_PERCENT: f64 = 5.0;

@@ -13,10 +13,10 @@ use super::{
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},
-    error::Error,
     kinematics::{Motion, distribution::least_torques},
     regression::{columns::Reversal, states::SampledStates},
 };
+use overact_logs::Error;
 
 /// Data of a motion; samples are consecutive.
 pub(super) struct MotionData<'a> {

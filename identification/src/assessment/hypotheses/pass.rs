@@ -4,10 +4,10 @@ use overact::Model;
 
 use super::sections::Frame;
 use crate::{
-    data::Variant,
     regression::{columns::ColumnSet, projection::ModelKind},
     settings::Settings,
 };
+use overact_logs::Variant;
 
 /// Inputs of a pass.
 pub(super) struct Pass<'a> {

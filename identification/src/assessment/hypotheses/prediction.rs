@@ -7,14 +7,13 @@ use overact::{Function, Model};
 use super::{columns::rates, misreading::Misreading, shapes::ActuatorState};
 use crate::{
     blocks::{BLOCK, evaluate, slice},
-    data::Variant,
-    error::Error,
     kinematics::{
         Motion,
         distribution::{least_norm, transposed_product},
     },
     regression::{columns::ColumnSet, states::SampledStates},
 };
+use overact_logs::{Error, Variant};
 
 /// Step of a position (m, rad), and relative step of the clock.
 const STEP: f64 = 1e-5;

@@ -9,8 +9,6 @@ use super::{
 };
 use crate::{
     blocks::{evaluate, slice},
-    data::Log,
-    error::Error,
     filters::Decimation,
     kinematics::{
         Motions,
@@ -18,6 +16,7 @@ use crate::{
     },
     regression::{chunk::projected, fold::Phases, projection::ModelKind},
 };
+use overact_logs::{Error, Log};
 
 /// Number of rows computed before decimation; few, since rows are long and should fit the cache.
 const TOGETHER: usize = 64;

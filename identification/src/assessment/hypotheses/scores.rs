@@ -16,8 +16,6 @@ use super::{
     wald_test::WaldTest,
 };
 use crate::{
-    data::{Dataset, Log, periods::Return},
-    error::Error,
     estimation::periodic_variance::Mean,
     filters::DECIMATION_PADDING,
     regression::{
@@ -28,6 +26,7 @@ use crate::{
     result::Estimate,
     settings::Settings,
 };
+use overact_logs::{Dataset, Error, Log, periods::PeriodicMotion};
 
 /// Largest number of samples of all runs together.
 const MOST_SAMPLES: usize = 100_000;
@@ -83,7 +82,7 @@ pub(crate) struct ScoreTest<'a> {
     /// Position ranges of the actuators.
     pub(crate) position_ranges: &'a [PositionRange],
     /// Periodic motion of each run, if it has one.
-    pub(crate) returns: &'a [Option<Return>],
+    pub(crate) periodic_motions: &'a [Option<PeriodicMotion>],
     pub(crate) settings: &'a Settings,
 }
 
@@ -129,7 +128,7 @@ impl ScoreTest<'_> {
             settings,
         };
         let phases = |number: usize| {
-            let motion = self.returns.get(number).copied().flatten();
+            let motion = self.periodic_motions.get(number).copied().flatten();
             motion.and_then(|motion| Phases::new(motion, pass.decimation))
         };
         let scores = runs

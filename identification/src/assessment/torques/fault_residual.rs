@@ -10,8 +10,6 @@ use overact::{Function, Model, StandardParameter};
 
 use crate::{
     blocks::{BLOCK, slice},
-    data::Log,
-    error::Error,
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
     kinematics::Motions,
     regression::{
@@ -21,6 +19,7 @@ use crate::{
     },
     settings::Settings,
 };
+use overact_logs::{Error, Log};
 
 /// Possible faults.
 #[derive(Debug, Clone, Copy, PartialEq)]

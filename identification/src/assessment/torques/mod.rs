@@ -15,8 +15,9 @@ use super::{
     positions,
     run_level_faults::RunLevelFault,
 };
-use crate::{data::Log, error::Error, settings::Settings};
+use crate::settings::Settings;
 use fault_residual::{Columns, EquationOptions, Fault, FaultResidual};
+use overact_logs::{Error, Log};
 
 /// A fault explains the torques if at most this fraction of the error remains.
 const EXPLAINED: f64 = 0.5;

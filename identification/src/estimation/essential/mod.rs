@@ -23,11 +23,11 @@ use super::{
     estimate::{Estimation, condition, fit},
 };
 use crate::{
-    error::Error,
     regression::{factor::Factor, system::System},
     settings::Settings,
     thresholds::Thresholds,
 };
+use overact_logs::Error;
 
 pub(crate) use cross_validation::CrossValidationFolds;
 

@@ -37,10 +37,8 @@ use super::{
     estimate::{Estimation, line_errors, overall, percent},
     intervals::{Intervals, scores::Context},
 };
-use crate::{
-    error::{Error, Problem},
-    regression::{factor::Factor, system::System},
-};
+use crate::regression::{factor::Factor, system::System};
+use overact_logs::{Error, Problem};
 
 /// Instrumental-variable estimate with its factors.
 #[derive(Debug, Clone)]

@@ -8,11 +8,11 @@ use super::{
     strength::{WEAK, strengths},
 };
 use crate::{
-    data::Periods,
     estimation::{estimate::Estimation, total_least_squares::total_least_squares},
     regression::{projection::ModelKind, system::System},
     settings::Instruments,
 };
+use overact_logs::Periods;
 
 /// Largest correlation between the errors of two periods.
 ///

@@ -26,7 +26,8 @@ use super::{
         distributions::{fisher_tail, student_quantile},
     },
 };
-use crate::{error::Error, regression::system::System, settings::Settings};
+use crate::{regression::system::System, settings::Settings};
+use overact_logs::Error;
 
 /// Level of both tests: the largest fraction of right models that is refused.
 const LEVEL: f64 = 0.05;

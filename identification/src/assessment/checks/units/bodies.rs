@@ -3,10 +3,10 @@
 use super::motion::RunMotion;
 use crate::{
     assessment::checks::Context,
-    data::Scales,
     result::{ParameterEstimate, Stage},
     units::{Powers, Quantity, Range},
 };
+use overact_logs::Scales;
 
 /// Possible densities of a robot, mass by cubed length, kg/m³.
 const DENSITIES: Range = Range::new(0.01, 2e4);
@@ -124,7 +124,7 @@ fn densities(
     // A length that is a travel scales with the positions.
     let by_travel = if lengths.are_described { 0 } else { -3 };
     let quantity = |name: &str, value: f64, length: f64, possible: Range, usual: Range, moved| {
-        let length = crate::significant(length, 3);
+        let length = overact_logs::significant(length, 3);
         Quantity {
             name: format!("the density implied by `{name}` for a robot of {length} m"),
             value,

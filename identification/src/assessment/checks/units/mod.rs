@@ -45,11 +45,9 @@ use self::motion::RunMotion;
 use super::Context;
 use crate::{
     assessment::check::{Check, Grade},
-    data::Scales,
-    error::Error,
-    monitor::Monitor,
     units::{Quantity, UnitError, explanation},
 };
+use overact_logs::{Error, Scales, monitor::Monitor};
 
 /// Checks all runs and the estimates.
 ///

@@ -3,12 +3,8 @@
 use overact::Model;
 
 use super::Finding;
-use crate::{
-    data::Scales,
-    display_names::called,
-    monitor::Monitor,
-    units::{Kinds, Powers, Quantity, Range},
-};
+use crate::units::{Kinds, Powers, Quantity, Range};
+use overact_logs::{Scales, called, monitor::Monitor};
 
 /// Speed of sound in air, m/s.
 const SOUND: f64 = 343.0;

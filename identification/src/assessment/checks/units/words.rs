@@ -3,9 +3,9 @@
 use super::Finding;
 use crate::{
     assessment::check::{About, Check, CheckKind},
-    significant,
     units::{Quantity, UnitError},
 };
+use overact_logs::significant;
 
 /// Largest number of quantities named in a message.
 const NAMED: usize = 3;
@@ -34,7 +34,7 @@ pub(super) fn check(found: &Finding) -> Check {
 pub(super) fn hint(found: &Finding) -> String {
     let text = sentence(found);
     match &found.actuator {
-        Some(actuator) => format!("{}: {text}", crate::display_names::titled(actuator)),
+        Some(actuator) => format!("{}: {text}", overact_logs::titled(actuator)),
         None => text,
     }
 }

@@ -1,0 +1,179 @@
+//! Arrays of a file as columns of samples: vectors, and columns of matrices.
+
+use overact::Code;
+use std::sync::Arc;
+
+use crate::{
+    error::{Error, Problem},
+    problems::Existing,
+};
+
+/// An array in a caller's memory.
+#[derive(Debug, Clone, Copy)]
+pub struct Array<'a> {
+    /// Name; columns of a matrix are called `name(:,2)`, counted from 1.
+    pub name: &'a str,
+    /// Rows and columns; samples run along the longer side.
+    pub shape: (usize, usize),
+    /// Values in column-major order.
+    pub values: &'a [f64],
+}
+
+/// A vector, or a column of a matrix.
+#[derive(Debug, Clone, PartialEq)]
+struct Series {
+    name: String,
+    values: Arc<[f64]>,
+}
+
+/// All arrays of a file, in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Arrays {
+    /// The file as the caller named it.
+    file: String,
+    /// Names of the arrays.
+    names: Vec<String>,
+    series: Vec<Series>,
+}
+
+impl Arrays {
+    /// No arrays.
+    pub(crate) const fn new(file: String) -> Self {
+        Self {
+            file,
+            names: Vec::new(),
+            series: Vec::new(),
+        }
+    }
+
+    /// The file as the caller named it.
+    pub(crate) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Adds an array of `rows` × `columns` with column-major `values`.
+    ///
+    /// Samples run along its longer side.
+    pub(crate) fn push(&mut self, name: &str, rows: usize, columns: usize, values: &[f64]) {
+        self.names.push(name.to_owned());
+        let mut add = |name: String, values: Arc<[f64]>| self.series.push(Series { name, values });
+        if rows <= 1 || columns <= 1 {
+            add(name.to_owned(), values.into());
+        } else if rows >= columns {
+            for (column, values) in values.chunks_exact(rows).enumerate() {
+                add(format!("{name}(:,{})", column + 1), values.into());
+            }
+        } else {
+            for row in 0..rows {
+                let values = values.iter().skip(row).step_by(rows).copied().collect();
+                add(format!("{name}({},:)", row + 1), values);
+            }
+        }
+    }
+
+    /// Number of vectors and columns of matrices.
+    pub(crate) fn columns(&self) -> usize {
+        self.series.len()
+    }
+
+    /// Index of a vector, of a matrix column `name(:,2)` or of a matrix row `name(2,:)`.
+    pub(crate) fn find(&self, name: &str) -> Option<usize> {
+        let bare: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+        // A vector is a matrix of one column.
+        let vector = bare
+            .strip_suffix("(:,1)")
+            .or_else(|| bare.strip_suffix("(1,:)"));
+        let is = |name: &str| self.series.iter().position(|series| series.name == name);
+        // A caller's name may contain blanks.
+        is(name)
+            .or_else(|| is(&bare))
+            .or_else(|| vector.and_then(is))
+    }
+
+    /// Values of a vector or of a matrix column.
+    pub(crate) fn values(&self, name: &str) -> Option<&[f64]> {
+        self.find(name).map(|place| &*self.series[place].values)
+    }
+
+    /// The existing arrays.
+    pub(crate) fn existing(&self) -> Existing<'_> {
+        Existing {
+            names: self.names.iter().map(String::as_str).collect(),
+            columns: self.series.len(),
+            what: "variable",
+        }
+    }
+
+    /// First column of a matrix that is named like a vector.
+    pub(crate) fn first_column(&self, name: &str) -> Option<&str> {
+        let start = format!("{name}(");
+        let mut parts = self.series.iter();
+        let part = parts.find(|series| series.name.starts_with(&start));
+        part.map(|series| series.name.as_str())
+    }
+
+    /// Reads some series row by row; the names are for messages.
+    ///
+    /// # Errors
+    /// Series of different lengths.
+    pub(crate) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
+        let columns: Vec<(&[f64], &str)> = wanted
+            .iter()
+            .map(|&(place, name)| (&*self.series[place].values, name))
+            .collect();
+        let mut problems = Vec::new();
+        if let Some(((first, reference), others)) = columns.split_first() {
+            for (values, name) in others.iter().filter(|(own, _)| own.len() != first.len()) {
+                let message = format!(
+                    "`{name}` has {} samples, but `{reference}` has {}",
+                    values.len(),
+                    first.len()
+                );
+                let problem = Problem::new(Code::LOG_SHAPE, message).file(self.file.as_str());
+                problems.push(problem.column(*name));
+            }
+        }
+        Error::check(problems)?;
+        Ok(Rows {
+            file: &self.file,
+            columns,
+            next: 0,
+        })
+    }
+}
+
+/// Series that are read row by row.
+#[derive(Debug)]
+pub(crate) struct Rows<'a> {
+    file: &'a str,
+    columns: Vec<(&'a [f64], &'a str)>,
+    next: usize,
+}
+
+impl Rows<'_> {
+    /// Writes the next sample to `values`; `false` at the end.
+    ///
+    /// # Errors
+    /// Values that are not finite.
+    pub(crate) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
+        let sample = self.next;
+        self.next += 1;
+        let mut problems = Vec::new();
+        for ((column, name), value) in self.columns.iter().zip(values) {
+            let Some(found) = column.get(sample) else {
+                return Ok(false);
+            };
+            if !found.is_finite() {
+                let message = format!("`{name}`: sample {sample} is not a finite number");
+                problems.push(
+                    Problem::new(Code::NOT_A_NUMBER, message)
+                        .file(self.file)
+                        .column(*name),
+                );
+            }
+            *value = *found;
+        }
+        Error::check(problems)?;
+        Ok(!self.columns.is_empty())
+    }
+}

@@ -1,0 +1,22 @@
+//! Readers of file formats. Each reads a file as a table of columns.
+//!
+//! - `format`: recognises the format from the first bytes;
+//! - `table`: a file of any format;
+//! - `text`, `mat_file`, `numpy`, `parquet_file`, `hdf5_file`, `mcap_file`: one format each;
+//! - `stored`: formats that are read block by block from disk;
+//! - `arrays`: formats that are read as a whole.
+
+mod archive;
+pub(crate) mod arrays;
+mod format;
+#[cfg(feature = "hdf5")]
+mod hdf5_file;
+mod mat_file;
+#[cfg(feature = "mcap")]
+mod mcap_file;
+mod numpy;
+pub(crate) mod parquet_file;
+mod stored;
+mod structures;
+pub(crate) mod table;
+mod text;

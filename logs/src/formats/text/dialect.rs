@@ -1,0 +1,280 @@
+//! Detects the dialect of a text: separator, decimal comma, header.
+//!
+//! The start of the file determines it. Ambiguous texts are an error.
+//!
+//! Semicolons and tabs always separate. Commas separate, unless blanks separate numbers with
+//! decimal commas. A first line of words above a line of numbers is a header. A comment with as
+//! many words as columns above numeric lines names the columns, too.
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+use overact::Code;
+
+use super::collapsed_blanks::CollapsedBlanks;
+use crate::{
+    error::{Error, Problem},
+    problems::shown,
+};
+
+/// Bytes at the start of the file that determine the dialect.
+pub(super) const BEGINNING: usize = 1 << 16;
+
+/// Dialect of a text.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Dialect {
+    /// Column separator; a blank also means several blanks, and tabs.
+    pub(super) separator: u8,
+    /// Start of comment lines.
+    pub(super) comment: u8,
+    /// Whether the decimal separator is a comma.
+    pub(super) decimal_comma: bool,
+    /// Whether the first line that is no comment is a header.
+    pub(super) has_header: bool,
+    /// Names of the columns, if they have any.
+    pub(super) names: Vec<String>,
+    /// Number of columns.
+    pub(super) columns: usize,
+    /// Largest number of cells in a line: those of the first line, including empty ones.
+    pub(super) most: usize,
+}
+
+impl Dialect {
+    /// Detects the dialect from the `beginning` of a text, which is all of it if `is_whole`.
+    ///
+    /// # Errors
+    /// Commas of ambiguous meaning, or lines with more columns than names.
+    pub(super) fn of(file: &str, beginning: &[u8], is_whole: bool) -> Result<Self, Error> {
+        let text = without_mark(beginning);
+        let whole_lines = text.iter().rposition(|byte| *byte == b'\n');
+        let text = match whole_lines {
+            Some(end) if !is_whole => &text[..=end],
+            _ => text,
+        };
+        let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
+        let comment = if first == Some(&b'%') { b'%' } else { b'#' };
+        let separator = separator(text, comment);
+        let records = records(text, separator, comment);
+        let decimal_comma = decimal_comma(file, separator, &records)?;
+        let is_value = |cell: &str| is_number(cell, decimal_comma);
+        let has_header = has_header(&records, &is_value);
+        let columns = records.first().map_or(0, |(_, first)| width(first));
+        let mut dialect = Self {
+            separator,
+            comment,
+            decimal_comma,
+            has_header,
+            names: Vec::new(),
+            columns,
+            most: records.first().map_or(0, |(_, first)| first.len()),
+        };
+        if has_header {
+            let (_, header) = &records[0];
+            dialect.names = header.iter().map(str::to_owned).collect();
+            if let Some((line, second)) = records.get(1)
+                && width(second) > dialect.most
+            {
+                return Err(dialect.wider(file, *line as usize, width(second)).into());
+            }
+        } else {
+            dialect.names = names_in_comments(text, &dialect, &is_value);
+        }
+        Ok(dialect)
+    }
+
+    /// The problem of a line with more cells than the first one.
+    pub(super) fn wider(&self, file: &str, line: usize, cells: usize) -> Problem {
+        let names = self.most;
+        let message = if self.has_header {
+            format!("the line has {cells} columns, but the header names {names}")
+        } else {
+            format!("the line has {cells} columns, but the first one has {names}")
+        };
+        let problem = Problem::new(Code::LOG_SHAPE, message).file(file).line(line);
+        problem.help(match (self.separator, self.has_header) {
+            (b',', _) => {
+                "if commas are decimal marks, separate the columns by semicolons or tabs; otherwise name every column"
+            }
+            (_, false) => "give every line the same columns",
+            (b' ', true) => {
+                "name every column, without blanks in the names, or separate them by semicolons"
+            }
+            (_, true) => "name every column",
+        })
+    }
+
+    /// A reader of all records of the text, including a header.
+    pub(super) fn builder(separator: u8, comment: u8) -> ReaderBuilder {
+        let mut builder = ReaderBuilder::new();
+        builder
+            .trim(Trim::All)
+            .flexible(true)
+            .has_headers(false)
+            .comment(Some(comment))
+            .delimiter(separator);
+        builder
+    }
+}
+
+/// Parses a cell as a number, if it is one.
+pub(super) fn parse(cell: &str, decimal_comma: bool) -> Option<f64> {
+    if !decimal_comma || !cell.contains(',') {
+        return cell.parse().ok();
+    }
+    let (whole, decimals) = cell.split_once(',')?;
+    // A comma at an end of a number separates it from the next one.
+    let inside = whole.ends_with(|c: char| c.is_ascii_digit())
+        && decimals.starts_with(|c: char| c.is_ascii_digit());
+    inside
+        .then(|| cell.replacen(',', ".", 1).parse().ok())
+        .flatten()
+}
+
+fn is_number(cell: &str, decimal_comma: bool) -> bool {
+    parse(cell, decimal_comma).is_some()
+}
+
+/// The text without its byte order mark.
+pub(super) fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
+}
+
+/// Records of a text, each with its line.
+fn records(text: &[u8], separator: u8, comment: u8) -> Vec<(u64, StringRecord)> {
+    let builder = Dialect::builder(separator, comment);
+    let mut found = Vec::new();
+    let mut take = |reader: &mut dyn Iterator<Item = csv::Result<csv::ByteRecord>>| {
+        // Errors of a record are reported when all records are read.
+        for record in reader.map_while(Result::ok) {
+            let line = record.position().map_or(0, csv::Position::line);
+            found.push((line, StringRecord::from_byte_record_lossy(record)));
+        }
+    };
+    if separator == b' ' {
+        let mut reader = builder.from_reader(CollapsedBlanks::new(text, BEGINNING));
+        take(&mut reader.byte_records());
+    } else {
+        let mut reader = builder.from_reader(text);
+        take(&mut reader.byte_records());
+    }
+    found
+}
+
+/// Number of cells up to the last non-empty one.
+fn width(record: &StringRecord) -> usize {
+    let filled = |place: &usize| !record[*place].is_empty();
+    let last = (0..record.len()).rev().find(filled);
+    last.map_or(0, |last| last + 1)
+}
+
+/// Detects the column separator of a text.
+fn separator(text: &[u8], comment: u8) -> u8 {
+    let splits = |separator: u8| -> bool {
+        let all = records(text, separator, comment);
+        let ends = [all.first(), all.last()];
+        ends.into_iter()
+            .flatten()
+            .any(|(_, record)| record.len() > 1)
+    };
+    if splits(b';') {
+        return b';';
+    }
+    if splits(b'\t') {
+        // Several adjacent tabs align columns, and leave cells without a name.
+        let all = records(text, b'\t', comment);
+        let gaps = |(_, record): &(u64, StringRecord)| {
+            record.iter().take(width(record)).any(str::is_empty)
+        };
+        if !all.iter().take(2).all(gaps) {
+            return b'\t';
+        }
+        return b' ';
+    }
+    let by_blanks = records(text, b' ', comment);
+    let Some((_, last)) = by_blanks.last().filter(|(_, record)| record.len() > 1) else {
+        return b',';
+    };
+    let whole = last.iter().all(|cell| is_number(cell, true));
+    let by_commas = records(text, b',', comment);
+    let has_commas = by_commas.last().is_some_and(|(_, record)| record.len() > 1);
+    if whole || !has_commas { b' ' } else { b',' }
+}
+
+/// Detects a decimal comma.
+///
+/// # Errors
+/// Both commas and points as decimal separators.
+fn decimal_comma(
+    file: &str,
+    separator: u8,
+    records: &[(u64, StringRecord)],
+) -> Result<bool, Error> {
+    let cells = |mark: char| {
+        records.iter().find_map(|(line, record)| {
+            let mut cells = record.iter();
+            let has = |cell: &&str| cell.contains(mark) && is_number(cell, true);
+            cells.find(has).map(|cell| (*line, cell))
+        })
+    };
+    match (cells(','), cells('.')) {
+        (Some((line, comma)), Some((_, point))) => {
+            let message = format!(
+                "`{}` has a comma where `{}` has a decimal point",
+                shown(comma),
+                shown(point)
+            );
+            let problem = Problem::new(Code::NOT_A_NUMBER, message)
+                .file(file)
+                .line(line as usize);
+            let help = if separator == b',' {
+                "use decimal points, and no quotation marks"
+            } else {
+                "use decimal points or decimal commas throughout, and no mark between thousands"
+            };
+            Err(problem.help(help).into())
+        }
+        (comma, _) => Ok(comma.is_some()),
+    }
+}
+
+/// Whether the first record is a header: words above numbers.
+fn has_header(records: &[(u64, StringRecord)], is_value: &dyn Fn(&str) -> bool) -> bool {
+    let Some((_, first)) = records.first() else {
+        return false;
+    };
+    let is_word = |cell: &str| !cell.is_empty() && !is_value(cell);
+    match records.get(1) {
+        Some((_, second)) => {
+            let mut pairs = first.iter().zip(second.iter());
+            let all_words = first.iter().all(|cell| !is_value(cell));
+            all_words || pairs.any(|(above, below)| is_word(above) && is_value(below))
+        }
+        None => first.iter().any(is_word),
+    }
+}
+
+/// Names from the last comment before the numbers that has as many words as columns.
+fn names_in_comments(
+    text: &[u8],
+    dialect: &Dialect,
+    is_value: &dyn Fn(&str) -> bool,
+) -> Vec<String> {
+    let text = String::from_utf8_lossy(text);
+    let lines = text.lines().map(str::trim);
+    let marks = [char::from(dialect.comment), ' ', '\t'];
+    let comments = lines
+        .take_while(|line| line.is_empty() || line.starts_with(marks[0]))
+        .map(|line| line.trim_start_matches(marks));
+    let split = |line: &str| -> Option<Vec<String>> {
+        [b';', b',', dialect.separator, b' ']
+            .into_iter()
+            .find_map(|separator| {
+                let all = records(line.as_bytes(), separator, 0);
+                let (_, record) = all.first()?;
+                let fits = record.len() == dialect.columns
+                    && record
+                        .iter()
+                        .all(|cell| !cell.is_empty() && !is_value(cell));
+                fits.then(|| record.iter().map(str::to_owned).collect())
+            })
+    };
+    comments.filter_map(split).last().unwrap_or_default()
+}

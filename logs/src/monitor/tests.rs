@@ -1,0 +1,132 @@
+//! Tests of clipped and frozen torques.
+
+use super::{DataFault, Monitor, Suspicion};
+use crate::samples::Samples;
+use std::f64::consts::TAU;
+
+/// Samples per second.
+const FREQUENCY: f64 = 500.0;
+
+/// Suspicions about a run of an actuator that swings twice in three seconds.
+fn suspicions(samples: usize, torque: impl Fn(f64) -> f64) -> Vec<Suspicion> {
+    let time = |sample: usize| sample as f64 / FREQUENCY;
+    let swing = |sample: usize| (TAU * 2.0 / 3.0 * time(sample)).sin();
+    let mut monitor = Monitor::new(1, FREQUENCY);
+    monitor.take(&Samples {
+        positions: (0..samples).map(swing).collect(),
+        torques: (0..samples).map(|sample| torque(time(sample))).collect(),
+        velocities: Vec::new(),
+    });
+    monitor.suspicions(&["motor"], true)
+}
+
+/// A torque of amplitude 2 and an incommensurable period, so that no two samples are equal.
+fn swing(time: f64) -> f64 {
+    2.0 * (3.7 * time).sin()
+}
+
+#[test]
+fn both_ends_and_the_part_of_the_time_are_told() {
+    let found = suspicions(5000, |time| swing(time).clamp(-1.5, 1.0));
+    let [one] = &found[..] else {
+        panic!("one suspicion, not {found:?}");
+    };
+    assert_eq!(one.fault, DataFault::Clipped);
+    let clipped = |sample: &usize| !(-1.5..=1.0).contains(&swing(*sample as f64 / FREQUENCY));
+    let part = (0..5000).filter(clipped).count() as f64 / 5000.0;
+    let told = format!("clipped at -1.5 and 1 for {:.1} % of", 100.0 * part);
+    assert!(one.message.contains(&told), "{told}: {}", one.message);
+}
+
+#[test]
+fn a_few_equal_peaks_of_a_long_run_are_not_clipped() {
+    // Twelve of fifteen thousand samples.
+    let spike = |time: f64| ((time * FREQUENCY).round() as usize).is_multiple_of(1250);
+    let torque = |time: f64| if spike(time) { 3.0 } else { swing(time) };
+    assert_eq!(suspicions(15_000, torque), []);
+}
+
+#[test]
+fn peaks_of_a_quantised_torque_are_not_clipped() {
+    let found = suspicions(5000, |time| (swing(time) / 0.05).round() * 0.05);
+    assert_eq!(found, []);
+}
+
+#[test]
+fn of_several_rests_the_one_in_which_others_move_most_is_told() {
+    // The second actuator reverses at 0.7 s and hardly moves then.
+    let others = |time: f64| (TAU * 2.0 / 3.0 * (time - 0.7)).cos();
+    let held = |time: f64| match time {
+        0.6..0.8 => 0.6,
+        2.1..2.4 => 2.1,
+        _ => time,
+    };
+    let row = |sample: usize| {
+        let time = sample as f64 / FREQUENCY;
+        [(TAU / 3.0 * held(time)).sin(), others(time)]
+    };
+    let mut monitor = Monitor::new(2, FREQUENCY);
+    monitor.take(&Samples {
+        positions: (0..2000).flat_map(row).collect(),
+        torques: (0..2000)
+            .flat_map(|k| [swing(k as f64), swing(k as f64 + 0.3)])
+            .collect(),
+        velocities: Vec::new(),
+    });
+    let found = monitor.suspicions(&["first", "second"], true);
+    let [stuck] = &found[..] else {
+        panic!("one suspicion, not {found:?}");
+    };
+    assert_eq!(stuck.fault, DataFault::Stuck);
+    assert_eq!(stuck.actuator.as_deref(), Some("first"));
+    let told = "from t = 2.100 s on for 0.300 s, while other actuators move";
+    assert!(stuck.message.contains(told), "{}", stuck.message);
+}
+
+#[test]
+fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
+    let frozen = |time: f64| {
+        if (2.0..3.0).contains(&time) {
+            swing(2.0)
+        } else {
+            swing(time)
+        }
+    };
+    let quantised = |time: f64| (frozen(time) / 0.02).round() * 0.02;
+    for torque in [&frozen as &dyn Fn(f64) -> f64, &quantised] {
+        let found = suspicions(5000, torque);
+        let [one] = &found[..] else {
+            panic!("one suspicion, not {found:?}");
+        };
+        assert_eq!(one.fault, DataFault::FrozenTorque);
+        let told = " from t = 1.99";
+        assert!(
+            one.message.contains(told) || one.message.contains(" from t = 2.00"),
+            "{}",
+            one.message
+        );
+    }
+    let constant = suspicions(5000, |_| 1.5);
+    let [one] = &constant[..] else {
+        panic!("one suspicion, not {constant:?}");
+    };
+    assert_eq!(one.fault, DataFault::FrozenTorque);
+    assert!(
+        one.message.contains("stays at 1.5 throughout"),
+        "{}",
+        one.message
+    );
+}
+
+#[test]
+fn torques_that_are_held_between_samples_are_not_frozen() {
+    // A log at 500 Hz of a torque that changes every 50 ms, or by large quanta.
+    let held = |time: f64| swing((time * 20.0).floor() / 20.0);
+    assert_eq!(suspicions(5000, held), []);
+    let coarse = |time: f64| (swing(time) / 0.3).round() * 0.3;
+    let found = suspicions(5000, coarse);
+    assert!(
+        found.iter().all(|one| one.fault != DataFault::FrozenTorque),
+        "{found:?}"
+    );
+}

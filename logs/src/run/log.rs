@@ -1,0 +1,477 @@
+//! One run: uniformly sampled positions and torques of all actuators.
+//!
+//! It is in memory, or in a file that is read block by block.
+
+use overact::Code;
+use std::sync::Arc;
+
+use crate::{
+    bytes::temporary_store::TemporaryStore,
+    error::{Error, Problem},
+    mapping::load::Load,
+    period_sums::{MeanOfOtherPeriods, Periods},
+    run::{rows, source::Files},
+    samples::Samples,
+};
+
+/// Rows of a block.
+const BLOCK_ROWS: usize = 4096;
+
+/// One measured or virtual run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    name: String,
+    sampling_frequency: f64,
+    actuators: usize,
+    samples: usize,
+    source: Source,
+    /// Offset subtracted from the position of each actuator of the source.
+    offsets: Vec<f64>,
+    /// Factor of the torque of each actuator of the source.
+    torque_factors: Vec<f64>,
+    payload: bool,
+    /// Name of the payload, if there are several.
+    payload_name: Option<Arc<str>>,
+    instruments: Option<Box<Log>>,
+    /// Note to the user on changes of the samples.
+    note: Option<String>,
+    /// Whether positions were logged within one turn and are unwrapped.
+    is_unwrapped: bool,
+}
+
+/// Source of the samples.
+#[derive(Debug, Clone, PartialEq)]
+enum Source {
+    /// Positions, torques and velocities, samples × n each; no velocities if not measured.
+    Memory([Arc<[f64]>; 3]),
+    /// Files that have been checked before.
+    Files(Box<Files>),
+    /// At each sample, the mean position of the other periods of a run.
+    Others(Box<Log>, Arc<Periods>),
+}
+
+impl Log {
+    /// Creates a run from positions (m, rad) and torques (N, N m), samples × n, row-major.
+    ///
+    /// It has `actuators` actuators and is sampled at `sampling_frequency` (Hz). `payload` says
+    /// whether the platform carried the payload.
+    ///
+    /// # Errors
+    /// An empty run, arrays of wrong lengths, values that are not finite, a frequency that is not
+    /// positive.
+    pub fn new(
+        name: impl Into<String>,
+        sampling_frequency: f64,
+        actuators: usize,
+        positions: Vec<f64>,
+        torques: Vec<f64>,
+        payload: bool,
+    ) -> Result<Self, Error> {
+        let name = name.into();
+        let problem = |message: String| Problem::new(Code::LOG_SHAPE, message).file(name.as_str());
+        let mut problems = Vec::new();
+        if !(sampling_frequency.is_finite() && sampling_frequency > 0.0) {
+            problems.push(problem(format!(
+                "the sampling frequency is {sampling_frequency} Hz"
+            )));
+        }
+        if positions.is_empty() || actuators == 0 {
+            problems.push(problem(String::from("the run is empty")));
+        } else if positions.len() != torques.len() || !positions.len().is_multiple_of(actuators) {
+            problems.push(problem(format!(
+                "{} positions and {} torques are not samples of {actuators} actuators",
+                positions.len(),
+                torques.len()
+            )));
+        }
+        for (what, values) in [("position", &positions), ("torque", &torques)] {
+            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                problems.push(problem(format!(
+                    "sample {}: the {what} of actuator {} is not a finite number",
+                    index / actuators.max(1),
+                    index % actuators.max(1)
+                )));
+            }
+        }
+        Error::check(problems)?;
+        Ok(Self {
+            name,
+            sampling_frequency,
+            actuators,
+            samples: positions.len() / actuators,
+            source: Source::Memory([positions.into(), torques.into(), Arc::default()]),
+            offsets: vec![0.0; actuators],
+            torque_factors: vec![1.0; actuators],
+            payload,
+            payload_name: None,
+            instruments: None,
+            note: None,
+            is_unwrapped: false,
+        })
+    }
+
+    /// Adds measured velocities of the actuators (m/s, rad/s), samples × n, row-major.
+    ///
+    /// They replace differences of the positions. Only runs in memory accept them, and only as many
+    /// as positions.
+    #[must_use]
+    pub fn with_velocities(mut self, velocities: Vec<f64>) -> Self {
+        if let Source::Memory([positions, _, own]) = &mut self.source
+            && positions.len() == velocities.len()
+        {
+            *own = velocities.into();
+        }
+        self
+    }
+
+    /// Whether velocities were measured.
+    #[must_use]
+    pub fn has_velocities(&self) -> bool {
+        match &self.source {
+            Source::Memory([_, _, velocities]) => !velocities.is_empty(),
+            Source::Files(files) => files.has_velocities(),
+            Source::Others(..) => false,
+        }
+    }
+
+    /// Adds a note on changes of the samples.
+    pub(crate) fn with_note(mut self, note: Option<String>) -> Self {
+        self.note = note;
+        self
+    }
+
+    /// Note on changes of the samples.
+    ///
+    /// For files with separate clocks, it names those that were interpolated.
+    #[must_use]
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// Adds the motion of the simulated robot, for instrumental variables.
+    ///
+    /// It corresponds sample by sample to this run but has no position errors. Its torques are not
+    /// used.
+    #[must_use]
+    pub fn with_instruments(mut self, instruments: Self) -> Self {
+        self.instruments = Some(Box::new(instruments));
+        self
+    }
+
+    /// The simulated motion of the run.
+    #[must_use]
+    pub fn instruments(&self) -> Option<&Self> {
+        self.instruments.as_deref()
+    }
+
+    /// The run with the mean positions of the other periods at the same phase.
+    ///
+    /// Its torques are those of this run.
+    #[must_use]
+    pub fn others(&self, periods: Periods) -> Self {
+        Self {
+            source: Source::Others(Box::new(self.clone()), Arc::new(periods)),
+            // The other periods belong to this run, so offsets and torque factors are already
+            // applied.
+            offsets: vec![0.0; self.actuators],
+            torque_factors: vec![1.0; self.actuators],
+            ..self.clone()
+        }
+    }
+
+    /// A run that stays in its files.
+    pub(crate) fn in_files(
+        files: Files,
+        sampling_frequency: f64,
+        samples: usize,
+        payload: bool,
+    ) -> Self {
+        Self {
+            name: files.name().to_owned(),
+            sampling_frequency,
+            offsets: vec![0.0; files.actuators()],
+            torque_factors: vec![1.0; files.actuators()],
+            actuators: files.actuators(),
+            samples,
+            source: Source::Files(Box::new(files)),
+            payload,
+            payload_name: None,
+            instruments: None,
+            note: None,
+            is_unwrapped: false,
+        }
+    }
+
+    /// Sets whether positions were logged within one turn and are unwrapped.
+    pub(crate) fn with_unwrapped(mut self, is_unwrapped: bool) -> Self {
+        self.is_unwrapped = is_unwrapped;
+        self
+    }
+
+    /// Whether positions were logged within one turn and are unwrapped.
+    #[must_use]
+    pub const fn is_unwrapped(&self) -> bool {
+        self.is_unwrapped
+    }
+
+    /// Name of the run: its file as the caller named it.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Sampling frequency f_m, Hz.
+    #[must_use]
+    pub const fn sampling_frequency(&self) -> f64 {
+        self.sampling_frequency
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub const fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// Number of actuators, n.
+    #[must_use]
+    pub const fn actuators(&self) -> usize {
+        self.actuators
+    }
+
+    /// Whether the platform carried the payload.
+    #[must_use]
+    pub const fn payload(&self) -> bool {
+        self.payload
+    }
+
+    /// Whether the samples are in memory, not in a file.
+    #[must_use]
+    pub const fn in_memory(&self) -> bool {
+        matches!(self.source, Source::Memory(..))
+    }
+
+    /// Name of the payload that the platform carried, if there are several.
+    #[must_use]
+    pub fn payload_name(&self) -> Option<&str> {
+        self.payload_name.as_deref().filter(|_| self.payload)
+    }
+
+    /// The payload that the platform carried.
+    #[must_use]
+    pub fn carried(&self) -> Load<'_> {
+        let own = self.payload_name().map(Load::Named);
+        own.unwrap_or(Load::from(self.payload))
+    }
+
+    /// The same run with a payload of this name; different names are different bodies.
+    #[must_use]
+    pub fn with_payload_name(mut self, name: &str) -> Self {
+        self.payload = true;
+        self.payload_name = Some(name.into());
+        self
+    }
+
+    /// The same run under another name.
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// The same run with another payload label.
+    #[must_use]
+    pub fn with_payload(mut self, payload: bool) -> Self {
+        self.payload = payload;
+        self
+    }
+
+    /// The same run with encoder offsets (rad, m) subtracted, one for each actuator.
+    #[must_use]
+    pub fn without_offsets(mut self, offsets: &[f64]) -> Self {
+        for (own, more) in self.offsets.iter_mut().zip(offsets) {
+            *own += more;
+        }
+        self
+    }
+
+    /// The same run with its torques multiplied by a factor for each actuator.
+    #[must_use]
+    pub fn with_torque_factors(mut self, factors: &[f64]) -> Self {
+        for (own, more) in self.torque_factors.iter_mut().zip(factors) {
+            *own *= more;
+        }
+        self
+    }
+
+    /// The first `samples` of the run, in memory.
+    ///
+    /// # Errors
+    /// As [`Log::reader`] and [`Reader::next`].
+    pub fn beginning(&self, samples: usize) -> Result<Self, Error> {
+        let count = samples.min(self.samples);
+        let (mut positions, mut torques) = (Vec::new(), Vec::new());
+        let mut velocities = Vec::new();
+        let mut reader = self.reader()?;
+        while positions.len() < count * self.actuators
+            && let Some(block) = reader.next()?
+        {
+            positions.extend(block.positions);
+            torques.extend(block.torques);
+            velocities.extend(block.velocities);
+        }
+        positions.truncate(count * self.actuators);
+        torques.truncate(count * self.actuators);
+        velocities.truncate(count * self.actuators);
+        let beginning = Self::new(
+            self.name.as_str(),
+            self.sampling_frequency,
+            self.actuators,
+            positions,
+            torques,
+            self.payload,
+        )?;
+        let beginning = beginning.with_velocities(velocities);
+        Ok(match self.payload_name() {
+            Some(name) => beginning.with_payload_name(name),
+            None => beginning,
+        })
+    }
+
+    /// A reader of the run from its first sample.
+    ///
+    /// # Errors
+    /// A file that cannot be opened any more.
+    pub fn reader(&self) -> Result<Reader<'_>, Error> {
+        let rows = match &self.source {
+            Source::Memory(all) => Rows::Memory(all.each_ref().map(|own| &**own)),
+            Source::Files(files) => match &files.spill {
+                Some(spill) => Rows::Spilled(spill, 0),
+                None => Rows::Files(Box::new(rows::Rows::new(files)?)),
+            },
+            Source::Others(log, periods) => {
+                Rows::Others(Box::new(log.reader()?), MeanOfOtherPeriods::new(periods))
+            }
+        };
+        Ok(Reader {
+            rows,
+            name: &self.name,
+            offsets: &self.offsets,
+            torque_factors: &self.torque_factors,
+            left: self.samples,
+        })
+    }
+
+    /// All positions (m, rad) and torques (N, N m), samples × n each, row-major.
+    ///
+    /// # Errors
+    /// As [`Log::reader`] and [`Reader::next`].
+    pub fn load(&self) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let (mut positions, mut torques) = (Vec::new(), Vec::new());
+        let mut reader = self.reader()?;
+        while let Some(block) = reader.next()? {
+            positions.extend(block.positions);
+            torques.extend(block.torques);
+        }
+        Ok((positions, torques))
+    }
+}
+
+/// Reads a run block by block.
+#[derive(Debug)]
+pub struct Reader<'a> {
+    rows: Rows<'a>,
+    name: &'a str,
+    /// Offset subtracted from the position of each actuator.
+    offsets: &'a [f64],
+    /// Factor of the torque of each actuator.
+    torque_factors: &'a [f64],
+    /// Number of samples left.
+    left: usize,
+}
+
+/// Remaining rows of the source.
+#[derive(Debug)]
+enum Rows<'a> {
+    Memory([&'a [f64]; 3]),
+    Files(Box<rows::Rows<'a>>),
+    /// A temporary file, and the number of samples read.
+    Spilled(&'a TemporaryStore, usize),
+    Others(Box<Reader<'a>>, MeanOfOtherPeriods<'a>),
+}
+
+impl Reader<'_> {
+    /// The next block of samples, or `None` at the end.
+    ///
+    /// # Errors
+    /// A file that cannot be read any more, or has changed since it was checked.
+    #[expect(clippy::should_implement_trait, reason = "an iterator has no errors")]
+    pub fn next(&mut self) -> Result<Option<Samples>, Error> {
+        let count = BLOCK_ROWS.min(self.left);
+        if count == 0 {
+            return Ok(None);
+        }
+        self.left -= count;
+        let mut block = self.block(count)?;
+        for row in block.positions.chunks_exact_mut(self.offsets.len()) {
+            row.iter_mut()
+                .zip(self.offsets)
+                .for_each(|(position, offset)| *position -= offset);
+        }
+        for row in block.torques.chunks_exact_mut(self.torque_factors.len()) {
+            row.iter_mut()
+                .zip(self.torque_factors)
+                .for_each(|(torque, factor)| *torque *= factor);
+        }
+        Ok(Some(block))
+    }
+
+    /// The next samples as stored in the source.
+    fn block(&mut self, count: usize) -> Result<Samples, Error> {
+        let size = count * self.offsets.len();
+        match &mut self.rows {
+            Rows::Memory(all) => {
+                let [positions, torques, velocities] = all.each_mut().map(|rest| {
+                    // Velocities may be absent.
+                    let (now, later) = rest.split_at(size.min(rest.len()));
+                    *rest = later;
+                    now.to_vec()
+                });
+                Ok(Samples {
+                    positions,
+                    torques,
+                    velocities,
+                })
+            }
+            Rows::Files(rows) => {
+                let mut block = Samples::default();
+                for _ in 0..count {
+                    if !rows.next(&mut block)? {
+                        let problem = Problem::new(
+                            Code::UNREADABLE_LOG,
+                            "the file has become shorter while it was read",
+                        );
+                        return Err(problem.file(self.name).into());
+                    }
+                }
+                Ok(block)
+            }
+            Rows::Spilled(spill, taken) => {
+                let block = spill.read(*taken, count);
+                *taken += count;
+                block.map_err(|error| {
+                    let message =
+                        format!("its numbers can't be read from a temporary file: {error}");
+                    Problem::new(Code::UNREADABLE_LOG, message)
+                        .file(self.name)
+                        .into()
+                })
+            }
+            Rows::Others(reader, others) => {
+                let mut block = reader.next()?.unwrap_or_default();
+                others.replace(&mut block.positions);
+                block.velocities.clear();
+                Ok(block)
+            }
+        }
+    }
+}
