@@ -1,6 +1,6 @@
 //! Memory for large Parquet and MCAP logs, measured by a counting allocator.
 //!
-//! `OVERACT_LOG_MB=1000 cargo test --release -p overact-identification --features mcap --test large_logs -- --nocapture`
+//! `OVERACT_LOG_MB=1000 cargo test --release -p overact-logs --features mcap --test large_logs -- --nocapture`
 //! reads files of a gigabyte.
 
 #[cfg(feature = "mcap")]
