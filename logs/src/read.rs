@@ -112,7 +112,8 @@ fn first_pass(
     }
     let (frequency, count) = (summary.frequency, summary.count);
     let resampled = files.note(count, summary.left_out);
-    let notes: Vec<String> = { resampled.into_iter() }
+    let of_files = files.tables.first().and_then(Table::note);
+    let notes: Vec<String> = { of_files.into_iter().chain(resampled) }
         .chain(wraps.iter().map(|(_, wrap)| wrap.note()))
         .collect();
     let note = (!notes.is_empty()).then(|| notes.join("; "));

@@ -125,7 +125,7 @@ fn columns_of_joined_files_are_called_by_their_file() {
     );
     // An additional line in one file is reported alone, without its consequences.
     let text = told(
-        &[POSITIONS, ("units.csv", "a;c\nrad;Nm\n1;7\n2;8\n3;9\n")],
+        &[POSITIONS, ("words.csv", "a;c\n1;7\na;c\n2;8\n3;9\n")],
         "file2.c",
     );
     assert_eq!(

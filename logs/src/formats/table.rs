@@ -54,7 +54,10 @@ impl Table {
     /// A file that cannot be read, or of an unsupported format.
     pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Vec<Self>, Error> {
         let one = match format::recognise(&file, medium)? {
-            Format::Text => Self::Text(Text::open(file, medium)?),
+            Format::Text => {
+                let parts = Text::open(file, medium)?.into_iter();
+                return Ok(parts.map(Self::Text).collect());
+            }
             Format::Mat => Self::Arrays(mat_file::open(file, medium)?),
             Format::Parquet => Self::Stored(Arc::new(Parquet::open(file, medium)?)),
             Format::Array => Self::Arrays(numpy::open_array(file, medium)?),
@@ -100,7 +103,11 @@ impl Table {
 
     /// Whether it is one of several parts of its file, which are used only if requested.
     pub(crate) fn is_part(&self) -> bool {
-        matches!(self, Self::Stored(stored) if stored.is_part())
+        match self {
+            Self::Text(text) => text.is_part(),
+            Self::Stored(stored) => stored.is_part(),
+            Self::Arrays(_) => false,
+        }
     }
 
     /// Whether the numbers are in memory.
@@ -149,17 +156,30 @@ impl Table {
     /// Origin of instants, s since 1970; `None` without instants.
     pub(crate) fn origin(&self) -> Option<i64> {
         match self {
-            Self::Text(_) | Self::Arrays(_) => None,
+            Self::Text(text) => text.origin(),
             Self::Stored(stored) => stored.origin(),
+            Self::Arrays(_) => None,
         }
     }
 
     /// Sets the origin of instants, unless the table is shared.
     pub(crate) fn set_origin(&mut self, origin: i64) {
-        if let Self::Stored(stored) = self
-            && let Some(stored) = Arc::get_mut(stored)
-        {
-            stored.set_origin(origin);
+        match self {
+            Self::Text(text) => text.set_origin(origin),
+            Self::Stored(stored) => {
+                if let Some(stored) = Arc::get_mut(stored) {
+                    stored.set_origin(origin);
+                }
+            }
+            Self::Arrays(_) => {}
+        }
+    }
+
+    /// Note on parts of the file that are not read.
+    pub(crate) fn note(&self) -> Option<String> {
+        match self {
+            Self::Text(text) => text.note(),
+            Self::Stored(_) | Self::Arrays(_) => None,
         }
     }
 
@@ -170,7 +190,7 @@ impl Table {
         };
         let problem = Problem::new(Code::LOG_TOO_SHORT, "the file is empty").file(text.file());
         let help = "give a log with the samples of a whole motion";
-        (text.columns() == 0).then(|| problem.help(help))
+        text.is_empty().then(|| problem.help(help))
     }
 
     /// Name of the format.

@@ -8,8 +8,9 @@
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 use overact::Code;
+use std::borrow::Cow;
 
-use super::collapsed_blanks::CollapsedBlanks;
+use super::{collapsed_blanks::CollapsedBlanks, groups, instant::Instant, preamble::Preamble};
 use crate::{
     error::{Error, Problem},
     problems::shown,
@@ -35,6 +36,15 @@ pub(super) struct Dialect {
     pub(super) columns: usize,
     /// Largest number of cells in a line: those of the first line, including empty ones.
     pub(super) most: usize,
+    /// Lines before the first line to be read, and their bytes: those of a preamble.
+    pub(super) skipped_lines: usize,
+    pub(super) skipped_bytes: usize,
+    /// Columns of dates or times of day.
+    pub(super) instants: Vec<usize>,
+    /// Day of the first date, in days since 1970.
+    pub(super) first_day: Option<i64>,
+    /// Columns that have numbers in the same rows, if there are several such groups.
+    pub(super) groups: Vec<Vec<usize>>,
 }
 
 impl Dialect {
@@ -51,10 +61,14 @@ impl Dialect {
         };
         let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
         let comment = if first == Some(&b'%') { b'%' } else { b'#' };
-        let separator = separator(text, comment);
+        let preamble = Preamble::of(text, comment);
+        let text = &text[preamble.bytes..];
+        let separator = preamble
+            .separator
+            .unwrap_or_else(|| separator(text, comment));
         let records = records(text, separator, comment);
-        let decimal_comma = decimal_comma(file, separator, &records)?;
-        let is_value = |cell: &str| is_number(cell, decimal_comma);
+        let decimal_comma = decimal_comma(file, separator, &records, preamble.lines)?;
+        let is_value = |cell: &str| is_number(cell, decimal_comma) || is_instant(cell);
         let has_header = has_header(&records, &is_value);
         let columns = records.first().map_or(0, |(_, first)| width(first));
         let mut dialect = Self {
@@ -65,6 +79,16 @@ impl Dialect {
             names: Vec::new(),
             columns,
             most: records.first().map_or(0, |(_, first)| first.len()),
+            skipped_lines: preamble.lines,
+            skipped_bytes: preamble.bytes,
+            instants: Vec::new(),
+            first_day: None,
+            groups: groups::of(
+                records
+                    .iter()
+                    .skip(usize::from(has_header))
+                    .map(|(_, cells)| cells),
+            ),
         };
         if has_header {
             let (_, header) = &records[0];
@@ -72,12 +96,29 @@ impl Dialect {
             if let Some((line, second)) = records.get(1)
                 && width(second) > dialect.most
             {
-                return Err(dialect.wider(file, *line as usize, width(second)).into());
+                let line = preamble.lines + *line as usize;
+                return Err(dialect.wider(file, line, width(second)).into());
             }
-        } else {
+        } else if preamble.names.is_empty() {
             dialect.names = names_in_comments(text, &dialect, &is_value);
         }
-        Ok(dialect)
+        if let Some((_, first)) = records.get(usize::from(has_header)) {
+            dialect.find_instants(first);
+        }
+        Ok(dialect.named_by(&preamble))
+    }
+
+    /// Finds the columns of dates and times of day by the first sample.
+    fn find_instants(&mut self, first: &StringRecord) {
+        for (column, cell) in first.iter().enumerate() {
+            if is_number(cell, self.decimal_comma) {
+                continue;
+            }
+            if let Some(instant) = Instant::parse(cell) {
+                self.instants.push(column);
+                self.first_day = self.first_day.or(instant.day);
+            }
+        }
     }
 
     /// The problem of a line with more cells than the first one.
@@ -132,6 +173,23 @@ fn is_number(cell: &str, decimal_comma: bool) -> bool {
     parse(cell, decimal_comma).is_some()
 }
 
+fn is_instant(cell: &str) -> bool {
+    Instant::parse(cell).is_some()
+}
+
+/// Whether a cell is a number, a date or a time of day.
+pub(super) fn is_value(cell: &str) -> bool {
+    is_number(cell, true) || is_instant(cell)
+}
+
+/// Text in UTF-8, or in Latin-1.
+pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    str::from_utf8(bytes).map_or_else(
+        |_| bytes.iter().map(|byte| char::from(*byte)).collect(),
+        Cow::Borrowed,
+    )
+}
+
 /// The text without its byte order mark.
 pub(super) fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
@@ -145,7 +203,8 @@ fn records(text: &[u8], separator: u8, comment: u8) -> Vec<(u64, StringRecord)> 
         // Errors of a record are reported when all records are read.
         for record in reader.map_while(Result::ok) {
             let line = record.position().map_or(0, csv::Position::line);
-            found.push((line, StringRecord::from_byte_record_lossy(record)));
+            let cells: Vec<Cow<'_, str>> = record.iter().map(text_of).collect();
+            found.push((line, cells.iter().map(AsRef::as_ref).collect()));
         }
     };
     if separator == b' ' {
@@ -166,7 +225,7 @@ fn width(record: &StringRecord) -> usize {
 }
 
 /// Detects the column separator of a text.
-fn separator(text: &[u8], comment: u8) -> u8 {
+pub(super) fn separator(text: &[u8], comment: u8) -> u8 {
     let splits = |separator: u8| -> bool {
         let all = records(text, separator, comment);
         let ends = [all.first(), all.last()];
@@ -192,13 +251,13 @@ fn separator(text: &[u8], comment: u8) -> u8 {
     let Some((_, last)) = by_blanks.last().filter(|(_, record)| record.len() > 1) else {
         return b',';
     };
-    let whole = last.iter().all(|cell| is_number(cell, true));
+    let whole = last.iter().all(is_value);
     let by_commas = records(text, b',', comment);
     let has_commas = by_commas.last().is_some_and(|(_, record)| record.len() > 1);
     if whole || !has_commas { b' ' } else { b',' }
 }
 
-/// Detects a decimal comma.
+/// Detects a decimal comma; `before` is the number of lines before the records.
 ///
 /// # Errors
 /// Both commas and points as decimal separators.
@@ -206,6 +265,7 @@ fn decimal_comma(
     file: &str,
     separator: u8,
     records: &[(u64, StringRecord)],
+    before: usize,
 ) -> Result<bool, Error> {
     let cells = |mark: char| {
         records.iter().find_map(|(line, record)| {
@@ -223,7 +283,7 @@ fn decimal_comma(
             );
             let problem = Problem::new(Code::NOT_A_NUMBER, message)
                 .file(file)
-                .line(line as usize);
+                .line(before + line as usize);
             let help = if separator == b',' {
                 "use decimal points, and no quotation marks"
             } else {
@@ -257,7 +317,7 @@ fn names_in_comments(
     dialect: &Dialect,
     is_value: &dyn Fn(&str) -> bool,
 ) -> Vec<String> {
-    let text = String::from_utf8_lossy(text);
+    let text = text_of(text);
     let lines = text.lines().map(str::trim);
     let marks = [char::from(dialect.comment), ' ', '\t'];
     let comments = lines

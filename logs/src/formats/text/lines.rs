@@ -42,15 +42,15 @@ pub(super) enum Next {
 }
 
 impl Lines {
-    /// Lines of a file from its position, which is byte number `bytes`.
-    pub(super) fn new(input: Opened, bytes: u64) -> Self {
+    /// Lines of a file from its position, before which are `bytes` bytes and `lines` lines.
+    pub(super) fn new(input: Opened, bytes: u64, lines: usize) -> Self {
         Self {
             input,
             buffer: vec![0; BUFFER],
             left: 0..0,
             is_whole: false,
             has_marks: false,
-            passed: 0,
+            passed: lines,
             bytes,
         }
     }

@@ -5,15 +5,19 @@
 //! file, or it is read again, row by row.
 //!
 //! - `dialect`: separators, decimal commas and names;
-//! - `lines`, `cells`: plain lines and their numbers;
+//! - `preamble`: lines before the samples; `groups`: columns with cells in the same rows;
+//! - `lines`, `cells`: plain lines and their numbers; `instant`: dates and times of day;
 //! - `row_diagnostics`: error messages for a row;
-//! - `squeeze`: columns separated by several blanks;
+//! - `collapsed_blanks`: columns separated by several blanks;
 //! - `rows`: rows of plain lines, or of records with quotation marks.
 
 mod cells;
 mod collapsed_blanks;
 mod dialect;
+mod groups;
+mod instant;
 mod lines;
+mod preamble;
 mod row_diagnostics;
 mod rows;
 
@@ -41,14 +45,18 @@ pub(crate) struct Text {
     file: String,
     medium: ByteSource,
     dialect: Dialect,
+    /// The group of columns that it has, if the file has several.
+    group: Option<Vec<usize>>,
+    /// Origin of dates, s since 1970.
+    origin: i64,
 }
 
 impl Text {
-    /// Opens a text and detects its dialect.
+    /// Opens a text and detects its dialect: one table, or one for each group of columns.
     ///
     /// # Errors
     /// A file that cannot be read, or an ambiguous one.
-    pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Self, Error> {
+    pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Vec<Self>, Error> {
         let input = medium.open().map_err(|error| unreadable(&file, &error))?;
         let mut beginning = Vec::new();
         input
@@ -56,11 +64,66 @@ impl Text {
             .read_to_end(&mut beginning)
             .map_err(|error| unreadable(&file, &error))?;
         let dialect = Dialect::of(&file, &beginning, beginning.len() < BEGINNING)?;
-        Ok(Self {
+        let whole = Self {
             file,
             medium: medium.clone(),
+            origin: 86_400 * dialect.first_day.unwrap_or(0),
             dialect,
-        })
+            group: None,
+        };
+        let groups = &whole.dialect.groups;
+        let part = |group: &Vec<usize>| Self {
+            group: Some(group.clone()),
+            ..whole.clone()
+        };
+        let parts: Vec<Self> = groups.iter().map(part).collect();
+        Ok(if parts.is_empty() { vec![whole] } else { parts })
+    }
+
+    /// Whether it is one of several groups of columns of its file.
+    pub(crate) const fn is_part(&self) -> bool {
+        self.group.is_some()
+    }
+
+    /// Origin of dates, s since 1970; `None` without dates.
+    pub(crate) fn origin(&self) -> Option<i64> {
+        self.dialect.first_day.map(|_| self.origin)
+    }
+
+    /// Sets the origin of dates, to be common to several files.
+    pub(crate) const fn set_origin(&mut self, origin: i64) {
+        self.origin = origin;
+    }
+
+    /// Note on lines that are not read.
+    pub(crate) fn note(&self) -> Option<String> {
+        let lines = self.dialect.skipped_lines;
+        let s = if lines == 1 { " is" } else { "s are" };
+        (lines > 0).then(|| format!("the first {lines} line{s} not samples"))
+    }
+
+    /// Whether a column is in this table: in its group, or in every row.
+    fn has(&self, column: usize) -> bool {
+        let mut others = self.dialect.groups.iter();
+        self.group
+            .as_ref()
+            .is_none_or(|own| own.contains(&column) || !others.any(|group| group.contains(&column)))
+    }
+
+    /// Whether a row has no cell of the group.
+    fn lacks_group<'c>(&self, cells: impl FnOnce() -> Vec<&'c [u8]>) -> bool {
+        let Some(group) = &self.group else {
+            return false;
+        };
+        let cells = cells();
+        let is_empty = |cell: &&[u8]| cell.trim_ascii().is_empty();
+        { group.iter() }.all(|column| cells.get(*column).is_none_or(is_empty))
+    }
+
+    /// Names of the columns; empty for those of other groups.
+    fn names(&self) -> impl Iterator<Item = &str> {
+        let names = self.dialect.names.iter().enumerate();
+        names.map(|(column, name)| if self.has(column) { name.as_str() } else { "" })
     }
 
     /// The file as the caller named it.
@@ -68,9 +131,18 @@ impl Text {
         &self.file
     }
 
-    /// Number of columns.
+    /// Whether the text has no line.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.dialect.columns == 0
+    }
+
+    /// Number of columns that can be selected by number.
     pub(crate) const fn columns(&self) -> usize {
-        self.dialect.columns
+        if self.is_part() {
+            0
+        } else {
+            self.dialect.columns
+        }
     }
 
     /// Index of the column with this name.
@@ -78,15 +150,13 @@ impl Text {
     /// # Errors
     /// Two columns with this name.
     pub(crate) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
-        let names = self.dialect.names.iter().map(String::as_str);
-        only(&self.file, name, names)
+        only(&self.file, name, self.names())
     }
 
     /// The existing columns.
     pub(crate) fn existing(&self) -> Existing<'_> {
-        let names = self.dialect.names.iter().map(String::as_str);
         Existing {
-            names: names.filter(|name| !name.is_empty()).collect(),
+            names: self.names().filter(|name| !name.is_empty()).collect(),
             columns: self.columns(),
             what: "column",
         }
@@ -102,12 +172,12 @@ impl Text {
         Rows::new(self, wanted, input, bytes)
     }
 
-    /// The file after its byte order mark, and the length of that mark.
+    /// The file after its byte order mark and its preamble, and their length.
     fn data(&self) -> std::io::Result<(Opened, u64)> {
         let mut file = self.medium.open()?;
         let mut start = Vec::new();
         file.by_ref().take(3).read_to_end(&mut start)?;
-        let mark = start.len() - dialect::without_mark(&start).len();
+        let mark = start.len() - dialect::without_mark(&start).len() + self.dialect.skipped_bytes;
         file.seek(SeekFrom::Start(mark as u64))?;
         Ok((file, mark as u64))
     }

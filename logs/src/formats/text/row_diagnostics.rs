@@ -2,7 +2,10 @@
 
 use overact::Code;
 
-use super::{Text, dialect};
+use super::{
+    Text, dialect,
+    instant::{Instant, Midnights},
+};
 use crate::{
     error::{Error, Problem},
     problems::shown,
@@ -22,13 +25,17 @@ pub(super) struct RowDiagnostics {
     pub(super) is_first: bool,
     /// Whether the help for a cell without a number has been given.
     is_helped: bool,
+    /// Times of day of each requested column.
+    midnights: Vec<Midnights>,
 }
 
 impl RowDiagnostics {
-    pub(super) const fn new() -> Self {
+    /// No message yet, for rows of `wanted` columns.
+    pub(super) fn new(wanted: usize) -> Self {
         Self {
             is_first: true,
             is_helped: false,
+            midnights: vec![Midnights::default(); wanted],
         }
     }
 
@@ -45,11 +52,9 @@ impl RowDiagnostics {
         let is_first = std::mem::take(&mut self.is_first);
         row.check_width()?;
         let mut problems = Vec::new();
-        for (&(place, name), value) in wanted.iter().zip(values) {
-            match number(
-                row.cells.get(place).copied(),
-                row.text.dialect.decimal_comma,
-            ) {
+        let columns = wanted.iter().zip(values).zip(&mut self.midnights);
+        for ((&(place, name), value), midnights) in columns {
+            match row.value(place, midnights) {
                 Ok(found) => *value = found,
                 Err(message) => {
                     *value = f64::NAN;
@@ -76,6 +81,21 @@ impl RowDiagnostics {
 }
 
 impl Row<'_> {
+    /// The number in a column, or the time of its date or time of day, s.
+    fn value(&self, column: usize, midnights: &mut Midnights) -> Result<f64, String> {
+        let cell = self.cells.get(column).copied();
+        let found = number(cell, self.text.dialect.decimal_comma);
+        if found.is_ok() || !self.text.dialect.instants.contains(&column) {
+            return found;
+        }
+        let text = dialect::text_of(cell.unwrap_or_default());
+        match Instant::parse(text.trim_matches(['"', ' '])) {
+            Some(instant) if instant.day.is_some() => Ok(instant.since(self.text.origin)),
+            Some(instant) => Ok(midnights.next(instant.seconds)),
+            None => found,
+        }
+    }
+
     fn problem(&self, message: String) -> Problem {
         let problem = Problem::new(Code::NOT_A_NUMBER, message);
         problem.file(self.text.file.as_str()).line(self.line)

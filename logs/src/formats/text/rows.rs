@@ -51,10 +51,10 @@ impl<'a> Rows<'a> {
             text,
             wanted: wanted.to_vec(),
             order,
-            source: Source::Lines(Lines::new(input, bytes)),
+            source: Source::Lines(Lines::new(input, bytes, text.dialect.skipped_lines)),
             line: 0,
             is_broken: false,
-            diagnostics: RowDiagnostics::new(),
+            diagnostics: RowDiagnostics::new(wanted.len()),
         };
         if text.dialect.has_header {
             rows.pass_header()?;
@@ -106,6 +106,9 @@ impl<'a> Rows<'a> {
             if line.first().is_none_or(|first| *first == comment) {
                 continue;
             }
+            if self.text.lacks_group(|| cells::split(line, separator)) {
+                continue;
+            }
             self.line = lines.passed();
             let most = self.text.dialect.most;
             if !decimal_comma && cells::read(line, separator, most, &self.order, values) {
@@ -120,13 +123,17 @@ impl<'a> Rows<'a> {
             };
             return self.diagnostics.read(&row, &self.wanted, values);
         }
-        if !self.advance()? {
-            return Ok(false);
-        }
-        let Source::Records(records) = &self.source else {
-            return Ok(false);
+        let cells: Vec<&[u8]> = loop {
+            if !self.advance()? {
+                return Ok(false);
+            }
+            let Source::Records(records) = &self.source else {
+                return Ok(false);
+            };
+            if !self.text.lacks_group(|| records.record.iter().collect()) {
+                break records.record.iter().collect();
+            }
         };
-        let cells: Vec<&[u8]> = records.record.iter().collect();
         let row = Row {
             text: self.text,
             line: self.line,

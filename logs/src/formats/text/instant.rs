@@ -1,0 +1,151 @@
+//! Dates and times of day as cells: `2026-03-01T10:00:00.001Z`, `01.03.2026 10:00:00`, `10:00:00.001`.
+//!
+//! Times of day count from midnight. Dates count from midnight (UTC) of the day on which the log
+//! starts, so that steps of microseconds keep their digits. A time without a zone is taken as it is.
+
+use jiff::{
+    Timestamp,
+    civil::{DateTime, Time},
+};
+
+/// Seconds of a day.
+const DAY: f64 = 86_400.0;
+
+/// A step back by more than this is midnight, s.
+const MIDNIGHT: f64 = DAY / 2.0;
+
+/// A date with a time, or a time of day.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Instant {
+    /// Days since 1970; `None` for a time of day.
+    pub(super) day: Option<i64>,
+    /// Time of the day, s.
+    pub(super) seconds: f64,
+}
+
+impl Instant {
+    /// Parses a cell, if it is a date with a time, or a time of day with seconds.
+    pub(super) fn parse(cell: &str) -> Option<Self> {
+        let cell = cell.trim();
+        let is_digit = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_digit);
+        if !is_digit(cell.as_bytes().first()) || cell.matches(':').count() < 2 {
+            return None;
+        }
+        let cell = cell.replace(',', ".");
+        let Some((date, time)) = cell.split_once(['T', 't', ' ']) else {
+            let time: Time = cell.parse().ok()?;
+            return Some(Self::of(None, time));
+        };
+        let text = format!("{}T{}", iso_date(date)?, time.trim());
+        if let Ok(time) = text.parse::<Timestamp>() {
+            let day = time.as_second().div_euclid(86_400);
+            let second = time.as_second().rem_euclid(86_400) as f64;
+            let seconds = second + f64::from(time.subsec_nanosecond()) * 1e-9;
+            return Some(Self {
+                day: Some(day),
+                seconds,
+            });
+        }
+        let time: DateTime = text.parse().ok()?;
+        let first = jiff::civil::date(1970, 1, 1);
+        let days = time.date().since(first).ok()?.get_days();
+        Some(Self::of(Some(i64::from(days)), time.time()))
+    }
+
+    fn of(day: Option<i64>, time: Time) -> Self {
+        let whole = 3600 * i32::from(time.hour())
+            + 60 * i32::from(time.minute())
+            + i32::from(time.second());
+        Self {
+            day,
+            seconds: f64::from(whole) + f64::from(time.subsec_nanosecond()) * 1e-9,
+        }
+    }
+
+    /// Seconds since `origin`, in s since 1970; a time of day is that since midnight.
+    pub(super) fn since(self, origin: i64) -> f64 {
+        self.seconds + self.day.map_or(0, |day| 86_400 * day - origin) as f64
+    }
+}
+
+/// A date as `YYYY-MM-DD`; `None` if day and month may be exchanged.
+fn iso_date(date: &str) -> Option<String> {
+    let parts: Vec<&str> = date.split(['-', '/', '.']).collect();
+    let [first, second, third] = parts[..] else {
+        return None;
+    };
+    let pad = |part: &str| format!("{part:0>2}");
+    if first.len() == 4 {
+        Some(format!("{first}-{}-{}", pad(second), pad(third)))
+    } else if third.len() == 4 && date.contains('.') {
+        Some(format!("{third}-{}-{}", pad(second), pad(first)))
+    } else {
+        None
+    }
+}
+
+/// Times of day of one column, continued over midnight.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Midnights {
+    days: f64,
+    last: f64,
+}
+
+impl Midnights {
+    /// The time of day of the next row, in seconds from the first midnight.
+    pub(super) fn next(&mut self, seconds: f64) -> f64 {
+        if seconds < self.last - MIDNIGHT {
+            self.days += 1.0;
+        }
+        self.last = seconds;
+        self.days * DAY + seconds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Instant, Midnights};
+
+    fn since(cell: &str, day: i64) -> Option<f64> {
+        Instant::parse(cell).map(|instant| instant.since(86_400 * day))
+    }
+
+    #[test]
+    fn dates_and_times_of_day_are_seconds() {
+        // 2026-03-01 is day 20513 since 1970.
+        for cell in [
+            "2026-03-01T10:00:00.5Z",
+            "2026-03-01 10:00:00,5",
+            "2026/3/1 10:00:00.5",
+            "01.03.2026 10:00:00.5",
+            "2026-03-01T12:00:00.5+02:00",
+        ] {
+            assert_eq!(since(cell, 20_513), Some(36_000.5), "{cell}");
+        }
+        assert_eq!(since("2026-03-02T00:00:01Z", 20_513), Some(86_401.0));
+        assert_eq!(since("10:00:00.25", 20_513), Some(36_000.25));
+    }
+
+    #[test]
+    fn other_cells_are_no_times() {
+        for cell in [
+            "",
+            "1.5",
+            "q1",
+            "10:00",
+            "03/04/2026 10:00:00",
+            "25:00:00",
+            "1:2:3:4",
+            "a:b:c",
+        ] {
+            assert_eq!(since(cell, 0), None, "{cell}");
+        }
+    }
+
+    #[test]
+    fn times_of_day_go_on_at_midnight() {
+        let mut midnights = Midnights::default();
+        let times = [86_399.0, 86_399.5, 0.0, 0.5].map(|time| midnights.next(time));
+        assert_eq!(times, [86_399.0, 86_399.5, 86_400.0, 86_400.5]);
+    }
+}
