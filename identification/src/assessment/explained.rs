@@ -3,7 +3,7 @@
 use overact::Model;
 
 use super::{
-    checks::{raw_samples, units},
+    checks::{samples::raw_samples, units},
     positions,
 };
 use crate::{data::Log, error::Error, monitor::Monitor};
