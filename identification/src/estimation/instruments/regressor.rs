@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     data::Periods,
-    estimation::{estimate::Estimation, total_least_squares::total_least_squares},
+    estimation::{estimate::Estimation, instruments::total_least_squares::total_least_squares},
     regression::{projection::ModelKind, system::System},
     settings::Instruments,
 };

@@ -2,11 +2,12 @@
 
 use super::{
     payloads::{self, Payloads},
-    same, simulate,
+    same,
 };
 use crate::{
     failure::Failure,
     input::{Spool, is_stream},
+    note::print_without_effect,
     progress::Progress,
 };
 use clap::ValueEnum;
@@ -20,7 +21,7 @@ use std::{
 /// Where the runs come from.
 #[derive(Debug, clap::Args)]
 #[group(id = "runs")]
-pub(super) struct Arguments {
+pub(crate) struct Arguments {
     /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
     /// `a.csv+b.csv` for one run in two files, `-` for standard input; without any, the virtual
     /// experiment is simulated
@@ -59,7 +60,7 @@ enum Friction {
 
 impl Arguments {
     /// Runs from logs, without and with payload.
-    pub(super) const fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
+    pub(crate) const fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
         Self {
             data,
             payload_data,
@@ -72,18 +73,18 @@ impl Arguments {
     }
 
     /// Whether any log is given.
-    pub(super) fn names_logs(&self) -> bool {
+    pub(crate) fn names_logs(&self) -> bool {
         let held_out = [&self.cross_validate, &self.cross_validate_payload];
         !self.are_virtual() || held_out.into_iter().any(|logs| !logs.is_empty())
     }
 
     /// Whether the runs come from the virtual experiment.
-    pub(super) fn are_virtual(&self) -> bool {
+    pub(crate) fn are_virtual(&self) -> bool {
         self.data.is_empty() && self.payload_data.is_empty()
     }
 
     /// Files to read: description and logs; validation runs of a virtual experiment are names only.
-    pub(super) fn inputs<'a>(&'a self, description: &'a Path) -> Vec<&'a Path> {
+    pub(crate) fn inputs<'a>(&'a self, description: &'a Path) -> Vec<&'a Path> {
         let logs = [&self.data, &self.payload_data];
         let held_out = [&self.cross_validate, &self.cross_validate_payload];
         let held_out = held_out.into_iter().filter(|_| !self.are_virtual());
@@ -97,7 +98,7 @@ impl Arguments {
     ///
     /// # Errors
     /// Logs that cannot be used, or an invalid virtual experiment.
-    pub(super) fn runs(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
+    pub(crate) fn runs(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
         if self.are_virtual() {
             self.made(robot, as_json)
         } else if self.seed.is_some() {
@@ -109,7 +110,7 @@ impl Arguments {
     }
 
     /// Settings of the description with overrides from the command line.
-    pub(super) fn settings(&self, robot: &Robot, runs: &Runs) -> Settings {
+    pub(crate) fn settings(&self, robot: &Robot, runs: &Runs) -> Settings {
         let mut settings = robot.settings(runs.sampling_frequency());
         if let Some(friction) = self.friction {
             settings.asymmetric_friction = friction == Friction::Asymmetric;
@@ -193,7 +194,7 @@ impl Arguments {
         if held.is_empty() {
             held = robot.held_out();
         }
-        simulate::warn(experiment.without_effect(), as_json);
+        print_without_effect(experiment.without_effect(), as_json);
         let bar = Progress::new("simulating", as_json);
         let tell = |fraction: f64, run: &str| bar.at(fraction, run);
         Ok(experiment.runs(&held, &tell)?)
@@ -205,7 +206,7 @@ fn name(path: &Path) -> String {
 }
 
 /// Shows the progress of the identification.
-pub(super) fn tell(bar: &Progress, doing: Doing<'_>) {
+pub(crate) fn tell(bar: &Progress, doing: Doing<'_>) {
     let part = |done: usize, samples: usize| done as f64 / samples.max(1) as f64;
     match doing {
         Doing::Base => bar.at(0.0, "base parameters"),

@@ -8,24 +8,24 @@ use overact_robot::Robot;
 use std::path::{Path, PathBuf};
 
 /// Named payloads of a description; empty if there is only one, or none.
-pub(super) struct Payloads<'a> {
+pub(crate) struct Payloads<'a> {
     names: Vec<&'a str>,
 }
 
 /// Log as given on the command line.
 #[derive(Debug, Clone)]
-pub(super) struct Given {
-    pub(super) path: PathBuf,
-    pub(super) loaded: bool,
+pub(crate) struct Given {
+    pub(crate) path: PathBuf,
+    pub(crate) loaded: bool,
     /// Name before the equals sign, if payloads have names.
     name: Option<String>,
     /// Whether it was read from standard input.
-    pub(super) streamed: bool,
+    pub(crate) streamed: bool,
 }
 
 impl Given {
     /// Adds the name of the payload to the log.
-    pub(super) fn label(&self, log: Log) -> Log {
+    pub(crate) fn label(&self, log: Log) -> Log {
         let log = if self.streamed {
             log.with_name("-")
         } else {
@@ -39,14 +39,14 @@ impl Given {
 }
 
 impl<'a> Payloads<'a> {
-    pub(super) fn new(robot: &'a Robot) -> Self {
+    pub(crate) fn new(robot: &'a Robot) -> Self {
         Self {
             names: robot.payloads(),
         }
     }
 
     /// Logs of runs without payload.
-    pub(super) fn without(&self, paths: &[PathBuf]) -> Vec<Given> {
+    pub(crate) fn without(&self, paths: &[PathBuf]) -> Vec<Given> {
         let given = |path: &PathBuf| Given {
             path: path.clone(),
             loaded: false,
@@ -57,7 +57,7 @@ impl<'a> Payloads<'a> {
     }
 
     /// Logs of runs with a payload.
-    pub(super) fn with(&self, paths: &[PathBuf]) -> Vec<Given> {
+    pub(crate) fn with(&self, paths: &[PathBuf]) -> Vec<Given> {
         let given = |path: &PathBuf| {
             let name = split(path).map(|(name, _)| name.to_owned());
             Given {
@@ -74,7 +74,7 @@ impl<'a> Payloads<'a> {
     ///
     /// # Errors
     /// Logs without a name although payloads have names, and unknown names.
-    pub(super) fn check<'g>(&self, given: impl Iterator<Item = &'g Given>) -> Result<(), Failure> {
+    pub(crate) fn check<'g>(&self, given: impl Iterator<Item = &'g Given>) -> Result<(), Failure> {
         let problem = |one: &Given| {
             let file = one.path.display().to_string();
             let list = self.names.join(", ");
@@ -128,6 +128,6 @@ fn split(path: &Path) -> Option<(&str, &str)> {
 }
 
 /// File of a log as given on the command line.
-pub(super) fn file(path: &Path) -> &Path {
+pub(crate) fn file(path: &Path) -> &Path {
     split(path).map_or(path, |(_, file)| Path::new(file))
 }

@@ -13,13 +13,13 @@ use std::{
 };
 
 /// Options of the identification from factors.
-pub(super) struct Request<'a> {
-    pub(super) description: &'a Path,
-    pub(super) files: &'a [PathBuf],
-    pub(super) skip_bad: bool,
-    pub(super) kept: Option<&'a [String]>,
-    pub(super) output: Option<&'a Path>,
-    pub(super) as_json: bool,
+pub(crate) struct Request<'a> {
+    pub(crate) description: &'a Path,
+    pub(crate) files: &'a [PathBuf],
+    pub(crate) skip_bad: bool,
+    pub(crate) kept: Option<&'a [String]>,
+    pub(crate) output: Option<&'a Path>,
+    pub(crate) as_json: bool,
 }
 
 /// Identifies a robot from factor files.
@@ -27,7 +27,7 @@ pub(super) struct Request<'a> {
 /// # Errors
 /// Files that cannot be used, unless they are to be skipped, or factors that do not match the
 /// description.
-pub(super) fn run(request: &Request<'_>) -> Result<(), Failure> {
+pub(crate) fn run(request: &Request<'_>) -> Result<(), Failure> {
     let files = request.files.iter().map(PathBuf::as_path);
     let inputs: Vec<&Path> = std::iter::once(request.description).chain(files).collect();
     output::check(&inputs, request.output.as_slice())?;
@@ -85,7 +85,7 @@ fn text(found: &FactorEstimation) -> String {
 }
 
 /// Omitted runs, one per line.
-pub(super) fn left_out(all: &[ExcludedRun]) -> String {
+pub(crate) fn left_out(all: &[ExcludedRun]) -> String {
     let mut text = String::new();
     if !all.is_empty() {
         let _ = writeln!(text, "left out: {}", all.len());

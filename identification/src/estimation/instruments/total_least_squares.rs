@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::instruments::Instrumental;
+use super::Instrumental;
 use crate::regression::{factor::Factor, system::System};
 
 /// Smallest fraction of the residual assigned to Y; below it Ω would be singular.

@@ -24,7 +24,7 @@ fn days(year: i64, month: i64, day: i64) -> Option<i64> {
 ///
 /// # Errors
 /// A text of another form.
-pub(super) fn instant(text: &str) -> Result<i64, Failure> {
+pub(crate) fn instant(text: &str) -> Result<i64, Failure> {
     let none = || {
         let help = "write `2026-03-02` or `2026-03-02T14:05:00`, UTC";
         Failure::from(Problem::new(Code::USAGE, format!("`{text}` is not a time")).help(help))
@@ -46,7 +46,7 @@ pub(super) fn instant(text: &str) -> Result<i64, Failure> {
 }
 
 /// Date of an instant (µs since 1970), as `2026-03-02`, UTC.
-pub(super) fn date(instant: i64) -> String {
+pub(crate) fn date(instant: i64) -> String {
     let mut rest = instant.div_euclid(86_400_000_000);
     let mut year = 1970 + rest.div_euclid(366);
     // The first guess is never late; advance to the right year.

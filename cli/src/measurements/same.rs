@@ -12,7 +12,7 @@ use std::{fs, path::Path};
 ///
 /// # Errors
 /// Every log with the content of an earlier one.
-pub(super) fn check(logs: &[&Path], estimated: usize) -> Result<(), Failure> {
+pub(crate) fn check(logs: &[&Path], estimated: usize) -> Result<(), Failure> {
     let sizes: Vec<Option<Vec<u64>>> = logs.iter().map(|log| sizes(log)).collect();
     let mut problems = Vec::new();
     for at in 1..logs.len() {

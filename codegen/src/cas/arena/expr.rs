@@ -1,7 +1,7 @@
 //! Expression handles with operators. Construction simplifies: zeros, ones and double negations
 //! vanish.
 
-use super::arena::{Arena, Handle, Op, negative_name};
+use super::{Arena, Handle, Op, negative_name};
 use overact_exact::Number;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
