@@ -13,7 +13,7 @@ use crate::{
     data::Log,
     error::Error,
     estimation::base::{PayloadUse, base_parameters},
-    identify::{LARGEST_STRETCHES, Progress},
+    identify::Progress,
     kinematics,
     prior::Prior,
     regression::{
@@ -21,6 +21,7 @@ use crate::{
         observation::{MeasuredRun, RunObservation},
         observer::Observer,
         projection::Projection,
+        sink::LARGEST_STRETCHES,
         system::Observed,
     },
     result::RunSummary,

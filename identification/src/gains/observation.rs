@@ -16,15 +16,12 @@ use crate::{
     kinematics::{self, Motion, Motions},
     regression::{
         projection::Projection,
-        sink::{LineSink, Plan, observed},
+        sink::{LARGEST_STRETCHES, LineSink, Plan, observed},
         states::SampledStates,
         system::System,
     },
     settings::Settings,
 };
-
-/// Largest number of values kept as successive equations, over all runs (64 MB).
-const LARGEST_STRETCHES: usize = 1 << 23;
 
 /// Equations of all runs.
 #[derive(Debug)]

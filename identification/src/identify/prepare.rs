@@ -26,15 +26,13 @@ use crate::{
         observation::{MeasuredRun, RunObservation},
         observer::Observer,
         projection::Projection,
+        sink::LARGEST_STRETCHES,
         system::{Observed, System},
         uncertainty_propagation::PropagatedUncertainty,
     },
     result::{Estimate, RunSummary},
     settings::{Settings, check_partition},
 };
-
-/// Largest number of values kept as successive equations, over runs and projections (64 MB).
-pub(crate) const LARGEST_STRETCHES: usize = 1 << 23;
 
 /// Prepared data: systems of the projections, columns and base parameters.
 #[derive(Debug, Clone)]
