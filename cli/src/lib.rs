@@ -24,6 +24,7 @@ mod function_options;
 mod functions;
 mod guarded;
 mod input;
+mod measurements;
 mod names;
 mod note;
 mod output;

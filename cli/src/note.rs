@@ -35,6 +35,15 @@ pub(crate) fn print_warnings(warnings: &[String], as_json: bool) {
     }
 }
 
+/// Prints the parameters without effect; not with `--json`, since JSON errors share stderr.
+pub(crate) fn print_without_effect(without_effect: &[String], as_json: bool) {
+    if !without_effect.is_empty() && !as_json && !is_quiet() {
+        let names = without_effect.join(", ");
+        // A closed stderr is ignored.
+        let _ = writeln!(io::stderr(), "note: without effect on the model: {names}");
+    }
+}
+
 /// Prints a note about a file.
 pub(crate) fn print_note(file: &str, note: Option<&str>, as_json: bool) {
     if let (Some(note), false) = (note, as_json || is_quiet()) {

@@ -4,13 +4,15 @@
 //! without simulating.
 
 use crate::{
-    body::body,
     compiled_file::{note, read},
+    configuration::{
+        prior::{NamedParameter, prior},
+        settings::settings,
+    },
     error::Error,
     experiment,
-    prior::{NamedParameter, prior},
+    parameters::body::body,
     robot::Robot,
-    settings::settings,
 };
 use overact::{Info, Sizes};
 use overact_codegen::diagnostic::Code;

@@ -24,64 +24,46 @@
 //! - `counted`: counts with nouns;
 //! - [`drawing`]: a mechanism as SVG;
 //! - `error`: problems with locations;
-//! - `body`: bodies of standard parameters;
-//! - `interpreted`: [`overact::Model`] by interpretation, without a compiler;
-//! - `named`: functions called by name;
+//! - `names`: kept actuators and functions by name;
 //! - `compiled_file`: a description read and compiled for a request;
-//! - `robot`: the robot; `settings`, `experiment`: its tables as inputs of identification and
-//!   simulation; `runs`: logs and virtual runs;
-//! - [`inspection`]: composition and cost of a model;
+//! - `parameters`: standard parameters: their bodies, values from files, physical consistency;
+//! - `interpreted`: [`overact::Model`] by interpretation, without a compiler;
+//! - `robot`: the robot;
+//! - `configuration`: tables of the description as settings, prior and scales of an identification;
+//! - `experiment`: the virtual experiment, also of many virtual robots;
 //! - `check`: all errors of a description, found without its model;
 //! - `import`: validated descriptions of other programs' files;
+//! - `calibration`: lengths, offsets and gravity direction from runs; robots with changed lengths
+//!   or gravity, to detect wrong ones;
 //! - `excitation`: runs that determine the parameters best within limits;
-//! - `gravity`: gravity direction from runs, and robots with another gravity;
-//! - `variants`: robots with changed lengths, to detect wrong lengths;
-//! - `instruments`: simulated motions as instruments, to detect errors in the measured motion;
-//! - `tracking`: identified parameters in the virtual robot's controller;
-//! - `motors`, `functions_base`: identified parameters on the motor side, and as inputs of
+//! - `identification`: logs and virtual runs, identification from runs or factor files and for
+//!   every partition, and uses of its result: instruments, tracking, motor-side values, inputs of
 //!   functions;
-//! - `kept`: kept actuators of the actuator projection by name;
-//! - `partitions`, `identifier`: identification, also for every partition;
-//! - `factors`: runs as factor files, and identification from them; `fleet`: runs of many virtual
-//!   robots.
+//! - [`inspection`]: composition and cost of a model.
 
 /// Compiles the programs of the page on interfaces.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/interfaces.md")]
 mod interfaces {}
 
-mod body;
 mod calibration;
 mod check;
 mod compiled_file;
+mod configuration;
 mod counted;
 pub mod drawing;
 mod error;
 mod excitation;
 mod experiment;
-mod factors;
-mod fleet;
-mod functions_base;
-mod gravity;
-mod identifier;
+mod identification;
 mod import;
 pub mod inspection;
-mod instruments;
 mod interpreted;
-mod kept;
-mod motors;
-mod named;
+mod names;
 mod parameters;
-mod partitions;
-mod physical;
-mod prior;
 mod robot;
-mod runs;
-mod scales;
-mod settings;
-mod tracking;
-mod variants;
 
+pub use calibration::variants::Variants;
 pub use check::{CheckedFile, check, check_text};
 pub use compiled_file::CompiledFile;
 pub use counted::counted;
@@ -90,16 +72,15 @@ pub use excitation::{
     CaseOfRuns, Excitation, ExcitationEffort, JudgedRuns, Limit, LimitKind, Origin,
 };
 pub use experiment::VirtualExperiment;
-pub use identifier::Identifier;
+pub use identification::identifier::Identifier;
+pub use identification::instruments::beside_simulated;
+pub use identification::partitions::partitions;
+pub use identification::runs::Runs;
+pub use identification::tracking::tracking;
 pub use import::{errors_of_files, import};
 pub use inspection::Inspection;
-pub use instruments::beside_simulated;
 pub use interpreted::InterpretedRobot;
-pub use kept::kept_actuators;
-pub use named::{function_of_model, values};
-pub use parameters::{GivenParameters, read_parameters};
-pub use partitions::partitions;
+pub use names::kept::kept_actuators;
+pub use names::named::{function_of_model, values};
+pub use parameters::given_parameters::{GivenParameters, read_parameters};
 pub use robot::Robot;
-pub use runs::Runs;
-pub use tracking::tracking;
-pub use variants::Variants;

@@ -1,7 +1,11 @@
 //! `overact factor`: computes R factors of logs.
 
-use super::{dates::instant, runs};
-use crate::{failure::Failure, output, progress::Progress};
+use crate::{
+    failure::Failure,
+    measurements::{dates::instant, runs},
+    output,
+    progress::Progress,
+};
 use overact_identification::{
     Progress as Doing,
     factors::{Origin, write_factors},

@@ -3,10 +3,11 @@
 //! The identification uses positions and torques of the actuators only. True values of a virtual
 //! experiment are only reported for comparison.
 
-use super::{factors, runs};
 use crate::{
     failure::{Failure, Problem},
-    input, note, output,
+    input,
+    measurements::{factors, runs},
+    note, output,
     progress::Progress,
     report as files,
 };

@@ -1,6 +1,6 @@
 //! `overact merge`: merges factor files.
 
-use crate::{failure::Failure, output};
+use crate::{failure::Failure, measurements::factors::left_out, output};
 use overact_identification::factors::{gather, write_factors};
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             output::counted(gathered.runs.len(), "run", "runs"),
             bytes.len()
         );
-        text.push_str(&super::factors::left_out(&gathered.left_out));
+        text.push_str(&left_out(&gathered.left_out));
         text
     };
     output::emit_with(&said, None, vec![(arguments.output.clone(), bytes)])

@@ -1,13 +1,11 @@
 //! Command line: one file per subcommand.
 
 mod check;
-mod dates;
 mod evaluate;
 mod excite;
 mod explain;
 mod export;
 mod factor;
-mod factors;
 mod generate;
 mod identify;
 mod import;
@@ -15,9 +13,6 @@ mod inspect;
 mod merge;
 mod new;
 mod partitions;
-mod payloads;
-mod runs;
-mod same;
 mod shell;
 mod simulate;
 

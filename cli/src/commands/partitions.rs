@@ -1,9 +1,10 @@
 //! `overact partitions`: ranks all partitions for the actuator projection.
 
-use super::runs;
 use crate::{
     failure::{Failure, Problem},
-    input, output,
+    input,
+    measurements::runs,
+    output,
     progress::Progress,
 };
 use overact::Model;

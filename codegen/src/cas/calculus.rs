@@ -1,8 +1,8 @@
 //! Derivative, substitution and numeric evaluation of expressions.
 
+use super::arena::expr::Expr;
 use super::arena::{Arena, Handle, Op};
 use super::direction::{Direction, SymbolId};
-use super::expr::Expr;
 use super::hasher::{QuickMap, QuickSet};
 use overact_exact::Number;
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! Divisors of expressions.
 
+use super::arena::expr::Expr;
 use super::arena::{Arena, Handle, Op};
-use super::expr::Expr;
 use std::collections::BTreeSet;
 
 impl Arena {

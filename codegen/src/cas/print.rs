@@ -1,8 +1,8 @@
 //! Expressions as text, for debugging, tests and snapshots.
 
+use super::arena::expr::Expr;
 use super::arena::{Arena, Handle, Op};
 use super::direction::Direction;
-use super::expr::Expr;
 use std::fmt;
 
 impl fmt::Display for Expr<'_> {

@@ -1,6 +1,6 @@
 //! Vectors and matrices of expressions in three dimensions.
 
-use super::expr::Expr;
+use super::arena::expr::Expr;
 use super::{Arena, Number};
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -6,7 +6,7 @@ use super::{
     check::{Check, CheckKind},
     checks::{
         HARMFUL,
-        smoothing::{OF_MEAN, UNIT},
+        torques::smoothing::{OF_MEAN, UNIT},
     },
 };
 use crate::{

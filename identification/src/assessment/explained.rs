@@ -3,7 +3,7 @@
 use overact::Model;
 
 use super::{
-    checks::{raw_samples, units},
+    checks::{samples::raw_samples, units},
     positions,
 };
 use overact_logs::{Error, Log, monitor::Monitor};

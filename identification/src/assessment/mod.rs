@@ -22,5 +22,5 @@ mod run_level_faults;
 pub(crate) mod torques;
 pub(crate) mod verdict;
 
-pub(crate) use checks::{Context, RunMonitor, checks, raw_samples::suspicious};
+pub(crate) use checks::{Context, RunMonitor, checks, samples::raw_samples::suspicious};
 pub(crate) use explained::explained;

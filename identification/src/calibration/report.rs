@@ -10,9 +10,7 @@ use super::{
     result::{CalibratedParameter, Calibration, CalibrationScope, HeldParameter, SensorNoise},
     selection::{Choice, INDEPENDENT, independent_part},
 };
-
-/// Probability that a 95 % interval misses the true value.
-const MISSES: f64 = 0.05;
+use crate::estimation::intervals::MISSES;
 
 /// Residual in units of the sensors' noise above which it is more than noise.
 const UNEXPLAINED: f64 = 1.5;

@@ -5,7 +5,8 @@
 //! - `correlation`, `fourier`: standard deviations for residuals correlated over time and lines;
 //! - `periodic_variance`: variance of residual sums in periodic motion;
 //! - `intervals`: 95 % intervals that allow for correlation and elimination;
-//! - `instruments`, `total_least_squares`: estimates that allow for errors of the columns;
+//! - `instruments`: instrumental variables and total least squares, which allow for errors of the
+//!   columns;
 //! - `column_noise`, `position_noise`: effect of position noise on the columns;
 //! - `essential`: backward elimination by the paper's rule;
 //! - `recommended`: backward elimination as far as the data do not refute it.
@@ -21,4 +22,3 @@ pub(crate) mod intervals;
 pub(crate) mod periodic_variance;
 mod position_noise;
 pub(crate) mod recommended;
-pub(crate) mod total_least_squares;

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     assessment::{self, check::Check},
     estimation::base::{PayloadUse, base_parameters},
-    identify::{LARGEST_STRETCHES, Progress},
+    identify::Progress,
     kinematics,
     prior::Prior,
     regression::{
@@ -19,6 +19,7 @@ use crate::{
         observation::{MeasuredRun, RunObservation},
         observer::Observer,
         projection::Projection,
+        sink::LARGEST_STRETCHES,
         system::Observed,
     },
     result::RunSummary,

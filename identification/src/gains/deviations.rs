@@ -9,10 +9,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{noise::residual, observation::Equations, selection::Selection, solve::Solution};
-use crate::regression::{factor::Factor, system::Stretch};
-
-/// Fewest batches.
-const FEWEST_BATCHES: usize = 30;
+use crate::regression::{
+    factor::Factor,
+    score_batches::{batch_sums, samples},
+    system::Stretch,
+};
 
 /// Uncertainty of a solution.
 pub(super) struct Deviations {
@@ -29,20 +30,10 @@ pub(super) fn deviations(
     solution: &Solution,
 ) -> Option<Deviations> {
     let system = &equations.system;
-    let samples = |stretch: &Stretch| stretch.lines.first().map_or(0, DMatrix::nrows);
-    let kept: usize = system.stretches.iter().map(samples).sum();
+    let kept = samples(&system.stretches);
     let all = system.lines.iter().map(Factor::equations).max()?;
-    let batch = batch(kept);
-    let mut sums: Vec<DVector<f64>> = Vec::new();
-    for stretch in &system.stretches {
-        let scores = scores(stretch, selection, solution);
-        let mut first = 0;
-        while first < scores.nrows() {
-            let count = batch.min(scores.nrows() - first);
-            sums.push(scores.rows(first, count).row_sum().transpose());
-            first += count;
-        }
-    }
+    let scores = |stretch: &Stretch| scores(stretch, selection, solution);
+    let sums = batch_sums(&system.stretches, scores);
     let size = selection.columns.len();
     let own = size - selection.drives;
     let sums = DMatrix::from_columns(&sums);
@@ -67,12 +58,6 @@ pub(super) fn deviations(
     let gains = &gains * gains.transpose();
     let sound = all.iter().all(|deviation| deviation.is_finite());
     sound.then_some(Deviations { all, gains })
-}
-
-/// Samples of a batch: about the cube root of their number, longer than the noise's correlation.
-fn batch(samples: usize) -> usize {
-    let root = (samples as f64).cbrt().ceil() as usize;
-    root.min(samples / FEWEST_BATCHES).max(1)
 }
 
 /// Scores of successive samples, one row each.

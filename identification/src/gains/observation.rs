@@ -14,16 +14,13 @@ use crate::{
     kinematics::{self, Motion, Motions},
     regression::{
         projection::Projection,
-        sink::{LineSink, Plan, observed},
+        sink::{LARGEST_STRETCHES, LineSink, Plan, observed},
         states::SampledStates,
         system::System,
     },
     settings::Settings,
 };
 use overact_logs::{Error, Log, Problem};
-
-/// Largest number of values kept as successive equations, over all runs (64 MB).
-const LARGEST_STRETCHES: usize = 1 << 23;
 
 /// Equations of all runs.
 #[derive(Debug)]

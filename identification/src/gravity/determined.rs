@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use super::{columns::Extended, direction::Frame};
-use crate::regression::elimination::eliminate;
+use crate::{estimation::base::RANK_TOLERANCE, regression::elimination::eliminate};
 
 /// Angle between the tested and the described direction, rad.
 const BESIDE: f64 = 1e-6;
@@ -19,16 +19,13 @@ const BESIDE: f64 = 1e-6;
 /// It is larger than second-order effects of [`BESIDE`].
 const PART: f64 = 1e-4;
 
-/// A column is dependent if its part outside the others is below this fraction of its norm.
-const TOLERANCE: f64 = 1e-9;
-
 /// Rotations that torques determine, as orthogonal combinations of the frame's: all, some or none.
 pub(super) fn free_turns(extended: &Extended, frame: &Frame, seed: u64) -> Vec<DVector<f64>> {
     let angles = DVector::from_vec(vec![0.6 * BESIDE, 0.8 * BESIDE]);
     let frame = frame.turned(&angles);
     let columns = &extended.random * extended.at(&frame.gravity());
     let all: Vec<usize> = (0..extended.names.len()).collect();
-    let kept = eliminate(&columns, &all, TOLERANCE).kept;
+    let kept = eliminate(&columns, &all, RANK_TOLERANCE).kept;
     let mut own = columns.select_columns(&kept);
     for mut column in own.column_iter_mut() {
         let norm = column.norm();

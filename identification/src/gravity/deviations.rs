@@ -6,37 +6,22 @@
 //! allows for correlation between lines and over time. With too few batches, residuals are assumed
 //! white.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::solve::Solution;
 use crate::regression::{
     factor::Factor,
+    score_batches::{FEWEST_BATCHES, batch_sums, samples},
     system::{Stretch, System},
 };
-
-/// Fewest batches.
-const FEWEST_BATCHES: usize = 30;
 
 /// Covariance of the angles of a solution, rad²; `None` if the data do not determine it.
 pub(super) fn covariance(system: &System, solution: &Solution) -> Option<DMatrix<f64>> {
     let inverse = solution.normal.clone().try_inverse()?;
     let white = &inverse * solution.deviation.powi(2);
-    let samples = |stretch: &Stretch| stretch.lines.first().map_or(0, DMatrix::nrows);
-    let kept: usize = system.stretches.iter().map(samples).sum();
+    let kept = samples(&system.stretches);
     let all = system.lines.iter().map(Factor::equations).max()?;
-    // About the cube root of the samples, longer than the noise's correlation after decimation.
-    let root = (kept as f64).cbrt().ceil() as usize;
-    let batch = root.min(kept / FEWEST_BATCHES).max(1);
-    let mut sums: Vec<DVector<f64>> = Vec::new();
-    for stretch in &system.stretches {
-        let scores = scores(stretch, solution);
-        let mut first = 0;
-        while first < scores.nrows() {
-            let count = batch.min(scores.nrows() - first);
-            sums.push(scores.rows(first, count).row_sum().transpose());
-            first += count;
-        }
-    }
+    let sums = batch_sums(&system.stretches, |stretch| scores(stretch, solution));
     if sums.len() < FEWEST_BATCHES {
         return Some(white);
     }

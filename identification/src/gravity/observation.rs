@@ -16,16 +16,13 @@ use crate::{
         chunk::projected,
         observer,
         projection::Projection,
-        sink::{LineSink, Plan, observed},
+        sink::{LARGEST_STRETCHES, LineSink, Plan, observed},
         states::SampledStates,
         system::System,
     },
     settings::Settings,
 };
 use overact_logs::{Error, Log};
-
-/// Largest number of values kept as successive equations, over all runs (64 MB).
-const LARGEST_STRETCHES: usize = 1 << 23;
 
 /// Options of the observation, the same for all runs.
 pub(super) struct Observer<'a> {

@@ -21,7 +21,6 @@ use overact::Model;
 
 pub use estimates::{ProjectionEstimates, estimate_projection};
 pub use identification::{BaseParameter, Identification};
-pub(crate) use prepare::LARGEST_STRETCHES;
 pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
 pub use study::{RankedProjection, Study, study};

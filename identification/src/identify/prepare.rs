@@ -21,6 +21,7 @@ use crate::{
         observation::{MeasuredRun, RunObservation},
         observer::Observer,
         projection::Projection,
+        sink::LARGEST_STRETCHES,
         system::{Observed, System},
         uncertainty_propagation::PropagatedUncertainty,
     },
@@ -31,9 +32,6 @@ use overact_logs::{
     Error, Log,
     periods::{PeriodicMotion, periodic_motions},
 };
-
-/// Largest number of values kept as successive equations, over runs and projections (64 MB).
-pub(crate) const LARGEST_STRETCHES: usize = 1 << 23;
 
 /// Prepared data: systems of the projections, columns and base parameters.
 #[derive(Debug, Clone)]

@@ -12,6 +12,7 @@
 //! - `projection`: projections of the inputs;
 //! - `points`: motion data for plots;
 //! - `uncertainty_propagation`: effect of the uncertainty of previous identifications on estimates;
+//! - `score_batches`: sums of scores over batches of successive samples;
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: linearly dependent columns;
 //! - `transpose`: rows of numbers as a matrix.
@@ -28,6 +29,7 @@ pub(crate) mod observation;
 pub(crate) mod observer;
 pub(crate) mod points;
 pub(crate) mod projection;
+pub(crate) mod score_batches;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;

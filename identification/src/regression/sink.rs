@@ -14,6 +14,9 @@ use overact_logs::Error;
 /// Number of parts of a run, which are folds of the cross-validation.
 const PARTS: usize = 5;
 
+/// Largest number of values kept as successive equations, over runs and projections (64 MB).
+pub(crate) const LARGEST_STRETCHES: usize = 1 << 23;
+
 /// Equations of a stretch, if a run has more than are kept.
 const STRETCH: usize = 2048;
 

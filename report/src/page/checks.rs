@@ -7,8 +7,10 @@ use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{Section, capital, details, figure, key, paragraph, prose},
-    table::{Cell, Table},
+    elements::{
+        markup::{Section, capital, details, figure, key, paragraph, prose},
+        table::{Cell, Table},
+    },
 };
 use crate::{
     judgement::{place, statistic, threshold, title},

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Contents, markup::paragraph, verdict};
+use super::{Contents, elements::markup::paragraph, verdict};
 use crate::{
     choice::{answers, case_heading, stage_name},
     text::escape,

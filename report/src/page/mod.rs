@@ -1,39 +1,24 @@
 //! HTML page of an identification: one self-contained file for engineers.
 //!
 //! The verdict comes first, then the parameters. Each plot has a caption on how to read it. Each
-//! section is a file: `verdict`, `checks`, `calibration`, `gravity`, `gains`, `parameters`,
-//! `motors`, `estimators`, `limits`, `validation`, `inputs`, `residuals`, `elimination`,
-//! `conditioning`, `trajectories`, `tracking`, `data`. Empty sections are omitted.
+//! section is a file: `verdict`, `checks`, and those in the folders `calibrations`, `estimates`,
+//! `fit` and `runs`. `elements` has what sections consist of. Empty sections are omitted.
 
-mod calibration;
+mod calibrations;
 mod checks;
-mod conditioning;
-mod consistent;
-mod data;
-mod elimination;
-mod estimators;
-mod gains;
-mod gravity;
+pub(crate) mod elements;
+mod estimates;
+mod fit;
 mod header;
-mod inputs;
-mod limits;
-pub(super) mod markup;
-mod motors;
-mod parameters;
-mod residuals;
-mod select;
-mod table;
-#[cfg(test)]
-mod tests;
-mod tracking;
-mod trajectories;
-mod validation;
+mod runs;
 mod verdict;
 
-use markup::Section;
+#[cfg(test)]
+mod tests;
 
-use crate::text::escape;
-use crate::{published::Published, units::Units};
+use elements::markup::Section;
+
+use crate::{published::Published, text::escape, units::Units};
 use overact_identification::Identification;
 
 /// Style sheet with light and dark colours and a responsive layout.
@@ -77,23 +62,23 @@ pub fn page(contents: &Contents<'_>) -> String {
     let sections: Vec<Section> = [
         verdict::section(contents),
         checks::section(contents),
-        calibration::section(contents),
-        gravity::section(contents),
-        gains::section(contents),
-        parameters::section(contents),
-        motors::section(contents),
-        consistent::section(contents),
-        estimators::section(contents),
-        limits::section(contents),
-        validation::section(contents),
-        inputs::section(contents),
-        residuals::section(contents),
-        elimination::section(contents),
-        conditioning::section(contents),
-        trajectories::section(contents),
-        tracking::section(contents),
-        data::section(contents),
-        data::files(contents),
+        calibrations::calibration::section(contents),
+        calibrations::gravity::section(contents),
+        calibrations::gains::section(contents),
+        estimates::parameters::section(contents),
+        estimates::motors::section(contents),
+        estimates::consistent::section(contents),
+        estimates::estimators::section(contents),
+        estimates::limits::section(contents),
+        fit::validation::section(contents),
+        fit::inputs::section(contents),
+        fit::residuals::section(contents),
+        fit::elimination::section(contents),
+        fit::conditioning::section(contents),
+        runs::trajectories::section(contents),
+        runs::tracking::section(contents),
+        runs::data::section(contents),
+        runs::data::files(contents),
     ]
     .into_iter()
     .filter(|section| !section.body.is_empty())

@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use super::{
     Contents, checks,
-    markup::{Section, capital, paragraph, prose},
+    elements::markup::{Section, capital, paragraph, prose},
 };
 use crate::{
     choice::stage_name,

@@ -7,8 +7,10 @@
 //! - `text`: calibrated description.
 
 mod closure;
+pub(crate) mod gravity;
 mod length;
 mod text;
+pub(crate) mod variants;
 
 pub(crate) use length::of_tree;
 

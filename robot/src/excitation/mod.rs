@@ -27,9 +27,9 @@ pub use kind::LimitKind;
 pub use limits::{Limit, Origin};
 
 use crate::{
+    configuration::settings::settings,
     error::{Error, Problem},
     robot::Robot,
-    settings::settings,
 };
 use course::Bench;
 use fourier_run::FourierRun;

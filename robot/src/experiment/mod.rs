@@ -1,10 +1,11 @@
 //! Converts the `[experiment]` table of a description to a virtual experiment.
 
 pub(crate) mod errors;
+pub(crate) mod fleet;
 
 use crate::{
+    configuration::prior::{is_of_payload, of_load},
     error::{Error, Problem},
-    prior::{is_of_payload, of_load},
     robot::Robot,
 };
 use overact::{Info, Model, Parameter};

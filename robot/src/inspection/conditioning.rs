@@ -1,6 +1,6 @@
 //! Conditioning at home of the actuators and of every partition.
 
-use crate::{interpreted::InterpretedRobot, partitions::partitions};
+use crate::{identification::partitions::partitions, interpreted::InterpretedRobot};
 use nalgebra::DMatrix;
 use overact::{Function, Model};
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! Builds [`overact::Info`] of a model.
 
-use crate::body::body;
+use crate::parameters::body::body;
 use overact::{Info, Parameter, Sizes};
 use overact_codegen::{RobotModel, derivation::BodyParameter, mechanism::JointKind};
 

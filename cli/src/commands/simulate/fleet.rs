@@ -6,8 +6,8 @@
 //! These three are written last, so their presence means that the output is complete.
 
 use crate::{
-    commands::dates::{date, instant},
     failure::{Failure, Problem},
+    measurements::dates::{date, instant},
     output::{self, counted, json, print},
     progress::Progress,
 };

@@ -6,7 +6,7 @@ use crate::{
     failure::{Failure, Problem},
     input,
     names::file_stem,
-    note::{is_quiet, print_warnings},
+    note::{print_warnings, print_without_effect},
     output::{self, json, print},
     progress::Progress,
 };
@@ -19,7 +19,6 @@ use overact_simulation::{Experiment, Record, write_csv};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
-    io::{self, Write},
     path::{Path, PathBuf},
 };
 
@@ -77,7 +76,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     if arguments.fleet.fleet.is_some() {
         let folder = arguments.output.as_deref().unwrap_or(Path::new("."));
-        warn(experiment.without_effect(), as_json);
+        print_without_effect(experiment.without_effect(), as_json);
         return fleet::run(&arguments.fleet, &robot, &experiment, folder, as_json);
     }
     let files = files(experiment.plan(), output::file(arguments.output.as_ref()))?;
@@ -85,7 +84,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut inputs = vec![arguments.file.as_path()];
     inputs.extend(arguments.parameters.as_deref());
     output::check_distinct(&inputs, &outputs)?;
-    warn(experiment.without_effect(), as_json);
+    print_without_effect(experiment.without_effect(), as_json);
     let bar = Progress::new("simulating", as_json);
     let records = experiment.records(&|fraction, run| bar.at(fraction, run))?;
     drop(bar);
@@ -114,15 +113,6 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         print(&json(&document)?)
     } else {
         print(&text(&summaries))
-    }
-}
-
-/// Prints the parameters without effect; not with `--json`, since JSON errors share stderr.
-pub(super) fn warn(without_effect: &[String], as_json: bool) {
-    if !without_effect.is_empty() && !as_json && !is_quiet() {
-        let names = without_effect.join(", ");
-        // A closed stderr is ignored.
-        let _ = writeln!(io::stderr(), "note: without effect on the model: {names}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! The expression graph: nodes, their fingerprints, and the tables by which equal nodes are shared.
 
+pub mod expr;
 mod fingerprint;
 mod multiples;
 mod over_divisors;
@@ -11,10 +12,10 @@ pub use symbols::InputElement;
 use symbols::Symbol;
 
 use super::direction::{Direction, SymbolId};
-use super::expr::Expr;
 use super::field::{ByValue, Element, canonical};
 use super::hasher::QuickMap;
 use super::sample::Sample;
+use expr::Expr;
 use overact_exact::Number;
 use overact_exact::Ratio;
 use std::cell::RefCell;

@@ -1,7 +1,7 @@
 //! Sums of quotients that equal a known expression over their divisors.
 
-use super::super::expr::Expr;
 use super::super::field::Element;
+use super::expr::Expr;
 use super::{Arena, Handle, Op};
 
 /// Depth below a sum to which divisors are searched.

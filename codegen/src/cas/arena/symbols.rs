@@ -1,9 +1,9 @@
 //! Symbols: elements of input arrays, placeholders of unknowns, and free names.
 
 use super::super::direction::{Direction, SymbolId};
-use super::super::expr::Expr;
 use super::super::field::{Element, mix, mix_name};
 use super::super::sample::Sample;
+use super::expr::Expr;
 use super::{Arena, Fingerprint, Op, POINTS};
 use overact_exact::Number;
 

@@ -7,6 +7,7 @@ use crate::{
         evidence::{Axis, Curve, Evidence},
         hypotheses::{FaultHypothesis, Group, Scores, WaldTest},
     },
+    estimation::correlation::NORMAL_95,
     result::{Estimate, ParameterEstimate, Stage},
 };
 
@@ -18,9 +19,6 @@ const SPOILING: f64 = 1.0;
 
 /// Another hypothesis is likely if it explains this fraction of the best one's part.
 const LIKELY: f64 = 0.5;
-
-/// Half width of a 95 % interval, in standard deviations.
-const HALF_WIDTH: f64 = 1.96;
 
 /// A tested fault hypothesis.
 pub(super) struct Tested {
@@ -88,7 +86,7 @@ impl Tested {
         let deviation = |column: usize| {
             let own = estimate.parameters.iter().find(|one| one.column == column);
             let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
-            half.map_or(f64::INFINITY, |half| half / HALF_WIDTH)
+            half.map_or(f64::INFINITY, |half| half / NORMAL_95)
         };
         let shift = |&(column, by): &(usize, f64)| ParameterShift {
             column,

@@ -1,33 +1,16 @@
-//! All checks, one per file. Each is a function of a read-only [`Context`].
+//! All checks, one per file, in a folder for each subject.
 //!
+//! Each is a function of a read-only [`Context`].
 //! The table [`CHECKS`] lists them.
 
-mod clock;
-mod closure;
-mod consistency;
-mod delay;
-mod excitation;
 mod fault_hypotheses;
-mod filters;
-mod gains;
-mod geometry;
-mod half_band;
-mod held_out;
+mod kinematics;
 pub(crate) mod level;
-mod missing_parameters;
-mod motion_length;
-mod negative_parameters;
-mod partition;
-mod payload_labels;
-pub(crate) mod raw_samples;
-mod regressor_errors;
-mod relative_error;
-mod repeated;
-mod residual_correlation;
-mod reversals;
-mod rotation;
-pub(super) mod smoothing;
-mod torque_faults;
+mod motion;
+mod parameters;
+mod residuals;
+pub(crate) mod samples;
+pub(crate) mod torques;
 pub(crate) mod units;
 
 use overact::Model;
@@ -134,29 +117,29 @@ type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order of the report.
 const CHECKS: [Function; 23] = [
-    raw_samples::check,
+    samples::raw_samples::check,
     units::check,
-    repeated::check,
-    excitation::check,
-    motion_length::check,
-    filters::check,
-    closure::check,
-    torque_faults::check,
-    delay::check,
-    smoothing::check,
-    reversals::check,
-    clock::check,
-    gains::check,
-    geometry::check,
-    payload_labels::check,
-    missing_parameters::check,
-    negative_parameters::check,
-    consistency::check,
-    relative_error::check,
-    residual_correlation::check,
-    regressor_errors::check,
-    partition::check,
-    held_out::check,
+    samples::repeated::check,
+    motion::excitation::check,
+    motion::motion_length::check,
+    motion::filters::check,
+    kinematics::closure::check,
+    torques::torque_faults::check,
+    torques::delay::check,
+    torques::smoothing::check,
+    torques::reversals::check,
+    samples::clock::check,
+    torques::gains::check,
+    kinematics::geometry::check,
+    parameters::payload_labels::check,
+    parameters::missing_parameters::check,
+    parameters::negative_parameters::check,
+    parameters::consistency::check,
+    residuals::relative_error::check,
+    residuals::residual_correlation::check,
+    residuals::regressor_errors::check,
+    residuals::partition::check,
+    residuals::held_out::check,
 ];
 
 /// Runs all checks.
@@ -168,7 +151,7 @@ pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     for check in CHECKS {
         all.extend(check(context)?);
     }
-    all.extend(relative_error::silent(context, &all));
+    all.extend(residuals::relative_error::silent(context, &all));
     for check in &mut all {
         check.words = with_joints(&check.words);
     }

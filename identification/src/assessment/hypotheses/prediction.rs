@@ -213,9 +213,9 @@ impl<'a> Prediction<'a> {
     /// Derivative of Y - W χ with respect to s when each signal x becomes x + s ẍ, samples × r.
     ///
     /// A filter that positions and torques pass has this effect, apart from its delay; see
-    /// `checks::smoothing`. Terms that are linear in the motion do not change. `torque_turns` are
-    /// the second derivatives of the torques. The result is zero if the change leaves the
-    /// workspace.
+    /// `checks::torques::smoothing`. Terms that are linear in the motion do not change.
+    /// `torque_turns` are the second derivatives of the torques. The result is zero if the change
+    /// leaves the workspace.
     pub(super) fn common_filter(
         &self,
         motion: &Motion,

@@ -10,12 +10,12 @@ use super::{
     shapes::{ActuatorState, PositionRange, Shape},
 };
 use crate::{
-    estimation::{intervals::scores::cosines, periodic_variance::Mean},
+    estimation::{
+        intervals::scores::{SECTIONS, cosines},
+        periodic_variance::Mean,
+    },
     regression::fold::{Fold, Folds, Phases},
 };
-
-/// Sections of a run for each cosine of the covariance.
-const SECTIONS: usize = 4;
 
 /// Products of columns and residual, one column per section or cosine.
 ///

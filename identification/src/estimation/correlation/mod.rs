@@ -51,7 +51,7 @@ const NEIGHBOURS: usize = 10;
 const LAGS: usize = 200;
 
 /// 95 % of normal values lie within this many standard deviations.
-const NORMAL_95: f64 = 1.96;
+pub(crate) const NORMAL_95: f64 = 1.96;
 
 /// The matrix M of a set of columns.
 #[derive(Debug, Clone)]

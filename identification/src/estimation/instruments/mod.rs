@@ -24,11 +24,13 @@
 //!
 //! - `hausman`: whether both estimates agree;
 //! - `strength`: correlation of the instruments with the columns;
+//! - `total_least_squares`: the estimate that allows for white errors of the columns;
 //! - `regressor`: the reported result.
 
 pub(crate) mod hausman;
 pub(crate) mod regressor;
 pub(crate) mod strength;
+pub(crate) mod total_least_squares;
 
 use nalgebra::{DMatrix, DVector};
 use overact::Code;

@@ -8,7 +8,7 @@ use super::{
     strength::{WEAK, strengths},
 };
 use crate::{
-    estimation::{estimate::Estimation, total_least_squares::total_least_squares},
+    estimation::{estimate::Estimation, instruments::total_least_squares::total_least_squares},
     regression::{projection::ModelKind, system::System},
     settings::Instruments,
 };

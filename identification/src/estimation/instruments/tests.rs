@@ -5,7 +5,7 @@ use crate::{
     estimation::{
         correlation::tests::settings,
         estimate::{Estimation, estimate},
-        total_least_squares::total_least_squares,
+        instruments::total_least_squares::total_least_squares,
     },
     regression::{
         factor::Factor,

@@ -38,7 +38,7 @@ use periodic_power::ratios;
 use scores::{Context, Covariance};
 
 /// Probability that an interval misses the true value.
-const MISSES: f64 = 0.05;
+pub(crate) const MISSES: f64 = 0.05;
 
 /// Base estimates with their covariance.
 #[derive(Debug, Clone)]

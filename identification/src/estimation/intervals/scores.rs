@@ -53,7 +53,7 @@ const COSINES: f64 = 0.41;
 const MOST_COSINES: usize = 64;
 
 /// Sections of a stretch for each cosine; cosines are constant within a section.
-const SECTIONS: usize = 4;
+pub(crate) const SECTIONS: usize = 4;
 
 /// Variance of the square of a normal variable divided by its fourth moment.
 const SCATTER: f64 = 2.0 / 3.0;

@@ -402,7 +402,7 @@ fn what_was_calibrated_is_told_with_its_intervals() {
 
 #[test]
 fn the_part_that_is_plotted_holds_the_worst_miss() {
-    let part = super::select::worst_part(&[series("x")]);
+    let part = super::elements::select::worst_part(&[series("x")]);
     assert_eq!(part.len(), 300);
     assert!(part.contains(&300), "{part:?}");
 }

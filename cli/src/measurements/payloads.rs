@@ -1,0 +1,133 @@
+//! Payloads of logs on the command line: `NAME=LOG` if a description has several.
+
+use crate::failure::{Failure, Problem};
+use overact_codegen::diagnostic::Code;
+use overact_codegen::diagnostic::did_you_mean;
+use overact_identification::Log;
+use overact_robot::Robot;
+use std::path::{Path, PathBuf};
+
+/// Named payloads of a description; empty if there is only one, or none.
+pub(crate) struct Payloads<'a> {
+    names: Vec<&'a str>,
+}
+
+/// Log as given on the command line.
+#[derive(Debug, Clone)]
+pub(crate) struct Given {
+    pub(crate) path: PathBuf,
+    pub(crate) loaded: bool,
+    /// Name before the equals sign, if payloads have names.
+    name: Option<String>,
+    /// Whether it was read from standard input.
+    pub(crate) streamed: bool,
+}
+
+impl Given {
+    /// Adds the name of the payload to the log.
+    pub(crate) fn label(&self, log: Log) -> Log {
+        let log = if self.streamed {
+            log.with_name("-")
+        } else {
+            log
+        };
+        match &self.name {
+            Some(name) => log.with_payload_name(name),
+            None => log,
+        }
+    }
+}
+
+impl<'a> Payloads<'a> {
+    pub(crate) fn new(robot: &'a Robot) -> Self {
+        Self {
+            names: robot.payloads(),
+        }
+    }
+
+    /// Logs of runs without payload.
+    pub(crate) fn without(&self, paths: &[PathBuf]) -> Vec<Given> {
+        let given = |path: &PathBuf| Given {
+            path: path.clone(),
+            loaded: false,
+            name: None,
+            streamed: false,
+        };
+        paths.iter().map(given).collect()
+    }
+
+    /// Logs of runs with a payload.
+    pub(crate) fn with(&self, paths: &[PathBuf]) -> Vec<Given> {
+        let given = |path: &PathBuf| {
+            let name = split(path).map(|(name, _)| name.to_owned());
+            Given {
+                path: file(path).to_path_buf(),
+                loaded: true,
+                name,
+                streamed: false,
+            }
+        };
+        paths.iter().map(given).collect()
+    }
+
+    /// Checks the names of all logs.
+    ///
+    /// # Errors
+    /// Logs without a name although payloads have names, and unknown names.
+    pub(crate) fn check<'g>(&self, given: impl Iterator<Item = &'g Given>) -> Result<(), Failure> {
+        let problem = |one: &Given| {
+            let file = one.path.display().to_string();
+            let list = self.names.join(", ");
+            match &one.name {
+                Some(name) if self.names.contains(&name.as_str()) => None,
+                Some(name) => {
+                    let help = did_you_mean(name, self.names.iter().copied());
+                    let help = help.unwrap_or_else(|| {
+                        if self.names.is_empty() {
+                            String::from(
+                                "name the payloads of the robot in its description, payloads = [\"A\", \"B\"]",
+                            )
+                        } else {
+                            format!("its payloads are {list}")
+                        }
+                    });
+                    let message = format!("there is no payload `{name}`");
+                    Some(
+                        Problem::new(Code::LOG_PAYLOAD, message)
+                            .file(file)
+                            .help(help),
+                    )
+                }
+                None if one.loaded && !self.names.is_empty() => {
+                    let message =
+                        "the robot has several payloads: this run does not name its payload";
+                    let help = format!("write NAME=LOG, the name being one of {list}");
+                    Some(
+                        Problem::new(Code::LOG_PAYLOAD, message)
+                            .file(file)
+                            .help(help),
+                    )
+                }
+                None => None,
+            }
+        };
+        let problems: Vec<Problem> = given.filter_map(problem).collect();
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(problems.into())
+        }
+    }
+}
+
+/// Name and file around an equals sign; `None` if the whole is the name of an existing file.
+fn split(path: &Path) -> Option<(&str, &str)> {
+    let (name, file) = path.to_str()?.split_once('=')?;
+    let word = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    (word && !path.exists()).then_some((name, file))
+}
+
+/// File of a log as given on the command line.
+pub(crate) fn file(path: &Path) -> &Path {
+    split(path).map_or(path, |(_, file)| Path::new(file))
+}

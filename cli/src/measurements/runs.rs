@@ -1,0 +1,220 @@
+//! Runs of an identification: measured logs, or the virtual experiment.
+
+use super::{
+    payloads::{self, Payloads},
+    same,
+};
+use crate::{
+    failure::Failure,
+    input::{Spool, is_stream},
+    note::print_without_effect,
+    progress::Progress,
+};
+use clap::ValueEnum;
+use overact_identification::{Log, Progress as Doing, Settings};
+use overact_robot::{Error, Robot, Runs};
+use std::{
+    cell::OnceCell,
+    path::{Path, PathBuf},
+};
+
+/// Where the runs come from.
+#[derive(Debug, clap::Args)]
+#[group(id = "runs")]
+pub(crate) struct Arguments {
+    /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
+    /// `a.csv+b.csv` for one run in two files, `-` for standard input; without any, the virtual
+    /// experiment is simulated
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    data: Vec<PathBuf>,
+    /// Logs of runs with the payload on the platform; `NAME=LOG` if the description names several
+    /// payloads
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    payload_data: Vec<PathBuf>,
+    /// Logs of validation runs; names of runs if the experiment is virtual [default: the validation
+    /// runs of the description]
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    cross_validate: Vec<PathBuf>,
+    /// The same, with the payload
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    cross_validate_payload: Vec<PathBuf>,
+    /// Seed of the virtual experiment's noise [default: the description's]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Log from standard input; its file is removed with this value.
+    #[arg(skip)]
+    spool: OnceCell<Spool>,
+    /// Friction in both directions of motion [default: the description's]
+    #[arg(long, value_enum)]
+    friction: Option<Friction>,
+}
+
+/// How friction is modelled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Friction {
+    /// The same coefficients in both directions, and an offset
+    Symmetric,
+    /// Separate coefficients for each direction
+    Asymmetric,
+}
+
+impl Arguments {
+    /// Runs from logs, without and with payload.
+    pub(crate) const fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
+        Self {
+            data,
+            payload_data,
+            cross_validate: Vec::new(),
+            cross_validate_payload: Vec::new(),
+            seed: None,
+            spool: OnceCell::new(),
+            friction: None,
+        }
+    }
+
+    /// Whether any log is given.
+    pub(crate) fn names_logs(&self) -> bool {
+        let held_out = [&self.cross_validate, &self.cross_validate_payload];
+        !self.are_virtual() || held_out.into_iter().any(|logs| !logs.is_empty())
+    }
+
+    /// Whether the runs come from the virtual experiment.
+    pub(crate) fn are_virtual(&self) -> bool {
+        self.data.is_empty() && self.payload_data.is_empty()
+    }
+
+    /// Files to read: description and logs; validation runs of a virtual experiment are names only.
+    pub(crate) fn inputs<'a>(&'a self, description: &'a Path) -> Vec<&'a Path> {
+        let logs = [&self.data, &self.payload_data];
+        let held_out = [&self.cross_validate, &self.cross_validate_payload];
+        let held_out = held_out.into_iter().filter(|_| !self.are_virtual());
+        let all = logs.into_iter().chain(held_out).flatten();
+        std::iter::once(description)
+            .chain(all.flat_map(|path| overact_logs::parts(payloads::file(path))))
+            .collect()
+    }
+
+    /// Reads the logs, or simulates the virtual experiment.
+    ///
+    /// # Errors
+    /// Logs that cannot be used, or an invalid virtual experiment.
+    pub(crate) fn runs(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
+        if self.are_virtual() {
+            self.made(robot, as_json)
+        } else if self.seed.is_some() {
+            let message = "`--seed` sets the noise of the virtual experiment: leave it out with `--data` and `--payload-data`";
+            Err(Failure::Usage(message.to_owned()))
+        } else {
+            self.measured(robot, as_json)
+        }
+    }
+
+    /// Settings of the description with overrides from the command line.
+    pub(crate) fn settings(&self, robot: &Robot, runs: &Runs) -> Settings {
+        let mut settings = robot.settings(runs.sampling_frequency());
+        if let Some(friction) = self.friction {
+            settings.asymmetric_friction = friction == Friction::Asymmetric;
+        }
+        settings
+    }
+
+    /// Reads logs and reports the problems of all of them.
+    fn measured(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
+        let payloads = Payloads::new(robot);
+        let mut own = [
+            payloads.without(&self.data),
+            payloads.with(&self.payload_data),
+        ]
+        .concat();
+        let (plain, loaded) = (&self.cross_validate, &self.cross_validate_payload);
+        let mut others = [payloads.without(plain), payloads.with(loaded)].concat();
+        let all = || own.iter().chain(&others);
+        payloads.check(all())?;
+        for one in own.iter_mut().chain(&mut others) {
+            if is_stream(&one.path) {
+                one.path = self.spooled()?;
+                one.streamed = true;
+            }
+        }
+        let all = || own.iter().chain(&others);
+        let files: Vec<(&Path, bool)> = all().map(|one| (one.path.as_path(), one.loaded)).collect();
+        let logs: Vec<&Path> = files.iter().map(|(path, _)| *path).collect();
+        same::check(&logs, own.len())?;
+        let bar = Progress::new("reading", as_json);
+        let logs = robot.read_logs(&files, &|part: f64| bar.at(part, ""));
+        let logs = logs.map_err(|error| self.as_given(error))?;
+        let logs = logs.into_iter().zip(all());
+        let mut identified: Vec<Log> = logs.map(|(log, one)| one.label(log)).collect();
+        let validation = identified.split_off(own.len());
+        Ok(Runs {
+            identified,
+            validation,
+            true_values: None,
+        })
+    }
+
+    /// Replaces the temporary file by the user's name of standard input in an error.
+    fn as_given(&self, error: Error) -> Error {
+        let spooled = self
+            .spool
+            .get()
+            .map(|spool| spool.path().display().to_string());
+        let mut problems = error.problems();
+        for problem in &mut problems {
+            if problem.file.is_some() && problem.file == spooled {
+                problem.file = Some("-".to_owned());
+            }
+        }
+        match error {
+            description @ Error::Description { .. } => description,
+            _ => Error::Problems(problems),
+        }
+    }
+
+    /// File with the contents of standard input.
+    fn spooled(&self) -> Result<PathBuf, Failure> {
+        if self.spool.get().is_none() {
+            // It was empty, as checked above.
+            let _ = self.spool.set(Spool::read()?);
+        }
+        let path = self.spool.get().map(Spool::path);
+        Ok(path.unwrap_or_default())
+    }
+
+    /// Simulates the virtual experiment.
+    fn made(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
+        let mut experiment = robot.experiment()?;
+        if let Some(seed) = self.seed {
+            experiment.plan_mut().seed = seed;
+        }
+        let held = self.cross_validate.iter();
+        let held = held.chain(&self.cross_validate_payload);
+        let mut held: Vec<String> = held.map(|path| name(path)).collect();
+        experiment.check_runs(&held)?;
+        if held.is_empty() {
+            held = robot.held_out();
+        }
+        print_without_effect(experiment.without_effect(), as_json);
+        let bar = Progress::new("simulating", as_json);
+        let tell = |fraction: f64, run: &str| bar.at(fraction, run);
+        Ok(experiment.runs(&held, &tell)?)
+    }
+}
+
+fn name(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+/// Shows the progress of the identification.
+pub(crate) fn tell(bar: &Progress, doing: Doing<'_>) {
+    let part = |done: usize, samples: usize| done as f64 / samples.max(1) as f64;
+    match doing {
+        Doing::Base => bar.at(0.0, "base parameters"),
+        Doing::Run { run, done, samples } => bar.at(part(done, samples), run),
+        Doing::Estimation { model } => bar.at(1.0, &format!("{model}: estimation")),
+        Doing::Validation { run, done, samples } => {
+            bar.at(part(done, samples), &format!("cross-validation on {run}"));
+        }
+        _ => {}
+    }
+}

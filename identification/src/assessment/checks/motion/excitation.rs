@@ -1,0 +1,157 @@
+//! Tests whether the runs excite every base parameter.
+//!
+//! It reports parameters that only position noise separates, and parameters whose columns are
+//! linearly dependent on these runs.
+
+use crate::{
+    assessment::{
+        check::{About, Check, CheckKind, Grade},
+        checks::Context,
+    },
+    estimation::column_noise::Directions,
+    regression::{
+        elimination::eliminate,
+        factor::{DATA_RANK_TOLERANCE, Factor},
+        system::System,
+    },
+    result::{Estimate, ParameterEstimate, Stage},
+};
+use overact_logs::{Error, significant};
+
+/// Directions of the columns with a larger noise fraction have too little motion.
+const LARGEST_NOISE: f64 = 0.1;
+
+/// Fraction of a parameter's variance along such directions that makes it undetermined.
+const LARGEST_SHARE: f64 = 1e-3;
+
+/// Largest bias from position noise, in standard deviations.
+const LARGEST_BIAS: f64 = 2.0;
+
+/// A coordinate hardly moves if its range is below this fraction of the largest range.
+const HARDLY: f64 = 0.02;
+
+/// Checks the base parameters of all models.
+pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+    let base = context.estimates.iter();
+    let base = base.filter(|(_, one)| one.stage == Stage::Base);
+    Ok(base
+        .map(|(projection, estimate)| of_model(context, *projection, estimate))
+        .collect())
+}
+
+fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Check {
+    let new = |words: String| {
+        Check::new(CheckKind::Excitation, About::Data, words).of_model(estimate.model)
+    };
+    let Some(Ok(system)) = context.systems.get(projection) else {
+        return new(String::from("there are no equations"));
+    };
+    let mut spoiled = summed(system, estimate);
+    let noise = context.column_noise.get(projection);
+    let columns = estimate.columns();
+    let values: Vec<f64> = estimate.parameters.iter().map(|one| one.value).collect();
+    let directions = noise
+        .and_then(Option::as_ref)
+        .and_then(|noise| noise.directions(system, &estimate.weights, &columns, &values));
+    let Some(directions) = directions else {
+        let words = "whether the runs move every coordinate is not tested: the regressor cannot be evaluated with noise in the positions";
+        return new(String::from(words)).found();
+    };
+    let largest = directions.noise.iter().copied().fold(0.0, f64::max);
+    for (place, own) in estimate.parameters.iter().enumerate() {
+        let is_lost = directions.is_undetermined(place) || directions.is_biased(place, own);
+        if is_lost && !spoiled.contains(&own.name) {
+            spoiled.push(own.name.clone());
+        }
+    }
+    let check = |words: String| {
+        new(words).measured(100.0 * largest, "% noise").against(
+            100.0 * LARGEST_NOISE,
+            "a tenth of the information on a direction would be lost",
+        )
+    };
+    if spoiled.is_empty() {
+        return check(format!(
+            "the runs separate all columns: position noise is at most {} % of their smallest difference",
+            significant(100.0 * largest, 2)
+        ));
+    }
+    let grade = if 2 * spoiled.len() > estimate.parameters.len() {
+        Grade::DoNotUse
+    } else {
+        Grade::UseListed
+    };
+    check(told(context, &spoiled))
+        .with_grade(grade)
+        .with_unusable_parameters(spoiled)
+}
+
+impl Directions {
+    /// Whether badly excited directions contribute to the variance of parameter `place`.
+    fn is_undetermined(&self, place: usize) -> bool {
+        let steps = self.steps.row(place);
+        let lost: f64 = { steps.iter().zip(&self.noise) }
+            .filter(|(_, noise)| **noise > LARGEST_NOISE)
+            .map(|(step, _)| step * step)
+            .sum();
+        lost > LARGEST_SHARE * steps.norm_squared()
+    }
+
+    /// Whether position noise biases a parameter along the other directions.
+    fn is_biased(&self, place: usize, parameter: &ParameterEstimate) -> bool {
+        let steps = self.steps.row(place);
+        let all = steps.iter().zip(&self.noise).zip(self.sizes.iter());
+        let bias: f64 = all
+            .filter(|((_, noise), _)| **noise <= LARGEST_NOISE)
+            .map(|((step, noise), size)| step * size * noise / (1.0 - noise))
+            .sum();
+        bias.abs() > LARGEST_BIAS * parameter.correlated_standard_deviation
+    }
+}
+
+/// Parameters that other columns depend on linearly in these runs.
+fn summed(system: &System, estimate: &Estimate) -> Vec<String> {
+    let ones = vec![1.0; system.lines.len()];
+    let all = Factor::merged(&system.lines, &ones);
+    let places: Vec<usize> = (0..all.parameters()).collect();
+    let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
+    let is_summed = |column: usize| {
+        let mut terms = found.dependent.iter().flat_map(|(_, terms)| terms);
+        terms.any(|(kept, _)| *kept == column)
+    };
+    let own = estimate.parameters.iter();
+    own.filter(|one| is_summed(one.column))
+        .map(|one| one.name.clone())
+        .collect()
+}
+
+/// Describes parameters that the runs do not separate.
+fn told(context: &Context<'_>, spoiled: &[String]) -> String {
+    let names: Vec<String> = spoiled.iter().map(|name| format!("`{name}`")).collect();
+    let names = names.join(", ");
+    let still: Vec<String> = still(context)
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let moves = match &still[..] {
+        [] => String::from(
+            "record runs that move all coordinates independently, with larger velocities and accelerations: `overact excite` computes some",
+        ),
+        [one] => format!("{one} hardly moves: record runs in which it does"),
+        _ => format!(
+            "{} hardly move: record runs in which they do",
+            still.join(", ")
+        ),
+    };
+    format!(
+        "the runs do not determine {names}, whose columns differ by little more than position noise; {moves}"
+    )
+}
+
+/// Coordinates that hardly move in the training data: of the platform, or joints.
+fn still(context: &Context<'_>) -> Vec<String> {
+    let ranges = context.ranges;
+    let largest = ranges.iter().map(|(_, range)| *range).fold(0.0, f64::max);
+    let hardly = ranges.iter().filter(|(_, range)| *range < HARDLY * largest);
+    hardly.map(|(name, _)| name.clone()).collect()
+}

@@ -1,0 +1,59 @@
+//! Distinguishes a filter from position noise by a test in half the band.
+//!
+//! A position error e enters the model as an acceleration, M ë, and the residual with opposite
+//! sign. The second derivative of the model's torques contains it as M e⁗. Their product is -M² ë
+//! e⁗, with the mean M² times the mean square of the third derivative of e.
+//!
+//! Coarse encoders therefore look like smoothed torques, and so do torques with which a controller
+//! answers encoder noise. That effect falls with the seventh power of the bandwidth. A filter has
+//! the same size in every band that it passes.
+
+use crate::assessment::{
+    checks::{Context, fault_hypotheses::only},
+    hypotheses::FaultHypothesis,
+};
+use overact_logs::Error;
+
+/// Fraction of the size that must remain in half the band if there is a filter.
+const LEFT: f64 = 0.5;
+
+/// Whether a fault of `size` is also found in half the band.
+///
+/// True if half the band cannot be tested.
+pub(crate) fn confirms(
+    context: &Context<'_>,
+    hypothesis: FaultHypothesis,
+    size: f64,
+) -> Result<bool, Error> {
+    let Some(narrow) = (context.narrow)()? else {
+        return Ok(true);
+    };
+    if context
+        .scores
+        .is_none_or(|own| narrow.narrower <= own.narrower)
+    {
+        return Ok(true);
+    }
+    let Some(one) = only(&narrow, hypothesis) else {
+        return Ok(true);
+    };
+    Ok(remains(size, one.wald.size()))
+}
+
+/// Whether enough of the size remains in half the band.
+fn remains(size: f64, half: f64) -> bool {
+    half * size.signum() >= LEFT * size.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::remains;
+
+    #[test]
+    fn a_filter_has_the_same_size_in_half_of_the_band() {
+        assert!(remains(2e-6, 1.8e-6));
+        assert!(remains(-2e-6, -2.5e-6));
+        assert!(!remains(2e-6, 0.1e-6));
+        assert!(!remains(2e-6, -2e-6));
+    }
+}

@@ -1,0 +1,7 @@
+//! Sections on estimated parameters.
+
+pub(crate) mod consistent;
+pub(crate) mod estimators;
+pub(crate) mod limits;
+pub(crate) mod motors;
+pub(crate) mod parameters;

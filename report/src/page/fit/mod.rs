@@ -1,0 +1,7 @@
+//! Sections on residuals and predictions.
+
+pub(crate) mod conditioning;
+pub(crate) mod elimination;
+pub(crate) mod inputs;
+pub(crate) mod residuals;
+pub(crate) mod validation;

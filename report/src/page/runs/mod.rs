@@ -1,0 +1,5 @@
+//! Sections on runs: data, trajectories and tracking.
+
+pub(crate) mod data;
+pub(crate) mod tracking;
+pub(crate) mod trajectories;

@@ -1,0 +1,84 @@
+//! R factors of a robot's runs, and identification from them.
+
+use crate::{
+    error::{Error, Problem},
+    identification::identifier::{essential_or_not, without_essential_estimates},
+    robot::Robot,
+};
+use overact_codegen::diagnostic::Code;
+use overact_identification::{
+    Log, Progress, Settings,
+    factors::{self, CollectedRuns, FactorEstimation, Factory, Origin, RunFactors},
+};
+
+impl Robot {
+    /// R factors of runs; with `equations`, also for successive equations.
+    ///
+    /// # Errors
+    /// Runs that cannot be used, or a description with settings that factors do not support.
+    pub fn factors(
+        &self,
+        logs: &[Log],
+        origin: &Origin,
+        settings: &Settings,
+        equations: bool,
+        progress: &dyn Fn(Progress<'_>),
+    ) -> Result<Vec<RunFactors>, Error> {
+        let factory = self.factory(settings)?;
+        Ok(factory.runs(logs, origin, equations, progress)?)
+    }
+
+    /// Factory for R factors of runs one by one, also of many robots.
+    ///
+    /// # Errors
+    /// Settings that do not fit, or a description with settings that factors do not support.
+    pub fn factory<'a>(&'a self, settings: &'a Settings) -> Result<Factory<'a>, Error> {
+        self.check_factors()?;
+        let text = self.source().text.as_str();
+        Ok(Factory::new(self.model(), text, settings)?)
+    }
+
+    /// Compatibility key of factors for this description and these settings.
+    #[must_use]
+    pub fn settings_hash(&self, settings: &Settings) -> String {
+        factors::settings_hash(&self.source().text, settings)
+    }
+
+    /// Identifies the parameters from factors of runs.
+    ///
+    /// # Errors
+    /// Incompatible factors, or data that determine no parameter.
+    pub fn identify_factors(
+        &self,
+        gathered: &CollectedRuns,
+        settings: &Settings,
+        skip_bad: bool,
+        progress: &dyn Fn(Progress<'_>),
+    ) -> Result<FactorEstimation, Error> {
+        self.check_factors()?;
+        self.check_prior()?;
+        let essential = self.description().identification.essential;
+        let own = essential_or_not(settings, essential);
+        let mut found =
+            factors::identify_factors(self.model(), gathered, &own, skip_bad, progress)?;
+        if !essential {
+            without_essential_estimates(&mut found.estimates);
+        }
+        Ok(found)
+    }
+
+    /// Rejects identification of gains and gravity, which needs the logs themselves.
+    fn check_factors(&self) -> Result<(), Error> {
+        let identification = &self.description().identification;
+        if !identification.gains && !identification.gravity_direction {
+            return Ok(());
+        }
+        let message = "the description requests gains of drives or the direction of gravity, which factors do not support";
+        let help =
+            "first identify them from logs, write them into the description and leave out the key";
+        Err(Problem::new(Code::FACTORS, message)
+            .file(self.file())
+            .help(help)
+            .into())
+    }
+}
