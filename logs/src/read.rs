@@ -114,6 +114,7 @@ fn first_pass(
     let resampled = files.note(count, summary.left_out);
     let of_files = files.tables.first().and_then(Table::note);
     let notes: Vec<String> = { of_files.into_iter().chain(resampled) }
+        .chain(summary.irregularities.note())
         .chain(wraps.iter().map(|(_, wrap)| wrap.note()))
         .collect();
     let note = (!notes.is_empty()).then(|| notes.join("; "));

@@ -248,3 +248,73 @@ fn what_can_not_be_resampled_is_refused() {
     let told = run("a.csv", &[("a.csv", broken.as_bytes())], &at(100.0)).expect_err("a cell");
     assert!(told.contains("is not a number"), "{told}");
 }
+
+/// Position of the tests below: slow against 1 kHz.
+fn slow(t: f64) -> f64 {
+    (TAU * 2.0 * t).sin()
+}
+
+#[test]
+fn rows_that_a_bus_repeats_are_left_out_and_noted() {
+    // Every 16th row repeats the numbers of the one before, at its own time.
+    let rows = jitter(4000, 1000.0, 0.2).scan(0.0, |last, t| {
+        let is_repeat = (t * 1000.0).round() as u32 % 16 == 5;
+        *last = if is_repeat { *last } else { t };
+        Some((t, [slow(*last), *last]))
+    });
+    let log = log(1000.0, rows);
+    assert!(error(&log, slow) < 1e-6);
+    let note = log.note().expect("a note");
+    assert!(
+        note.contains("250 rows that repeat the one before left out"),
+        "{note}"
+    );
+}
+
+#[test]
+fn a_robot_that_stands_still_repeats_no_rows() {
+    let rows = (0..4000).map(|k| {
+        let t = f64::from(k) / 1000.0;
+        let moved = (t.min(1.0), (t - 2.0).max(0.0));
+        (t, [slow(moved.0) + moved.1, 1.0])
+    });
+    let log = log(1000.0, rows);
+    let (positions, _) = loaded(&log);
+    assert_eq!(log.samples(), 4000);
+    assert!(
+        (positions[1500] - slow(1.0)).abs() < 1e-3,
+        "{}",
+        positions[1500]
+    );
+    assert!(
+        (positions[3000] - slow(1.0) - 1.0).abs() < 1e-3,
+        "{}",
+        positions[1500]
+    );
+    assert!(
+        !log.note().expect("a note").contains("repeat"),
+        "{:?}",
+        log.note()
+    );
+}
+
+#[test]
+fn short_gaps_are_interpolated_and_noted_and_long_ones_refused() {
+    let rows = |gap: f64| {
+        let times = (0..4000).map(|k| f64::from(k) / 1000.0);
+        let kept = times.filter(move |t| !(*t > 2.0 && *t < 2.0 + gap - 1e-9));
+        kept.map(|t| (t, [slow(t), t]))
+    };
+    let short = log(1000.0, rows(0.0085));
+    assert!(error(&short, slow) < 1e-5, "{}", error(&short, slow));
+    let note = short.note().expect("a note");
+    assert!(
+        note.contains("1 gap of up to 9.0 ms interpolated"),
+        "{note}"
+    );
+    let long = resampled(1000.0, rows(0.05)).expect_err("a long gap");
+    assert!(long.contains("the time steps from 2 s to 2.05 s"), "{long}");
+    // At 10 Hz, three and a half steps are more.
+    let slow_rows = |k: u32| (f64::from(k) / 10.0, [f64::from(k), 1.0]);
+    assert!(resampled(10.0, (0..50).filter(|k| *k != 20).map(slow_rows)).is_ok());
+}

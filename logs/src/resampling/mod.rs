@@ -21,6 +21,12 @@ use crate::{
     mapping::expression::Expression,
 };
 
+/// Longest gap for interpolation, s, if it has at most [`MOST_STEPS`].
+///
+/// Polynomials cross it with errors below 0.05 % of a motion at 5 Hz.
+const LONGEST_GAP: f64 = 0.02;
+const MOST_STEPS: f64 = 25.0;
+
 /// Shortest distance of two samples, in usual steps; nearer samples are skipped as noise.
 const SHORTEST_STEP: f64 = 0.5;
 
@@ -61,6 +67,55 @@ pub(crate) struct Resampled {
     /// Columns of a row.
     width: usize,
     low_pass: Option<LowPass>,
+    /// Last row, if it repeats the numbers of the last sample at a later time, and the number of
+    /// such rows.
+    repeated: Option<(Node, usize)>,
+    /// Whether rows have been equal for longer than a gap.
+    stands_still: bool,
+    irregularities: Irregularities,
+}
+
+/// Irregularities of the samples of a run that resampling has removed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Irregularities {
+    /// Rows that repeat all numbers of the row before, as a bus does that has no new packet.
+    pub(crate) repeated: usize,
+    /// Number of gaps longer than [`LONGEST_STEP`] usual steps, and the longest one, s.
+    pub(crate) gaps: usize,
+    pub(crate) longest_gap: f64,
+}
+
+impl Irregularities {
+    /// Sentence about them, if there are some.
+    pub(crate) fn note(self) -> Option<String> {
+        let s = |count: usize| if count == 1 { "" } else { "s" };
+        let mut parts = Vec::new();
+        if self.repeated > 0 {
+            let count = self.repeated;
+            parts.push(format!(
+                "{count} row{} that repeat the one before left out",
+                s(count)
+            ));
+        }
+        if self.gaps > 0 {
+            parts.push(format!(
+                "{} gap{} of up to {:.1} ms interpolated",
+                self.gaps,
+                s(self.gaps),
+                1e3 * self.longest_gap
+            ));
+        }
+        (!parts.is_empty()).then(|| parts.join(", "))
+    }
+
+    /// Those of two files.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            repeated: self.repeated + other.repeated,
+            gaps: self.gaps + other.gaps,
+            longest_gap: self.longest_gap.max(other.longest_gap),
+        }
+    }
 }
 
 /// State of the low-pass filter.
@@ -100,7 +155,15 @@ impl Resampled {
             has_ended: false,
             width,
             low_pass,
+            repeated: None,
+            stands_still: false,
+            irregularities: Irregularities::default(),
         }
+    }
+
+    /// Irregularities so far.
+    pub(crate) const fn irregularities(&self) -> Irregularities {
+        self.irregularities
     }
 
     /// First time, and time of the last sample read.
@@ -241,19 +304,66 @@ impl Resampled {
             self.nodes.push_back((time, row));
             return Ok(());
         };
-        // Also false for NaN.
-        if !(time > before && time - last <= LONGEST_STEP * self.step) {
-            self.has_ended = true;
-            let message = format!("the time steps from {before} s to {time} s");
-            let problem = Problem::new(Code::LOG_TIME, message).file(self.file.as_str());
-            let help = "interpolation needs increasing times without gaps: cut the run there";
-            return Err(problem.help(help).into());
+        let is_repeated = self.is_repeated(&row);
+        let mut last = last;
+        if is_repeated && !self.stands_still && time - last <= self.longest_gap() {
+            let count = self.repeated.as_ref().map_or(0, |(_, count)| *count);
+            self.repeated = Some(((time, row), count + 1));
+            return self.check_step(before, before, time);
+        }
+        if let Some((node, count)) = self.repeated.take() {
+            if is_repeated {
+                // The robot stands still: its rows are samples.
+                last = node.0;
+                self.nodes.push_back(node);
+            } else {
+                self.irregularities.repeated += count;
+            }
+        }
+        self.stands_still = is_repeated;
+        self.check_step(before, last, time)?;
+        if time - last > LONGEST_STEP * self.step {
+            self.irregularities.gaps += 1;
+            self.irregularities.longest_gap = self.irregularities.longest_gap.max(time - last);
         }
         if time - last >= SHORTEST_STEP * self.step {
             self.range = Some((first, time));
             self.nodes.push_back((time, row));
         }
         Ok(())
+    }
+
+    /// Whether a row has all numbers of the last sample, except the time.
+    fn is_repeated(&self, row: &[f64]) -> bool {
+        let Some((_, last)) = self.nodes.back() else {
+            return false;
+        };
+        let clock = |place: usize| self.clock == Expression::Column(place);
+        let others = || (0..self.width).filter(|place| !clock(*place));
+        others().count() > 1 && others().all(|place| row[place] == last[place])
+    }
+
+    /// Longest gap for interpolation, s.
+    fn longest_gap(&self) -> f64 {
+        let steps = (LONGEST_GAP / self.step).clamp(LONGEST_STEP, MOST_STEPS);
+        steps * self.step
+    }
+
+    /// Checks the time after a row at `before`; the last sample is at `last`.
+    fn check_step(&mut self, before: f64, last: f64, time: f64) -> Result<(), Error> {
+        // Also false for NaN.
+        if time > before && time - last <= self.longest_gap() {
+            return Ok(());
+        }
+        self.has_ended = true;
+        let message = format!("the time steps from {before} s to {time} s");
+        let problem = Problem::new(Code::LOG_TIME, message).file(self.file.as_str());
+        let help = if time > before {
+            "samples are missing for too long to be interpolated: cut the run there into two"
+        } else {
+            "interpolation needs increasing times: cut the run there, or use another column of the time"
+        };
+        Err(problem.help(help).into())
     }
 }
 

@@ -4,7 +4,7 @@
 
 use crate::{
     error::{Error, Problem},
-    resampling::{Place, Resampled, apart},
+    resampling::{Irregularities, Place, Resampled, apart},
     run::{
         signals::is_measurable,
         source::{Files, WrapSource},
@@ -370,6 +370,16 @@ impl<'a> Rows<'a> {
             None => problem,
         }
         .into())
+    }
+
+    /// Irregularities of the samples so far.
+    pub(crate) fn irregularities(&self) -> Irregularities {
+        let parts = self.joined.parts.iter();
+        let of_files = parts.filter_map(|part| part.resampled.as_ref());
+        of_files
+            .chain(&self.resampled)
+            .map(Resampled::irregularities)
+            .fold(Irregularities::default(), Irregularities::and)
     }
 
     /// Columns and positions that were logged within one turn and are not yet unwrapped.

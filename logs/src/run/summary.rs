@@ -6,6 +6,7 @@ use crate::{
     formats::table::Table,
     mapping::Time,
     problems::{Collected, LARGEST_NUMBER_OF_PROBLEMS},
+    resampling::Irregularities,
     run::{
         clock::Clock,
         rows::Rows,
@@ -36,6 +37,8 @@ pub(crate) struct Summary {
     pub(crate) spill: Option<TemporaryStore>,
     /// Samples of the first file at which a file joined by time has no values.
     pub(crate) left_out: usize,
+    /// Irregularities that resampling has removed.
+    pub(crate) irregularities: Irregularities,
     /// Columns and positions that were logged within one turn and are not yet unwrapped.
     pub(crate) wraps: Vec<(WrapSource, Wrap)>,
 }
@@ -115,6 +118,7 @@ impl Files {
             samples: fits.then_some(samples),
             spill,
             left_out: rows.left_out,
+            irregularities: rows.irregularities(),
             wraps: rows.wraps(),
         })
     }

@@ -6,18 +6,20 @@
 //! decimal commas. A first line of words above a line of numbers is a header. A comment with as
 //! many words as columns above numeric lines names the columns, too.
 
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::StringRecord;
 use overact::Code;
-use std::borrow::Cow;
 
-use super::{collapsed_blanks::CollapsedBlanks, groups, instant::Instant, preamble::Preamble};
+use super::{
+    cell_values::{is_instant, is_number, text_of},
+    groups,
+    instant::Instant,
+    preamble::Preamble,
+    separator::{records, separator, width},
+};
 use crate::{
     error::{Error, Problem},
     problems::shown,
 };
-
-/// Bytes at the start of the file that determine the dialect.
-pub(super) const BEGINNING: usize = 1 << 16;
 
 /// Dialect of a text.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,6 +110,16 @@ impl Dialect {
         Ok(dialect.named_by(&preamble))
     }
 
+    /// Applies the names of a preamble.
+    fn named_by(mut self, preamble: &Preamble) -> Self {
+        if !preamble.names.is_empty() {
+            self.most = self.most.max(preamble.names.len());
+            self.columns = self.columns.max(preamble.names.len().min(self.most));
+            self.names.clone_from(&preamble.names);
+        }
+        self
+    }
+
     /// Finds the columns of dates and times of day by the first sample.
     fn find_instants(&mut self, first: &StringRecord) {
         for (column, cell) in first.iter().enumerate() {
@@ -141,120 +153,11 @@ impl Dialect {
             (_, true) => "name every column",
         })
     }
-
-    /// A reader of all records of the text, including a header.
-    pub(super) fn builder(separator: u8, comment: u8) -> ReaderBuilder {
-        let mut builder = ReaderBuilder::new();
-        builder
-            .trim(Trim::All)
-            .flexible(true)
-            .has_headers(false)
-            .comment(Some(comment))
-            .delimiter(separator);
-        builder
-    }
-}
-
-/// Parses a cell as a number, if it is one.
-pub(super) fn parse(cell: &str, decimal_comma: bool) -> Option<f64> {
-    if !decimal_comma || !cell.contains(',') {
-        return cell.parse().ok();
-    }
-    let (whole, decimals) = cell.split_once(',')?;
-    // A comma at an end of a number separates it from the next one.
-    let inside = whole.ends_with(|c: char| c.is_ascii_digit())
-        && decimals.starts_with(|c: char| c.is_ascii_digit());
-    inside
-        .then(|| cell.replacen(',', ".", 1).parse().ok())
-        .flatten()
-}
-
-fn is_number(cell: &str, decimal_comma: bool) -> bool {
-    parse(cell, decimal_comma).is_some()
-}
-
-fn is_instant(cell: &str) -> bool {
-    Instant::parse(cell).is_some()
-}
-
-/// Whether a cell is a number, a date or a time of day.
-pub(super) fn is_value(cell: &str) -> bool {
-    is_number(cell, true) || is_instant(cell)
-}
-
-/// Text in UTF-8, or in Latin-1.
-pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
-    str::from_utf8(bytes).map_or_else(
-        |_| bytes.iter().map(|byte| char::from(*byte)).collect(),
-        Cow::Borrowed,
-    )
 }
 
 /// The text without its byte order mark.
 pub(super) fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
-}
-
-/// Records of a text, each with its line.
-fn records(text: &[u8], separator: u8, comment: u8) -> Vec<(u64, StringRecord)> {
-    let builder = Dialect::builder(separator, comment);
-    let mut found = Vec::new();
-    let mut take = |reader: &mut dyn Iterator<Item = csv::Result<csv::ByteRecord>>| {
-        // Errors of a record are reported when all records are read.
-        for record in reader.map_while(Result::ok) {
-            let line = record.position().map_or(0, csv::Position::line);
-            let cells: Vec<Cow<'_, str>> = record.iter().map(text_of).collect();
-            found.push((line, cells.iter().map(AsRef::as_ref).collect()));
-        }
-    };
-    if separator == b' ' {
-        let mut reader = builder.from_reader(CollapsedBlanks::new(text, BEGINNING));
-        take(&mut reader.byte_records());
-    } else {
-        let mut reader = builder.from_reader(text);
-        take(&mut reader.byte_records());
-    }
-    found
-}
-
-/// Number of cells up to the last non-empty one.
-fn width(record: &StringRecord) -> usize {
-    let filled = |place: &usize| !record[*place].is_empty();
-    let last = (0..record.len()).rev().find(filled);
-    last.map_or(0, |last| last + 1)
-}
-
-/// Detects the column separator of a text.
-pub(super) fn separator(text: &[u8], comment: u8) -> u8 {
-    let splits = |separator: u8| -> bool {
-        let all = records(text, separator, comment);
-        let ends = [all.first(), all.last()];
-        ends.into_iter()
-            .flatten()
-            .any(|(_, record)| record.len() > 1)
-    };
-    if splits(b';') {
-        return b';';
-    }
-    if splits(b'\t') {
-        // Several adjacent tabs align columns, and leave cells without a name.
-        let all = records(text, b'\t', comment);
-        let gaps = |(_, record): &(u64, StringRecord)| {
-            record.iter().take(width(record)).any(str::is_empty)
-        };
-        if !all.iter().take(2).all(gaps) {
-            return b'\t';
-        }
-        return b' ';
-    }
-    let by_blanks = records(text, b' ', comment);
-    let Some((_, last)) = by_blanks.last().filter(|(_, record)| record.len() > 1) else {
-        return b',';
-    };
-    let whole = last.iter().all(is_value);
-    let by_commas = records(text, b',', comment);
-    let has_commas = by_commas.last().is_some_and(|(_, record)| record.len() > 1);
-    if whole || !has_commas { b' ' } else { b',' }
 }
 
 /// Detects a decimal comma; `before` is the number of lines before the records.

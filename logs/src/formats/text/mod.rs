@@ -4,13 +4,14 @@
 //! the frequency. Small files are then in memory. The numbers of a large file are in a temporary
 //! file, or it is read again, row by row.
 //!
-//! - `dialect`: separators, decimal commas and names;
+//! - `dialect`: separators, decimal commas and names; `separator`: records by a separator;
 //! - `preamble`: lines before the samples; `groups`: columns with cells in the same rows;
-//! - `lines`, `cells`: plain lines and their numbers; `instant`: dates and times of day;
+//! - `lines`, `cells`: plain lines and their numbers; `cell_values`, `instant`: numbers, dates and times of day;
 //! - `row_diagnostics`: error messages for a row;
 //! - `collapsed_blanks`: columns separated by several blanks;
 //! - `rows`: rows of plain lines, or of records with quotation marks.
 
+mod cell_values;
 mod cells;
 mod collapsed_blanks;
 mod dialect;
@@ -20,6 +21,7 @@ mod lines;
 mod preamble;
 mod row_diagnostics;
 mod rows;
+mod separator;
 
 use overact::Code;
 use std::{
@@ -27,13 +29,16 @@ use std::{
     io::{Read, Seek, SeekFrom},
 };
 
-use self::dialect::{BEGINNING, Dialect};
+use self::dialect::Dialect;
 pub(crate) use self::rows::Rows;
 use crate::{
     bytes::byte_source::{ByteSource, Opened},
     error::{Error, Problem},
     problems::{Existing, only, unreadable},
 };
+
+/// Bytes at the start of the file that determine the dialect.
+const BEGINNING: usize = 1 << 16;
 
 /// Bytes of one read.
 const BUFFER: usize = 1 << 18;

@@ -5,7 +5,10 @@
 //! nearest line above with a different word for each column. A text with lines of numbers above
 //! these names is not touched, so that a broken line in the middle of samples stays an error.
 
-use super::dialect::{Dialect, is_value, separator, text_of};
+use super::{
+    cell_values::{is_value, text_of},
+    separator::separator,
+};
 
 /// Largest number of lines between the names and the samples.
 const BETWEEN: usize = 40;
@@ -199,16 +202,4 @@ pub(super) fn is_unit(cell: &str) -> bool {
         .trim()
         .trim_matches(|c| matches!(c, '[' | ']' | '(' | ')' | '"'));
     inner.is_empty() || UNITS.contains(&inner)
-}
-
-impl Dialect {
-    /// Applies the names of a preamble.
-    pub(super) fn named_by(mut self, preamble: &Preamble) -> Self {
-        if !preamble.names.is_empty() {
-            self.most = self.most.max(preamble.names.len());
-            self.columns = self.columns.max(preamble.names.len().min(self.most));
-            self.names.clone_from(&preamble.names);
-        }
-        self
-    }
 }

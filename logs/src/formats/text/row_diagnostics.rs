@@ -3,7 +3,8 @@
 use overact::Code;
 
 use super::{
-    Text, dialect,
+    Text,
+    cell_values::{parse, text_of},
     instant::{Instant, Midnights},
 };
 use crate::{
@@ -88,7 +89,7 @@ impl Row<'_> {
         if found.is_ok() || !self.text.dialect.instants.contains(&column) {
             return found;
         }
-        let text = dialect::text_of(cell.unwrap_or_default());
+        let text = text_of(cell.unwrap_or_default());
         match Instant::parse(text.trim_matches(['"', ' '])) {
             Some(instant) if instant.day.is_some() => Ok(instant.since(self.text.origin)),
             Some(instant) => Ok(midnights.next(instant.seconds)),
@@ -156,7 +157,7 @@ fn number(cell: Option<&[u8]>, decimal_comma: bool) -> Result<f64, String> {
         return Err(String::from("the line ends before this column"));
     };
     let text = String::from_utf8_lossy(cell.trim_ascii());
-    match dialect::parse(&text, decimal_comma) {
+    match parse(&text, decimal_comma) {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(format!("`{}` is not a finite number", shown(&text))),
         None if text.is_empty() => Err(String::from("the cell is empty")),

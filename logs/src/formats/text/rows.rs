@@ -9,6 +9,7 @@ use super::{
     dialect::Dialect,
     lines::{Lines, Next, Rest},
     row_diagnostics::{Row, RowDiagnostics},
+    separator::builder,
 };
 use crate::{bytes::byte_source::Opened, error::Error};
 
@@ -242,7 +243,7 @@ impl Records {
             _ => Input::Plain(rest),
         };
         Self {
-            reader: Dialect::builder(dialect.separator, dialect.comment)
+            reader: builder(dialect.separator, dialect.comment)
                 // Only requested cells are trimmed.
                 .trim(Trim::None)
                 .buffer_capacity(BUFFER)
