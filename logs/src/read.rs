@@ -133,6 +133,7 @@ fn first_pass(
     Ok(log
         .with_note(note)
         .with_unwrapped(!wraps.is_empty())
+        .with_resampled(mapping.resample.is_some())
         .without_offsets(&mapping.position_offset))
 }
 

@@ -37,7 +37,7 @@ pub(crate) fn explained(model: &dyn Model, log: &Log, error: Error) -> Error {
 
 /// Statistics of a whole run; `None` if the file cannot be read.
 fn watched(log: &Log) -> Option<Monitor> {
-    let mut monitor = Monitor::new(log.actuators(), log.sampling_frequency());
+    let mut monitor = Monitor::of(log);
     let mut reader = log.reader().ok()?;
     while let Ok(Some(block)) = reader.next() {
         monitor.take(&block);

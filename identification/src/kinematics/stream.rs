@@ -61,7 +61,7 @@ impl<'a> Stream<'a> {
             velocity_filter: velocity_filter.transpose()?,
             torque_filter: torque_filter.transpose()?,
             reader: log.reader()?,
-            monitor: Monitor::new(log.actuators(), frequency),
+            monitor: Monitor::of(log),
             is_watched: true,
             frequency,
             samples: log.samples(),

@@ -12,7 +12,7 @@ use super::{
     suspicion::{DataFault, Suspicion},
     torque_rest::{TorqueRest, TorqueRests},
 };
-use crate::{samples::Samples, significant};
+use crate::{run::log::Log, samples::Samples, significant};
 
 /// Shortest rest of a signal (s).
 const REST_SECONDS: f64 = 0.1;
@@ -61,6 +61,8 @@ pub struct Monitor {
     recent: Vec<f64>,
     /// Hashes of samples, to find repeated ones.
     marks: Marks,
+    /// Whether the run was resampled from irregular times, which may be late.
+    is_resampled: bool,
 }
 
 impl Monitor {
@@ -77,6 +79,16 @@ impl Monitor {
             roughness: [Roughness::new(actuators), Roughness::new(actuators)],
             recent: Vec::new(),
             marks: Marks::default(),
+            is_resampled: false,
+        }
+    }
+
+    /// A monitor for a run.
+    #[must_use]
+    pub fn of(log: &Log) -> Self {
+        Self {
+            is_resampled: log.is_resampled(),
+            ..Self::new(log.actuators(), log.sampling_frequency())
         }
     }
 
@@ -434,8 +446,13 @@ impl Monitor {
             }
         }
         let first = *samples.iter().min()?;
+        let seconds = first as f64 / self.frequency;
         Some(Suspicion {
-            fault: DataFault::Dropped,
+            fault: if self.is_resampled {
+                DataFault::Late
+            } else {
+                DataFault::Dropped
+            },
             statistic: largest,
             unit: "times the largest usual change of a step",
             threshold: 1.0,
@@ -443,10 +460,15 @@ impl Monitor {
                 [one] if names.len() > 1 => Some(one.to_owned()),
                 _ => None,
             },
-            message: format!(
-                "positions jump between samples, first at t = {:.4} s (sample {first}): samples are lost or repeated; record the run again, or cut it there",
-                first as f64 / self.frequency
-            ),
+            message: if self.is_resampled {
+                format!(
+                    "positions jump between samples, first at t = {seconds:.4} s: some times are late or early by a large part of a step, which acts as noise of the positions; log the times of the measurement, not those of the program that reads it"
+                )
+            } else {
+                format!(
+                    "positions jump between samples, first at t = {seconds:.4} s (sample {first}): samples are lost or repeated; record the run again, or cut it there"
+                )
+            },
         })
     }
 

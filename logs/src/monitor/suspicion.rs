@@ -26,6 +26,8 @@ pub enum DataFault {
     Stuck,
     /// A position jumps, or repeats while others change.
     Dropped,
+    /// A position jumps although times are known: some are late or early.
+    Late,
     /// The robot hardly moves.
     Standstill,
     /// Two columns are equal.

@@ -37,6 +37,7 @@ pub struct Log {
     note: Option<String>,
     /// Whether positions were logged within one turn and are unwrapped.
     is_unwrapped: bool,
+    is_resampled: bool,
 }
 
 /// Source of the samples.
@@ -107,6 +108,7 @@ impl Log {
             instruments: None,
             note: None,
             is_unwrapped: false,
+            is_resampled: false,
         })
     }
 
@@ -199,7 +201,20 @@ impl Log {
             instruments: None,
             note: None,
             is_unwrapped: false,
+            is_resampled: false,
         }
+    }
+
+    /// Sets whether the run was resampled from irregular times.
+    pub(crate) fn with_resampled(mut self, is_resampled: bool) -> Self {
+        self.is_resampled = is_resampled;
+        self
+    }
+
+    /// Whether the run was resampled from irregular times.
+    #[must_use]
+    pub const fn is_resampled(&self) -> bool {
+        self.is_resampled
     }
 
     /// Sets whether positions were logged within one turn and are unwrapped.

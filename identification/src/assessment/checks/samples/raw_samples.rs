@@ -126,6 +126,11 @@ fn told(run: &str, suspicion: Suspicion) -> Check {
             Grade::DoNotUse,
             "the steps of the run itself",
         ),
+        DataFault::Late => (
+            CheckKind::DroppedSamples,
+            Grade::Use,
+            "the steps of the run itself",
+        ),
         DataFault::Duplicate => (
             CheckKind::DuplicateColumns,
             Grade::DoNotUse,
