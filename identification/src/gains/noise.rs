@@ -61,18 +61,13 @@ impl Noise {
         (0..self.moments.nrows()).map(of).collect()
     }
 
-    /// Variances s_i² of the lines.
-    pub(super) fn variances(&self, lines: &[Factor]) -> Vec<f64> {
-        let own = &self.moments * &self.torques;
-        let least = lines.iter().map(|line| {
+    /// Smallest variances of the lines, to be positive without noise.
+    pub(super) fn least(lines: &[Factor]) -> Vec<f64> {
+        let least = |line: &Factor| {
             let equations = line.equations().max(1) as f64;
             LEAST * LEAST * line.matrix().norm_squared() / equations
-        });
-        own.iter()
-            .zip(least)
-            .map(|(variance, least)| variance.max(least))
-            .map(|variance| if variance > 0.0 { variance } else { 1.0 })
-            .collect()
+        };
+        lines.iter().map(least).collect()
     }
 }
 

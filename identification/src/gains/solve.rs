@@ -11,28 +11,33 @@
 //!
 //! This is total least squares with exact columns W and w (S. Van Huffel, J. Vandewalle, *The Total
 //! Least Squares Problem*, 1991, chapter 3 and the generalised form of chapter 10). For a serial
-//! robot with normal noise, it is the maximum likelihood estimate. The derivatives vanish for
+//! robot with normal noise, it is the maximum likelihood estimate. It is found by the method of
+//! Levenberg and Marquardt on ρ_i/s_i with the derivatives [W V]/s_i - [0 ρ_i (Ω_i g)ᵀ]/s_i³. The
+//! σ_j follow from the residuals, and both steps are repeated. At the solution,
 //!
 //! ```text
 //! [W V]ᵀ S^-1 ([W V] [-χ; g] - w) = [0; Λ g],    Λ = Σ_i ||ρ_i||²/s_i⁴ Ω_i,
 //! ```
 //!
-//! with the line variances S. With the R factor of [W V | w] and its block R_11 of W, the gains
-//! follow iteratively from (R_22ᵀ R_22 - Λ) g = R_22ᵀ c_2.
+//! with the line variances S.
 
 use nalgebra::{DMatrix, DVector};
 use overact::Code;
 
 use super::{
-    noise::Noise,
+    noise::{Noise, residual},
     observation::Equations,
     selection::{Selection, size},
 };
 use crate::regression::factor::Factor;
 use overact_logs::{Error, Problem};
 
-/// Largest number of iterations for a given noise of the drives.
-const INNER: usize = 200;
+/// Largest number of steps for a given noise of the drives.
+const INNER: usize = 100;
+
+/// First and largest damping of a step, by the squared norms of the columns.
+const FIRST_DAMPING: f64 = 1e-3;
+const LARGEST_DAMPING: f64 = 1e12;
 
 /// Largest number of updates of the noise.
 const OUTER: usize = 30;
@@ -66,36 +71,54 @@ impl Solution {
     }
 }
 
-/// Solves the equations.
+/// Solves the equations, from the least-squares solution or from gains of 1.
 ///
 /// # Errors
 /// Gains that the data do not determine.
 pub(super) fn solve(equations: &Equations, selection: &Selection) -> Result<Solution, Error> {
     let lines = &equations.system.lines;
-    let drives = selection.drives;
     let variances: Vec<f64> = lines.iter().map(|line| size(line).powi(2)).collect();
-    let none = DVector::zeros(drives);
-    let mut solution = weighted(lines, selection, &variances, &none)?;
+    let [biased, ones] = starts(lines, selection, &variances)?;
+    iterated(equations, selection, biased).or_else(|_| iterated(equations, selection, ones))
+}
+
+/// Alternates between the noise of the drives and the values [-χ; g].
+fn iterated(
+    equations: &Equations,
+    selection: &Selection,
+    mut values: Vec<f64>,
+) -> Result<Solution, Error> {
+    let lines = &equations.system.lines;
+    let parameters = selection.parameters();
+    let mut last = f64::INFINITY;
     for _ in 0..OUTER {
-        let before = solution.gains().to_vec();
-        let noise = Noise::new(equations, selection, &solution.values);
-        solution = with_noise(lines, selection, &noise, solution)?;
-        let change = change(&before, solution.gains());
-        if change < TOLERANCE {
-            return Ok(solution);
-        }
-        if !change.is_finite() {
+        let noise = Noise::new(equations, selection, &values);
+        let omegas = noise.omegas(&values[parameters..]);
+        let criterion = Criterion {
+            lines,
+            selection,
+            least: Noise::least(lines),
+            omegas,
+        };
+        let next = criterion.minimum(values.clone())?;
+        last = change(&values[parameters..], &next[parameters..]);
+        values = next;
+        if last < TOLERANCE || !last.is_finite() {
             break;
         }
     }
-    // Accept a small change between two noise updates.
-    let noise = Noise::new(equations, selection, &solution.values);
-    let next = with_noise(lines, selection, &noise, solution.clone())?;
-    if change(solution.gains(), next.gains()) < CONVERGED {
-        Ok(next)
-    } else {
-        Err(not_converged())
+    // A small change between two updates of the noise is accepted.
+    if !(last < CONVERGED) {
+        return Err(not_converged());
     }
+    let noise = Noise::new(equations, selection, &values);
+    let criterion = Criterion {
+        lines,
+        selection,
+        least: Noise::least(lines),
+        omegas: noise.omegas(&values[parameters..]),
+    };
+    Ok(criterion.solution(values))
 }
 
 fn not_converged() -> Error {
@@ -107,30 +130,132 @@ fn not_converged() -> Error {
     .into()
 }
 
-/// Solves the equations for a given noise, starting from another solution.
-fn with_noise(
-    lines: &[Factor],
-    selection: &Selection,
-    noise: &Noise,
-    mut solution: Solution,
-) -> Result<Solution, Error> {
-    for _ in 0..INNER {
-        let omegas = noise.omegas(solution.gains());
-        let variances = noise.variances(lines);
-        let mut lambda = DVector::zeros(selection.drives);
-        for ((line, variance), omega) in lines.iter().zip(&variances).zip(&omegas) {
-            let residual = line.residual_norm(&selection.columns, &solution.values);
+/// Σ_i ||ρ_i||²/s_i² for a given noise of the drives.
+struct Criterion<'a> {
+    lines: &'a [Factor],
+    selection: &'a Selection,
+    /// Smallest variance of each line.
+    least: Vec<f64>,
+    /// Diagonals of Ω_i.
+    omegas: Vec<DVector<f64>>,
+}
+
+impl Criterion<'_> {
+    /// Variances s_i² of the lines.
+    fn variances(&self, gains: &DVector<f64>) -> Vec<f64> {
+        let of = |(omega, least): (&DVector<f64>, &f64)| {
+            let variance = omega.component_mul(gains).dot(gains).max(*least);
+            if variance > 0.0 { variance } else { 1.0 }
+        };
+        self.omegas.iter().zip(&self.least).map(of).collect()
+    }
+
+    fn gains(&self, values: &[f64]) -> DVector<f64> {
+        DVector::from_column_slice(&values[self.selection.parameters()..])
+    }
+
+    fn value(&self, values: &[f64]) -> f64 {
+        let variances = self.variances(&self.gains(values));
+        let lines = self.lines.iter().zip(variances);
+        let part = |(line, variance): (&Factor, f64)| {
+            line.residual_norm(&self.selection.columns, values).powi(2) / variance
+        };
+        lines.map(part).sum()
+    }
+
+    /// Scaled residuals ρ_i/s_i of all lines, and their derivatives.
+    fn residuals(&self, values: &[f64]) -> (DVector<f64>, DMatrix<f64>) {
+        let columns = &self.selection.columns;
+        let gains = self.gains(values);
+        let rows = self.lines.first().map_or(0, |line| line.matrix().nrows());
+        let mut residuals = DVector::zeros(rows * self.lines.len());
+        let mut derivatives = DMatrix::zeros(rows * self.lines.len(), columns.len());
+        let variances = self.variances(&gains);
+        for (place, (line, variance)) in self.lines.iter().zip(&variances).enumerate() {
+            let own = residual(line.matrix(), columns, values);
+            let deviation = variance.sqrt();
+            residuals
+                .rows_mut(place * rows, rows)
+                .axpy(1.0 / deviation, &own, 0.0);
+            for (to, column) in columns.iter().enumerate() {
+                let mut target = derivatives.column_mut(to);
+                let mut target = target.rows_mut(place * rows, rows);
+                target.axpy(1.0 / deviation, &line.matrix().column(*column), 0.0);
+                if let Some(drive) = to.checked_sub(self.selection.parameters()) {
+                    let slope = self.omegas[place][drive] * gains[drive];
+                    target.axpy(-slope / (deviation * variance), &own, 1.0);
+                }
+            }
+        }
+        (residuals, derivatives)
+    }
+
+    /// The values of the minimum next to `values`.
+    fn minimum(&self, mut values: Vec<f64>) -> Result<Vec<f64>, Error> {
+        let count = values.len();
+        let (mut damping, mut least) = (FIRST_DAMPING, self.value(&values));
+        for _ in 0..INNER {
+            let (residuals, derivatives) = self.residuals(&values);
+            let scales: Vec<f64> = derivatives.column_iter().map(|one| one.norm()).collect();
+            let rows = residuals.len();
+            let mut right = DVector::zeros(rows + count);
+            right.rows_mut(0, rows).copy_from(&-residuals);
+            let step = loop {
+                let mut stacked = DMatrix::zeros(rows + count, count);
+                stacked
+                    .view_mut((0, 0), (rows, count))
+                    .copy_from(&derivatives);
+                for (place, scale) in scales.iter().enumerate() {
+                    stacked[(rows + place, place)] = damping.sqrt() * scale;
+                }
+                let qr = stacked.qr();
+                let target = qr.q().tr_mul(&right);
+                let step = qr
+                    .r()
+                    .solve_upper_triangular(&target)
+                    .ok_or_else(not_converged)?;
+                let next: Vec<f64> = values.iter().zip(step.iter()).map(|(a, b)| a + b).collect();
+                let value = self.value(&next);
+                let sound = self.gains(&next).iter().all(|gain| *gain > 0.0);
+                if sound && value <= least {
+                    damping = (damping / 5.0).max(f64::EPSILON);
+                    least = value;
+                    break Some(next);
+                }
+                damping *= 4.0;
+                if !(damping < LARGEST_DAMPING) {
+                    break None;
+                }
+            };
+            let Some(next) = step else { break };
+            let own = self.selection.parameters();
+            let change = change(&values[own..], &next[own..]);
+            values = next;
+            if change < TOLERANCE {
+                break;
+            }
+        }
+        Ok(values)
+    }
+
+    /// The solution, with data for its standard deviations.
+    fn solution(self, values: Vec<f64>) -> Solution {
+        let variances = self.variances(&self.gains(&values));
+        let mut lambda = DVector::zeros(self.selection.drives);
+        for ((line, variance), omega) in self.lines.iter().zip(&variances).zip(&self.omegas) {
+            let residual = line.residual_norm(&self.selection.columns, &values);
             lambda += omega * (residual / variance).powi(2);
         }
-        let mut next = weighted(lines, selection, &variances, &lambda)?;
-        next.omegas = omegas;
-        let change = change(solution.gains(), next.gains());
-        solution = next;
-        if change < TOLERANCE || !change.is_finite() {
-            break;
+        let weights: Vec<f64> = variances.iter().map(|own| 1.0 / own.sqrt()).collect();
+        let reduced = Factor::reduced_together(self.lines, &weights, &self.selection.columns);
+        Solution {
+            values,
+            triangle: reduced.triangle,
+            variances,
+            omegas: self.omegas,
+            lambda,
         }
     }
-    Ok(solution)
 }
 
 /// Largest relative change of gains; NaN if any is NaN.
@@ -146,43 +271,36 @@ fn change(before: &[f64], after: &[f64]) -> f64 {
         })
 }
 
-/// Solution for given variances of the lines and Λ.
-fn weighted(
+/// Two starts [-χ; g]: least squares, whose gains are too small, and the best χ for gains of 1.
+fn starts(
     lines: &[Factor],
     selection: &Selection,
     variances: &[f64],
-    lambda: &DVector<f64>,
-) -> Result<Solution, Error> {
+) -> Result<[Vec<f64>; 2], Error> {
     let weights: Vec<f64> = variances.iter().map(|own| 1.0 / own.sqrt()).collect();
     let reduced = Factor::reduced_together(lines, &weights, &selection.columns);
     let (p, n) = (selection.parameters(), selection.drives);
     let triangle = reduced.triangle;
     let corner = triangle.view((p, p), (n, n));
-    let rest = reduced.rhs.rows(p, n).clone_owned();
-    let normal = corner.tr_mul(&corner) - DMatrix::from_diagonal(lambda);
-    // Scaled to a unit diagonal, to be independent of units.
-    let scales = DVector::from_fn(n, |j, _| 1.0 / normal[(j, j)].abs().sqrt());
-    let scaled = DMatrix::from_fn(n, n, |i, j| normal[(i, j)] * scales[i] * scales[j]);
-    let right = corner.tr_mul(&rest).component_mul(&scales);
-    let cholesky = scaled.cholesky().ok_or_else(not_converged)?;
-    let gains = cholesky.solve(&right).component_mul(&scales);
-    let across = triangle.view((0, p), (p, n)) * &gains;
-    let right = reduced.rhs.rows(0, p) - across;
-    let parameters = triangle
-        .view((0, 0), (p, p))
-        .solve_upper_triangular(&right)
-        .ok_or_else(not_converged)?;
-    let values: Vec<f64> = parameters.iter().chain(gains.iter()).copied().collect();
-    if values.iter().any(|value| !value.is_finite()) {
-        return Err(not_converged());
-    }
-    Ok(Solution {
-        values,
-        variances: variances.to_vec(),
-        omegas: vec![DVector::zeros(n); lines.len()],
-        lambda: lambda.clone(),
-        triangle,
-    })
+    let least_squares = corner.solve_upper_triangular(&reduced.rhs.rows(p, n).clone_owned());
+    let with_gains = |gains: DVector<f64>| -> Option<Vec<f64>> {
+        let across = triangle.view((0, p), (p, n)) * &gains;
+        let right = reduced.rhs.rows(0, p) - across;
+        let parameters = triangle
+            .view((0, 0), (p, p))
+            .solve_upper_triangular(&right)?;
+        let values: Vec<f64> = parameters.iter().chain(gains.iter()).copied().collect();
+        values
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(values)
+    };
+    let ones = DVector::from_element(n, 1.0);
+    // Least squares may even change a sign.
+    let biased =
+        least_squares.map_or_else(|| ones.clone(), |gains| gains.map(|g| g.abs().max(1e-3)));
+    let both = with_gains(biased).zip(with_gains(ones));
+    both.map(|(a, b)| [a, b]).ok_or_else(not_converged)
 }
 
 /// Gains by ordinary total least squares, for comparison.
