@@ -227,6 +227,29 @@ fn an_arm_of_sdformat_takes_the_torques_of_that_of_urdf() {
     are_same(&urdf, &torques("arm.sdf", &elsewhere, &[], inputs));
 }
 
+#[test]
+fn motors_at_tendons_take_the_torques_of_mujoco() {
+    let robot = "<mujoco model='row'><compiler angle='radian'/><worldbody>\n\
+        <body><inertial pos='0.05 0 0.01' mass='2' diaginertia='0.1 0.1 0.1'/><joint name='j1' axis='0 1 0' armature='0.1' damping='0.4'/>\n\
+        <body pos='0.3 0 0'><inertial pos='0.05 0 0' mass='3' diaginertia='0.1 0.1 0.1'/><joint name='j2' axis='0 1 0'/>\n\
+        <body pos='0.3 0 0'><inertial pos='0.05 0.1 0' mass='1' diaginertia='0.1 0.1 0.1'/><joint name='j3' axis='1 0 0'/>\n\
+        <body pos='0.2 0 0'><inertial pos='0 0.1 0.1' mass='1' diaginertia='0.1 0.1 0.1'/><joint name='j4' axis='0 0 1'/>\n\
+        </body></body></body></body></worldbody>\n\
+        <tendon><fixed name='t' damping='0.5' armature='0.02'><joint joint='j2' coef='1'/><joint joint='j3' coef='-0.5'/></fixed>\n\
+        <fixed name='s' damping='0.3'><joint joint='j1' coef='2'/></fixed></tendon>\n\
+        <actuator><motor joint='j1' gear='20' armature='0.001'/><motor tendon='t' gear='3' armature='0.1' damping='0.2'/><motor joint='j3'/></actuator></mujoco>";
+    let inputs = ["joints", "joint_velocities", "joint_accelerations"];
+    let found = torques("row.xml", robot, &[], inputs);
+    // `qfrc_inverse` of MuJoCo 4.0 at the first state.
+    let expected = [
+        -26.73818316092,
+        -10.46278052938,
+        2.126432090413,
+        0.2774809902168,
+    ];
+    are_same(&found[..4], &expected);
+}
+
 /// The five-bar robot of `five_bar.sdf`, cut at its tip.
 fn cut_five_bar() -> String {
     let link = |name: &str, mass: f64, [xx, yy]: [f64; 2]| {

@@ -1,4 +1,4 @@
-//! The pages `docs/import/*.md`: the tables of the formats as they are in the code.
+//! The pages `docs/import-*.md`: the tables of the formats as they are in the code.
 //!
 //! `OVERACT_BLESS=1 cargo test -p overact-interchange --lib pages` writes them.
 
@@ -15,26 +15,26 @@ struct Page {
 
 const PAGES: [Page; 4] = [
     Page {
-        file: "mjcf.md",
+        file: "import-mjcf.md",
         title: "Elements of MJCF",
         introduction: "The table covers MuJoCo's XML reference, up to version 4.0.",
         tables: &[("", &MJCF)],
     },
     Page {
-        file: "urdf.md",
+        file: "import-urdf.md",
         title: "Elements of URDF",
         introduction: "The tables cover urdfdom, the notations of loops, the extensions of Gazebo, ROS 2 control, Drake and \
                        MuJoCo, and the YAML file next to a URDF.",
         tables: &[("Elements", &URDF), ("Keys of the YAML file", &YAML)],
     },
     Page {
-        file: "sdf.md",
+        file: "import-sdf.md",
         title: "Elements of SDFormat",
         introduction: "The table covers SDFormat 1.4 to 1.12 and extensions of Drake.",
         tables: &[("", &SDF)],
     },
     Page {
-        file: "par.md",
+        file: "import-par.md",
         title: "Keys of .par files",
         introduction: "The table covers the keys of OpenSYMORO.",
         tables: &[("", &PAR)],
@@ -46,7 +46,7 @@ impl Page {
         let mut text = format!("# {}\n\n", self.title);
         let _ = writeln!(
             text,
-            "How [`overact import`](../import.md) treats each element and attribute. {} Names that are not listed are \
+            "How [`overact import`](import.md) treats each element and attribute. {} Names that are not listed are \
              reported. Contents of ignored elements are ignored, too.",
             self.introduction
         );
@@ -108,19 +108,18 @@ fn treatment(of: Treatment) -> String {
 
 #[test]
 fn pages_of_the_formats_are_those_of_the_tables() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/import");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     let is_blessed = std::env::var_os("OVERACT_BLESS").is_some();
     for page in &PAGES {
         let (path, expected) = (folder.join(page.file), page.text());
         if is_blessed {
-            fs::create_dir_all(&folder).expect("a folder");
             fs::write(&path, expected).expect("a page");
             continue;
         }
         let found = fs::read_to_string(&path).unwrap_or_default();
         assert!(
             found == expected,
-            "docs/import/{} differs from the table; OVERACT_BLESS=1 writes it:\n{expected}",
+            "docs/{} differs from the table; OVERACT_BLESS=1 writes it:\n{expected}",
             page.file
         );
     }
