@@ -204,6 +204,7 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
             "bounds",
             "origins",
             "couplings",
+            "motors",
             "unsupported",
             "assembly",
             "frames",
