@@ -227,6 +227,29 @@ fn an_arm_of_sdformat_takes_the_torques_of_that_of_urdf() {
     are_same(&urdf, &torques("arm.sdf", &elsewhere, &[], inputs));
 }
 
+#[test]
+fn motors_at_tendons_take_the_torques_of_mujoco() {
+    let robot = "<mujoco model='row'><compiler angle='radian'/><worldbody>\n\
+        <body><inertial pos='0.05 0 0.01' mass='2' diaginertia='0.1 0.1 0.1'/><joint name='j1' axis='0 1 0' armature='0.1' damping='0.4'/>\n\
+        <body pos='0.3 0 0'><inertial pos='0.05 0 0' mass='3' diaginertia='0.1 0.1 0.1'/><joint name='j2' axis='0 1 0'/>\n\
+        <body pos='0.3 0 0'><inertial pos='0.05 0.1 0' mass='1' diaginertia='0.1 0.1 0.1'/><joint name='j3' axis='1 0 0'/>\n\
+        <body pos='0.2 0 0'><inertial pos='0 0.1 0.1' mass='1' diaginertia='0.1 0.1 0.1'/><joint name='j4' axis='0 0 1'/>\n\
+        </body></body></body></body></worldbody>\n\
+        <tendon><fixed name='t' damping='0.5' armature='0.02'><joint joint='j2' coef='1'/><joint joint='j3' coef='-0.5'/></fixed>\n\
+        <fixed name='s' damping='0.3'><joint joint='j1' coef='2'/></fixed></tendon>\n\
+        <actuator><motor joint='j1' gear='20' armature='0.001'/><motor tendon='t' gear='3' armature='0.1' damping='0.2'/><motor joint='j3'/></actuator></mujoco>";
+    let inputs = ["joints", "joint_velocities", "joint_accelerations"];
+    let found = torques("row.xml", robot, &[], inputs);
+    // `qfrc_inverse` of MuJoCo 4.0 at the first state.
+    let expected = [
+        -26.73818316092,
+        -10.46278052938,
+        2.126432090413,
+        0.2774809902168,
+    ];
+    are_same(&found[..4], &expected);
+}
+
 /// The five-bar robot of `five_bar.sdf`, cut at its tip.
 fn cut_five_bar() -> String {
     let link = |name: &str, mass: f64, [xx, yy]: [f64; 2]| {
@@ -290,51 +313,115 @@ fn an_imported_loop_in_space_is_identified() {
     }
 }
 
+/// URDF of joints about y in a row; `more` is in the last joint.
+fn row(count: usize, more: &str) -> String {
+    let joint = |at: usize| {
+        let inside = if at == count { more } else { "" };
+        format!(
+            "<link name='l{at}'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>\n\
+             <joint name='j{at}' type='revolute'><parent link='l{}'/><child link='l{at}'/><origin xyz='0.1 0 0'/>\
+             <axis xyz='0 1 0'/>{inside}</joint>",
+            at - 1
+        )
+    };
+    let joints: String = (1..=count).map(joint).collect();
+    format!("<robot name='row'><link name='l0'/>{joints}</robot>")
+}
+
 #[test]
 fn a_description_that_check_refuses_is_not_written() {
+    let crank = "<mujoco><worldbody><body><joint name='crank' axis='0 1 0'/>\
+        <inertial pos='0.1 0 0' mass='1' diaginertia='0.01 0.01 0.01'/>\n\
+        <body name='slider' pos='0.2 0 0'><joint name='rail' type='slide' axis='1 0 0'/>\
+        <inertial pos='0 0 0' mass='1' diaginertia='0.01 0.01 0.01'/></body></body></worldbody>\n\
+        <equality><connect body1='slider' anchor='0 0 0'/></equality>\
+        <actuator><motor joint='crank'/></actuator></mujoco>";
+    let coupled = "<mimic joint='j1'/>";
+    for (text, options, expected) in [
+        (
+            row(101, ""),
+            &[][..],
+            "leg `robot` has 101 independent joints, more than 100",
+        ),
+        // Two motors of one coordinate.
+        (
+            row(2, coupled),
+            &["--actuated", "j1,j2"],
+            "joint `j2`: a coupled joint cannot be actuated",
+        ),
+        (
+            row(2, "<mimic joint='j1' multiplier='0'/>"),
+            &[],
+            "with the factor 0",
+        ),
+        (
+            row(2, "<mimic joint='j1' multiplier='1e-300'/>"),
+            &[],
+            "joint `j2`: the factor",
+        ),
+        (
+            row(2, "<origin rpy='1e200 0 0'/>").replacen("<origin xyz='0.1 0 0'/>", "", 2),
+            &[],
+            "beyond 1e6 rad",
+        ),
+        (
+            row(2, "").replacen("xyz='0.1", "xyz='1e200", 1),
+            &[],
+            "beyond 1e15",
+        ),
+        (
+            row(2, "").replacen("xyz='0 1 0'", "xyz='0 0 0'", 1),
+            &[],
+            "the axis has no direction",
+        ),
+        // The loop leaves no motion.
+        (crank.to_owned(), &[], "robot.xml"),
+    ] {
+        let bench = Bench::new();
+        let name = if text.starts_with("<mujoco") {
+            "robot.xml"
+        } else {
+            "robot.urdf"
+        };
+        bench.write(name, &text);
+        let arguments = ["import", name, "-o", "my.toml"];
+        let said = bench.bad(&[&arguments, options].concat());
+        assert!(said.contains(expected) && said.contains(name), "{said}");
+        assert_eq!(bench.files(), [name]);
+    }
+}
+
+#[test]
+fn axes_of_any_length_are_directions() {
     let bench = Bench::new();
-    let link = |name: &str| {
-        format!(
-            "<link name='{name}'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>"
-        )
+    let import = |axis: &str| {
+        let text = row(2, "").replacen("xyz='0 1 0'", &format!("xyz='{axis}'"), 1);
+        bench.write("robot.urdf", &text);
+        bench.good(&["import", "robot.urdf"])
     };
-    let joint = |at: usize| {
-        let (name, before) = (format!("l{at}"), format!("l{}", at - 1));
-        format!(
-            "{}<joint name='j{at}' type='revolute'><parent link='{before}'/><child link='{name}'/></joint>",
-            link(&name)
-        )
-    };
-    let joints: String = (1..=101).map(joint).collect();
-    bench.write(
-        "long.urdf",
-        &format!("<robot name='long'><link name='l0'/>{joints}</robot>"),
-    );
-    let said = bench.bad(&["import", "long.urdf", "-o", "long.toml"]);
-    assert!(
-        said.contains("OA209") && said.contains("long.urdf"),
-        "{said}"
-    );
-    assert_eq!(bench.files(), ["long.urdf"]);
+    let expected = import("0 1 0");
+    for axis in ["0 1e160 0", "0 1e-3 0"] {
+        assert_eq!(import(axis), expected, "{axis}");
+    }
 }
 
 /// An MJCF hinge with attributes that import does not use.
-const COMPENSATED: &str = "<mujoco model='arm'><compiler angle='radian'/><option timestep='0.001' density='1'/>\n\
-    <worldbody><body name='a' gravcomp='1'><joint name='j' axis='0 1 0'/>\n\
+const INCOMPLETE: &str = "<mujoco model='arm'><compiler angle='radian'/><option timestep='0.001' density='1'/>\n\
+    <worldbody><body name='a'><joint name='j' axis='0 1 0' springyield='0.1'/>\n\
     <inertial pos='0.1 0 0' mass='1' diaginertia='0.01 0.02 0.02'/><strange/><strange/></body></worldbody>\n\
     <actuator><motor joint='j'/></actuator></mujoco>";
 
 #[test]
 fn what_is_not_used_is_reported_on_stderr_and_in_the_head() {
     let bench = Bench::new();
-    bench.write("arm.xml", COMPENSATED);
+    bench.write("arm.xml", INCOMPLETE);
     let outcome = bench.run(&["import", "arm.xml", "-o", "my.toml"]);
     assert_eq!(outcome.code, Some(0), "{}", outcome.err);
     let notes: Vec<&str> = outcome.err.lines().collect();
     assert_eq!(notes.len(), 3, "{notes:?}");
     for (note, start) in notes.iter().zip([
         "note: arm.xml:1: option density: reported: forces of a fluid",
-        "note: arm.xml:2: body gravcomp: reported: its compensation",
+        "note: arm.xml:2: joint springyield: reported: the softness",
         "note: arm.xml:3: strange: reported: not in the specification",
     ]) {
         assert!(note.starts_with(start), "{note}");
@@ -343,7 +430,7 @@ fn what_is_not_used_is_reported_on_stderr_and_in_the_head() {
     assert!(
         bench
             .read("my.toml")
-            .contains("# - line 2: body gravcomp: ")
+            .contains("# - line 2: joint springyield: ")
     );
     let quiet = bench.run(&["-q", "import", "arm.xml"]);
     assert_eq!((quiet.code, quiet.err.as_str()), (Some(0), ""));
@@ -352,7 +439,7 @@ fn what_is_not_used_is_reported_on_stderr_and_in_the_head() {
 #[test]
 fn the_json_of_an_import_lists_what_became_of_the_file() {
     let bench = Bench::new();
-    bench.write("arm.xml", COMPENSATED);
+    bench.write("arm.xml", INCOMPLETE);
     let document = bench.json(&["import", "arm.xml", "-o", "my.toml"]);
     assert_eq!(document["robot"], "arm");
     assert_eq!(document["description"], bench.read("my.toml"));
@@ -369,7 +456,7 @@ fn the_json_of_an_import_lists_what_became_of_the_file() {
     };
     has("honoured", "inertial", Some("mass"));
     has("ignored", "option", Some("timestep"));
-    has("reported", "body", Some("gravcomp"));
+    has("reported", "joint", Some("springyield"));
     has("reported", "strange", None);
     for list in ["misfits", "spins"] {
         assert!(document[list].is_array(), "{list}");

@@ -127,6 +127,17 @@ pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
     files.is_clean().then_some(())
 }
 
+/// Largest angle of a pose, rad; larger ones have lost digits within the turn.
+const LARGEST_ANGLE: f64 = 1e6;
+
+/// Reports angles of a pose that are too large to mean a rotation.
+pub(crate) fn check_angles(files: &Files, place: &Place, angles: &[f64]) {
+    if angles.iter().any(|angle| angle.abs() > LARGEST_ANGLE) {
+        let message = format!("an angle of the pose is beyond {LARGEST_ANGLE:e} rad");
+        files.report(place, message, "give angles within one turn");
+    }
+}
+
 /// Relative size of rounding errors in the inertias of files.
 const ROUNDING: f64 = 0.05;
 

@@ -21,6 +21,32 @@ pub(crate) struct Couplings {
     all: Vec<Coupling>,
 }
 
+impl Coupling {
+    /// The relation Σ factor · joint = `constant` of two joints, of which the first follows.
+    ///
+    /// Terms of one joint are added. `None` if these are not two joints.
+    pub(crate) fn of_sum(terms: &[(usize, f64)], constant: f64, place: &Place) -> Option<Self> {
+        let mut sums: Vec<(usize, f64)> = Vec::new();
+        for &(joint, factor) in terms {
+            match sums.iter_mut().find(|(own, _)| *own == joint) {
+                Some((_, sum)) => *sum += factor,
+                None => sums.push((joint, factor)),
+            }
+        }
+        sums.retain(|(_, factor)| *factor != 0.0);
+        let [(follower, own), (leader, other)] = sums[..] else {
+            return None;
+        };
+        Some(Self {
+            follower,
+            leader,
+            factor: -other / own,
+            offset: constant / own,
+            place: place.clone(),
+        })
+    }
+}
+
 /// Relation of each joint to its leader, if it is coupled.
 type ByFollower = Vec<Option<Coupling>>;
 

@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Largest total size of an import's files, bytes. Mesh files are never opened.
+/// Largest total size of an import's files, bytes. Mesh files have a limit of their own.
 const MOST_BYTES: u64 = 16 << 20;
 /// Largest total number of elements in an import's files.
 const MOST_ELEMENTS: usize = 500_000;

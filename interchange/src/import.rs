@@ -14,6 +14,7 @@ use crate::{
     format::Format,
     mjcf,
     model::Model,
+    motors,
     options::Options,
     origins::Origins,
     par,
@@ -233,6 +234,8 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
             .notes
             .push("The file has no motors: every joint has one here.".to_owned());
     }
+    motors::lead_by_driven_joints(model);
+    motors::resolve(files, model, options.actuated.is_some());
     if model.closures.is_empty() {
         let passive = |joint: &&mut crate::model::Joint| !joint.actuated && joint.follow.is_none();
         let mut names = Vec::new();

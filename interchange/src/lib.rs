@@ -27,6 +27,7 @@ mod geometry;
 mod import;
 mod mjcf;
 mod model;
+mod motors;
 mod options;
 mod origins;
 mod par;

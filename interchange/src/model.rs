@@ -21,6 +21,8 @@ pub(crate) struct Model {
     pub(crate) closures: Vec<Closure>,
     /// Whether the file specifies the actuated joints.
     pub(crate) says_motors: bool,
+    /// Motors with a gear or that turn several joints, as far as the file describes them.
+    pub(crate) motors: Vec<Motor>,
     /// Notes on what was omitted or assumed.
     pub(crate) notes: Vec<String>,
 }
@@ -100,6 +102,21 @@ pub(crate) struct Joint {
     pub(crate) place: Place,
 }
 
+/// A motor that turns a combination of joints.
+#[derive(Debug, Clone)]
+pub(crate) struct Motor {
+    pub(crate) name: String,
+    /// Joints and their factors in the combination.
+    pub(crate) turns: Vec<(usize, f64)>,
+    /// Position of the motor divided by the combination.
+    pub(crate) ratio: f64,
+    /// Rotor inertia of the combination's rate, behind the gear.
+    pub(crate) armature: f64,
+    pub(crate) damping: f64,
+    pub(crate) friction: f64,
+    pub(crate) place: Place,
+}
+
 /// A constraint that closes a loop.
 #[derive(Debug, Clone)]
 pub(crate) struct Closure {
@@ -153,6 +170,7 @@ impl Model {
             joints: Vec::new(),
             closures: Vec::new(),
             says_motors: false,
+            motors: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -184,6 +202,58 @@ impl Model {
             .iter()
             .position(|body| body.joint == Some(joint))
             .unwrap_or(0)
+    }
+}
+
+impl Model {
+    /// Inserts a body; later bodies move up by one.
+    pub(crate) fn insert_body(&mut self, at: usize, body: Body) {
+        let moved = |own: &mut usize| *own += usize::from(*own >= at);
+        for other in &mut self.bodies {
+            moved(&mut other.parent);
+        }
+        for closure in &mut self.closures {
+            match &mut closure.kind {
+                ClosureKind::Point { bodies, .. }
+                | ClosureKind::Weld { bodies, .. }
+                | ClosureKind::Pin { bodies, .. } => bodies.iter_mut().for_each(moved),
+            }
+        }
+        self.bodies.insert(at, body);
+    }
+
+    /// Fixes the body of a joint and removes the joint; later joints move down by one.
+    pub(crate) fn remove_joint(&mut self, at: usize) {
+        let moved = |own: usize| (own != at).then_some(own - usize::from(own > at));
+        for body in &mut self.bodies {
+            body.joint = body.joint.and_then(moved);
+        }
+        self.motors
+            .retain(|motor| motor.turns.iter().all(|(joint, _)| *joint != at));
+        for (joint, _) in self.motors.iter_mut().flat_map(|motor| &mut motor.turns) {
+            *joint -= usize::from(*joint > at);
+        }
+        self.joints.remove(at);
+    }
+}
+
+impl Motor {
+    /// A motor without a name, a gear, torques and joints.
+    pub(crate) fn new(place: Place) -> Self {
+        Self {
+            name: String::new(),
+            turns: Vec::new(),
+            ratio: 1.0,
+            armature: 0.0,
+            damping: 0.0,
+            friction: 0.0,
+            place,
+        }
+    }
+
+    /// Whether its rotor has inertia or friction.
+    pub(crate) fn has_torques(&self) -> bool {
+        [self.armature, self.damping, self.friction] != [0.0; 3]
     }
 }
 

@@ -21,12 +21,13 @@ const TEXT: &str = "text is not used: values are attributes or elements";
 /// Removes and records everything in a tree that the table does not honour.
 pub(crate) fn keep_honoured(files: &Files, table: &Table, root: &mut Element) {
     let index = Index::new(table);
-    if let Some(rule) = index.rule("", &root.name) {
-        keep_inside(files, &index, rule, root);
+    if let Some(rule) = index.rule("", "", &root.name) {
+        keep_inside(files, &index, rule, "", root);
     }
 }
 
-fn keep_inside(files: &Files, index: &Index, rule: &Rule, element: &mut Element) {
+/// Prunes an element inside `outer`.
+fn keep_inside(files: &Files, index: &Index, rule: &Rule, outer: &str, element: &mut Element) {
     let tag = element.name.clone();
     element.attributes.retain(|(name, value, place)| {
         let subject = Subject {
@@ -42,9 +43,9 @@ fn keep_inside(files: &Files, index: &Index, rule: &Rule, element: &mut Element)
     if rule.treatment == Treatment::Honoured && !text.is_empty() && !index.has_text(&tag) {
         files.record(Use::Reported, text_place, &tag, None, TEXT);
     }
-    refuse_repetitions(files, index, element);
+    refuse_repetitions(files, index, outer, element);
     element.children.retain_mut(|child| {
-        let rule = index.rule(&tag, &child.name);
+        let rule = index.rule(outer, &tag, &child.name);
         let subject = Subject {
             element: &child.name,
             attribute: None,
@@ -61,17 +62,17 @@ fn keep_inside(files: &Files, index: &Index, rule: &Rule, element: &mut Element)
         }
         let is_open = [Treatment::Honoured, Treatment::Opaque, Treatment::Container];
         if is_open.contains(&rule.treatment) {
-            keep_inside(files, index, rule, child);
+            keep_inside(files, index, rule, &tag, child);
         }
         is_kept
     });
 }
 
 /// Reports honoured elements that a parent has twice, of which readers would see the first only.
-fn refuse_repetitions(files: &Files, index: &Index, element: &Element) {
+fn refuse_repetitions(files: &Files, index: &Index, outer: &str, element: &Element) {
     let mut seen = BTreeSet::new();
     for child in &element.children {
-        let rule = index.rule(&element.name, &child.name);
+        let rule = index.rule(outer, &element.name, &child.name);
         let is_read = rule.is_some_and(|rule| rule.treatment == Treatment::Honoured);
         if is_read && !index.may_repeat(&child.name) && !seen.insert(child.name.as_str()) {
             let message = format!("<{}> has a second <{}>", element.name, child.name);
@@ -147,7 +148,7 @@ pub(crate) fn record_key(
     value: &str,
     place: &Place,
 ) {
-    let rule = Index::new(table).rule("", format);
+    let rule = Index::new(table).rule("", "", format);
     let subject = Subject {
         element: format,
         attribute: Some(key),

@@ -374,3 +374,16 @@ fn impossible_inertias_are_kept_and_reported_with_their_body() {
         assert_eq!(reported("r.xml", &text), [""; 0]);
     }
 }
+
+#[test]
+fn macros_of_xacro_are_refused_at_the_first_one() {
+    let text = |more: &str| {
+        urdf(URDF_INERTIAL, "", more).replace(
+            "<robot",
+            "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'",
+        )
+    };
+    let said = refused("r.urdf", &text("<xacro:property name='l' value='1'/>"));
+    assert!(said.starts_with("5: this is a xacro file"), "{said}");
+    assert!(read("r.urdf", &text("<!-- <xacro:arm/> -->")).is_ok());
+}

@@ -205,6 +205,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "bounds",
             "origins",
             "couplings",
+            "motors",
             "unsupported",
             "assembly",
             "frames",

@@ -25,11 +25,40 @@ const ENABLE: &str =
 pub(crate) const TABLE: Table = Table {
     rules: RULES,
     // Sections may occur several times; later attributes override earlier ones.
-    repeatable: "include compiler option default worldbody body frame joint freejoint geom site equality actuator \
-                 connect weld tendon flex flexvert flexstrain distance general motor position velocity intvelocity \
+    repeatable: "asset mesh include compiler option default worldbody body frame joint freejoint geom site equality actuator \
+                 connect weld tendon spatial fixed flex flexvert flexstrain distance general motor position velocity intvelocity \
                  orientation pid damper cylinder muscle adhesion dcmotor plugin",
     texts: "",
 };
+
+const MESH: &[(&str, Treatment)] = &[
+    (
+        "name class file vertex face scale refpos refquat inertia builtin",
+        Honoured,
+    ),
+    (
+        "content_type maxhullvert normal texcoord smoothnormal material params",
+        APPEARANCE,
+    ),
+];
+
+const TENDON: &[(&str, Treatment)] = &[
+    (
+        "name class stiffness damping frictionloss armature",
+        Honoured,
+    ),
+    (
+        "springlength springyield",
+        Irrelevant("acts with stiffness, which is rejected"),
+    ),
+    (
+        "actuatorfrclimited actuatorfrcrange limited margin range solimpfriction solimplimit \
+         solreffriction solreflimit",
+        LIMITS,
+    ),
+    ("group user", NAMES),
+    ("material rgba width", APPEARANCE),
+];
 
 const RULES: &[Rule] = &[
     Rule {
@@ -52,17 +81,17 @@ const RULES: &[Rule] = &[
         attributes: &[
             (
                 "angle eulerseq coordinate autolimits inertiafromgeom inertiagrouprange \
-                 settotalmass boundmass boundinertia balanceinertia fusestatic",
+                 settotalmass boundmass boundinertia balanceinertia fusestatic assetdir meshdir strippath",
                 Honoured,
             ),
             (
-                "alignfree assetdir meshdir texturedir strippath discardvisual usethread conflict \
+                "alignfree texturedir discardvisual usethread conflict \
                  passthrough savecanonical savecompiled saveinertial fitaabb convexhull",
                 WRITING,
             ),
             (
                 "exactmeshinertia",
-                Irrelevant("inertias of meshes are not read, which is reported with their bodies"),
+                reported("removed from MJCF: write inertia=\"exact\" at the <mesh>"),
             ),
         ],
     },
@@ -126,8 +155,32 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "mujoco",
-        elements: "visual asset",
+        elements: "visual",
         treatment: APPEARANCE,
+        attributes: &[],
+    },
+    Rule {
+        within: "mujoco",
+        elements: "asset",
+        treatment: Honoured,
+        attributes: &[],
+    },
+    Rule {
+        within: "asset default",
+        elements: "mesh",
+        treatment: Honoured,
+        attributes: MESH,
+    },
+    Rule {
+        within: "asset",
+        elements: "hfield skin texture material",
+        treatment: APPEARANCE,
+        attributes: &[],
+    },
+    Rule {
+        within: "asset",
+        elements: "model",
+        treatment: Irrelevant("acts with `attach`, which is rejected"),
         attributes: &[],
     },
     Rule {
@@ -156,18 +209,33 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "mujoco",
-        elements: "tendon deformable",
+        elements: "tendon",
+        treatment: Honoured,
+        attributes: &[],
+    },
+    Rule {
+        within: "mujoco",
+        elements: "deformable",
         treatment: Container,
         attributes: &[],
     },
     Rule {
         within: "tendon",
         elements: "spatial fixed",
-        treatment: rejected(
-            "forces and couplings of tendons are not supported",
-            "remove the tendon if no force of it acts on the robot; springs of joints can be written in the TOML",
-        ),
+        treatment: Honoured,
+        attributes: TENDON,
+    },
+    Rule {
+        within: "spatial",
+        elements: "site geom pulley",
+        treatment: Irrelevant("path of a tendon, which is rejected if it exerts forces"),
         attributes: &[],
+    },
+    Rule {
+        within: "fixed",
+        elements: "joint",
+        treatment: Honoured,
+        attributes: &[("joint coef", Honoured)],
     },
     Rule {
         within: "deformable",
@@ -189,15 +257,15 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "default",
-        elements: "mesh texture material camera light pair",
+        elements: "texture material camera light pair",
         treatment: APPEARANCE,
         attributes: &[],
     },
     Rule {
         within: "default",
         elements: "tendon",
-        treatment: Irrelevant("files with tendons are rejected"),
-        attributes: &[],
+        treatment: Honoured,
+        attributes: TENDON,
     },
     Rule {
         within: "default",
@@ -221,13 +289,7 @@ const RULES: &[Rule] = &[
         attributes: &[
             ("name childclass", Honoured),
             POSE,
-            (
-                "gravcomp",
-                unless(
-                    "0",
-                    "its compensation of the weight is missing from the model",
-                ),
-            ),
+            ("gravcomp", Honoured),
             (
                 "mocap",
                 unless(
@@ -264,10 +326,7 @@ const RULES: &[Rule] = &[
                 "springyield",
                 unless("0", "the softness of the spring is missing from the model"),
             ),
-            (
-                "actuatorgravcomp",
-                Irrelevant("acts with gravcomp, which is reported"),
-            ),
+            ("actuatorgravcomp", Honoured),
             (
                 "actuatorfrclimited actuatorfrcrange margin solimpfriction solimplimit \
                  solreffriction solreflimit",
@@ -328,7 +387,7 @@ const RULES: &[Rule] = &[
         attributes: &[],
     },
     Rule {
-        within: "body frame geom",
+        within: "body frame geom mesh",
         elements: "plugin",
         treatment: reported("forces and shapes of plugins are missing from the model"),
         attributes: &[],
@@ -382,14 +441,24 @@ const RULES: &[Rule] = &[
         ],
     },
     Rule {
+        within: "equality",
+        elements: "tendon",
+        treatment: Honoured,
+        attributes: &[
+            ("class active tendon1 tendon2 polycoef", Honoured),
+            ("name", NAMES),
+            ("solref solimp", SOFTNESS),
+        ],
+    },
+    Rule {
         // Rejected by name if active.
         within: "equality",
-        elements: "tendon flex flexvert flexstrain distance",
+        elements: "flex flexvert flexstrain distance",
         treatment: Honoured,
         attributes: &[
             ("class active", Honoured),
             (
-                "name tendon1 tendon2 polycoef flex cell geom1 geom2 distance solref solimp",
+                "name flex cell geom1 geom2 distance solref solimp",
                 SOFTNESS,
             ),
         ],
@@ -401,13 +470,13 @@ const RULES: &[Rule] = &[
         treatment: Honoured,
         attributes: &[
             (
-                "name class joint jointinparent gear armature damping",
+                "name class joint jointinparent tendon gear armature damping",
                 Honoured,
             ),
             (
-                "tendon site refsite body slidersite cranksite",
+                "site refsite body slidersite cranksite",
                 rejected(
-                    "actuators of tendons, sites and bodies are not supported",
+                    "actuators of sites and bodies are not supported",
                     ON_A_JOINT,
                 ),
             ),

@@ -15,7 +15,8 @@ pub(crate) const TABLE: Table = Table {
     repeatable: "world physics model include frame link joint",
     texts: "gravity static pose uri name placement_frame mass ixx ixy ixz iyy iyz izz parent child gearbox_ratio \
             gearbox_reference_body thread_pitch screw_thread_pitch xyz use_parent_model_frame damping friction \
-            spring_stiffness spring_reference lower upper velocity multiplier offset reference",
+            spring_stiffness spring_reference lower upper velocity multiplier offset reference \
+            rotor_inertia gear_ratio",
 };
 
 /// An element whose text is read.
@@ -208,7 +209,21 @@ const RULES: &[Rule] = &[
         within: "axis axis2",
         elements: "mimic",
         treatment: Honoured,
-        attributes: &[("joint axis", Honoured)],
+        // Factor and offset are attributes in `<drake:mimic>`.
+        attributes: &[("joint axis multiplier offset", Honoured)],
     },
+    // Drake.
+    text("joint", "rotor_inertia gear_ratio"),
+    whole("joint", "controller_gains", SIMULATION),
+    whole(
+        "model world",
+        "ball_constraint linear_bushing_rpy distance_constraint tendon_constraint coupler_constraint \
+         weld_constraint",
+        rejected(
+            "constraints of Drake close loops, and are not read from SDFormat",
+            "write the loop as a <joint> of type ball, revolute or fixed",
+        ),
+    ),
+    whole("model world", "collision_filter_group", CONTACT),
     text("mimic", "multiplier offset reference"),
 ];

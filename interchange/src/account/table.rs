@@ -30,6 +30,8 @@ pub(crate) enum Treatment {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rule {
     /// Names of possible parent elements, separated by blanks; empty for any parent.
+    ///
+    /// `a/b` is a parent `b` inside `a`; its children are those of such rules only.
     pub(crate) within: &'static str,
     /// Names of the elements, separated by blanks.
     pub(crate) elements: &'static str,
@@ -53,12 +55,16 @@ pub(crate) struct Index {
     repeatable: BTreeSet<&'static str>,
     texts: BTreeSet<&'static str>,
     by_parent: BTreeMap<(&'static str, &'static str), &'static Rule>,
+    /// Parents that are given with the element around them.
+    paths: BTreeSet<&'static str>,
     by_name: BTreeMap<&'static str, &'static Rule>,
 }
 
 impl Index {
     pub(crate) fn new(table: &Table) -> Self {
         let (mut by_parent, mut by_name) = (BTreeMap::new(), BTreeMap::new());
+        let parents = table.rules.iter();
+        let parents = parents.flat_map(|rule| rule.within.split_whitespace());
         for rule in table.rules {
             for name in rule.elements.split_whitespace() {
                 if rule.within.is_empty() {
@@ -73,6 +79,7 @@ impl Index {
             repeatable: table.repeatable.split_whitespace().collect(),
             texts: table.texts.split_whitespace().collect(),
             by_parent,
+            paths: parents.filter(|parent| parent.contains('/')).collect(),
             by_name,
         }
     }
@@ -87,9 +94,15 @@ impl Index {
         self.texts.contains(name)
     }
 
-    /// Rule of an element in a parent; `None` if the element is unknown.
-    pub(crate) fn rule(&self, parent: &str, name: &str) -> Option<&'static Rule> {
-        let found = self.by_parent.get(&(parent, name));
+    /// Rule of an element in a parent, which is in `outer`; `None` if the element is unknown.
+    pub(crate) fn rule(&self, outer: &str, parent: &str, name: &str) -> Option<&'static Rule> {
+        let path = format!("{outer}/{parent}");
+        let place = if self.paths.contains(path.as_str()) {
+            path.as_str()
+        } else {
+            parent
+        };
+        let found = self.by_parent.get(&(place, name));
         found.or_else(|| self.by_name.get(name)).copied()
     }
 }

@@ -16,8 +16,8 @@ const POSE: (&str, Treatment) = ("xyz rpy quat_xyzw", Honoured);
 pub(crate) const TABLE: Table = Table {
     rules: RULES,
     repeatable: "link joint loop constraint loop_joint coupling ball_constraint transmission ros2_control actuator \
-                 mechanicalReduction mechanical_reduction",
-    texts: "type plugin mechanicalReduction mechanical_reduction",
+                 mechanicalReduction mechanical_reduction gazebo",
+    texts: "type plugin mechanicalReduction mechanical_reduction role parent child pose xyz",
 };
 
 const RULES: &[Rule] = &[
@@ -220,13 +220,13 @@ const RULES: &[Rule] = &[
         within: "transmission",
         elements: "joint",
         treatment: Honoured,
-        attributes: &[("name", Honoured), ("role", CONTROL)],
+        attributes: &[("name role", Honoured)],
     },
     Rule {
         within: "transmission",
         elements: "actuator",
         treatment: Honoured,
-        attributes: &[("name role", CONTROL)],
+        attributes: &[("name role", Honoured)],
     },
     Rule {
         within: "transmission joint actuator",
@@ -236,8 +236,14 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "transmission joint actuator",
-        elements: "hardwareInterface role motorTorqueConstant encoder_resolution controller_gains",
+        elements: "hardwareInterface motorTorqueConstant encoder_resolution controller_gains",
         treatment: CONTROL,
+        attributes: &[],
+    },
+    Rule {
+        within: "joint actuator",
+        elements: "role",
+        treatment: Honoured,
         attributes: &[],
     },
     Rule {
@@ -260,14 +266,8 @@ const RULES: &[Rule] = &[
     Rule {
         within: "actuator",
         elements: "rotor_inertia gear_ratio",
-        treatment: Container,
-        attributes: &[(
-            "value",
-            unless(
-                "0",
-                "the inertia of the rotor is missing from the model: `ia` of the joint in the TOML",
-            ),
-        )],
+        treatment: Honoured,
+        attributes: &[("value", Honoured)],
     },
     Rule {
         within: "robot",
@@ -292,17 +292,93 @@ const RULES: &[Rule] = &[
     Rule {
         within: "robot",
         elements: "gazebo",
-        treatment: Container,
+        treatment: Honoured,
         attributes: &[("reference", SIMULATION)],
     },
+    // Joints of <gazebo> are in SDFormat and close loops.
     Rule {
         within: "gazebo",
         elements: "joint",
-        treatment: rejected(
-            "joints of <gazebo> close loops or add bodies, and are not read from URDF",
-            "write the loop as <loop> with <predecessor link=\"…\"> and <successor link=\"…\">, or convert the file by \
-             `gz sdf -p FILE` and import the SDFormat",
+        treatment: Honoured,
+        attributes: &[("name type", Honoured)],
+    },
+    Rule {
+        within: "gazebo/joint",
+        elements: "parent child",
+        treatment: Honoured,
+        attributes: &[],
+    },
+    Rule {
+        within: "gazebo/joint",
+        elements: "pose",
+        treatment: Honoured,
+        attributes: &[(
+            "relative_to frame degrees rotation_format",
+            rejected(
+                "only poses relative to the child link, with roll, pitch and yaw in rad, are supported",
+                "write the pose in the frame of the child link",
+            ),
+        )],
+    },
+    Rule {
+        within: "gazebo/joint",
+        elements: "axis",
+        treatment: Honoured,
+        attributes: &[],
+    },
+    Rule {
+        within: "joint/axis",
+        elements: "xyz",
+        treatment: Honoured,
+        attributes: &[(
+            "expressed_in",
+            rejected(
+                "only axes in the frame of the joint are supported",
+                "write the axis in the frame of the joint",
+            ),
+        )],
+    },
+    Rule {
+        within: "joint/axis",
+        elements: "use_parent_model_frame",
+        treatment: Treatment::Rejected {
+            neutral: "false False 0",
+            reason: "only axes in the frame of the joint are supported",
+            help: "write the axis in the frame of the joint",
+        },
+        attributes: &[],
+    },
+    Rule {
+        within: "joint/axis",
+        elements: "limit initial_position",
+        treatment: Irrelevant("limits and settings of a joint that closes a loop"),
+        attributes: &[],
+    },
+    Rule {
+        within: "joint/axis",
+        elements: "dynamics",
+        treatment: Container,
+        attributes: &[],
+    },
+    Rule {
+        within: "axis/dynamics",
+        elements: "damping friction spring_stiffness",
+        treatment: unless(
+            "0",
+            "torques of joints that close a loop are missing from the model",
         ),
+        attributes: &[],
+    },
+    Rule {
+        within: "axis/dynamics",
+        elements: "spring_reference",
+        treatment: SIMULATION,
+        attributes: &[],
+    },
+    Rule {
+        within: "gazebo/joint",
+        elements: "physics sensor",
+        treatment: SIMULATION,
         attributes: &[],
     },
     Rule {

@@ -3,6 +3,7 @@
 type File = (&'static str, String);
 
 pub(super) fn mjcf() -> Vec<File> {
+    let pulling = "<motor tendon='d'/>";
     let actuators: String = [
         "general",
         "motor",
@@ -26,7 +27,7 @@ pub(super) fn mjcf() -> Vec<File> {
         )
     })
     .collect();
-    let passive: String = ["tendon", "flex", "flexvert", "flexstrain", "distance"]
+    let passive: String = ["flex", "flexvert", "flexstrain", "distance"]
         .iter()
         .map(|tag| format!("<{tag} class='main' active='false'/>"))
         .collect();
@@ -34,15 +35,18 @@ pub(super) fn mjcf() -> Vec<File> {
         "<mujoco model='all'>
         <compiler angle='radian' eulerseq='xyz' coordinate='local' autolimits='true' inertiafromgeom='auto'
           inertiagrouprange='0 5' settotalmass='4' boundmass='0.1' boundinertia='1e-4' balanceinertia='true'
-          fusestatic='false'/>
+          fusestatic='false' assetdir='a' meshdir='b' strippath='true'/>
         <option gravity='0 0 -9'><flag gravity='enable'/></option>
         <default><joint damping='0.1'/><default class='inner'><geom density='500'/></default></default>
+        <asset><mesh name='x' class='main' file='x.obj' scale='1 1 1' refpos='0 0 0' refquat='1 0 0 0' inertia='exact'/>
+          <mesh name='y' vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 2 1 0 1 3 1 2 3 0 3 2'/><mesh builtin='sphere'/></asset>
         <include file='included.xml'/>
-        <worldbody><body name='a' childclass='inner' euler='0 0 0.1'>
+        <worldbody><body name='a' childclass='inner' euler='0 0 0.1' gravcomp='0'>
           <joint name='j1' class='main' type='hinge' pos='0 0 0' axis='0 1 0' range='-1 1' limited='true' ref='0'
-            springref='0.1' stiffness='1' damping='0.1' frictionloss='0.1' armature='0.1' springdamper='0.1 1'/>
+            springref='0.1' stiffness='1' damping='0.1' frictionloss='0.1' armature='0.1' springdamper='0.1 1'
+            actuatorgravcomp='false'/>
           <frame pos='0.1 0 0'><geom type='box' size='0.1 0.1 0.1' mass='1' group='1'/></frame>
-          <geom type='capsule' fromto='0 0 0 0 0 1' size='0.1' shellinertia='false'/><site name='s' class='main'/>
+          <geom type='capsule' fromto='0 0 0 0 0 1' size='0.1' shellinertia='false'/><geom type='mesh' mesh='y'/><site name='s' class='main'/>
           <body name='b'><joint name='j2'/><inertial pos='0 0 0' mass='1' fullinertia='1 1 1 0 0 0'/>
             <body name='c'><joint name='j3'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><site name='t'/></body>
           </body>
@@ -53,8 +57,11 @@ pub(super) fn mjcf() -> Vec<File> {
           <weld name='w' class='main' active='true' site1='s' site2='t'/>
           <weld body1='a' body2='b' anchor='0 0 0' relpose='0 0 0 1 0 0 0'/>
           <joint name='e' class='main' joint1='j3' joint2='j2' polycoef='0 1'/>{passive}
+          <tendon class='main' active='true' tendon1='d' tendon2='e' polycoef='0 1'/>
         </equality>
-        <actuator>{actuators}</actuator></mujoco>"
+        <tendon><fixed name='d' class='main' stiffness='0' damping='0' frictionloss='0' armature='0'><joint joint='j2'
+          coef='1'/></fixed><fixed name='e'><joint joint='j1' coef='2'/></fixed><spatial name='h'/></tendon>
+        <actuator>{actuators}{pulling}</actuator></mujoco>"
     );
     let included = "<mujocoinclude><option gravity='0 0 -9.81'/></mujocoinclude>";
     vec![("robot.xml", robot), ("included.xml", included.to_owned())]
@@ -95,6 +102,12 @@ pub(super) fn urdf() -> Vec<File> {
            </transmission>
          <ros2_control name='r'><transmission name='v'><plugin>transmission_interface/SimpleTransmission</plugin>
            <joint name='j4'><mechanical_reduction>2</mechanical_reduction></joint></transmission></ros2_control>
+         <transmission name='w'><type>transmission_interface/DifferentialTransmission</type>
+           <actuator name='x'><role>actuator1</role><drake:rotor_inertia value='0.1'/><drake:gear_ratio value='9'/></actuator>
+           <actuator name='y' role='actuator2'/><joint name='j1'><role>joint1</role></joint><joint name='j4' role='joint2'/>
+           </transmission>
+         <gazebo><joint name='q' type='revolute'><parent>a</parent><child>d</child><pose>0 0 0 0 0 0</pose>
+           <axis><xyz>0 0 1</xyz></axis></joint></gazebo>
          </robot>"
             .to_owned(),
     ];
@@ -122,9 +135,10 @@ pub(super) fn sdf() -> Vec<File> {
           <gearbox_reference_body>a</gearbox_reference_body><axis><xyz>0 0 1</xyz></axis>
           <axis2><xyz>0 0 1</xyz></axis2></joint>
         <joint name='s' type='screw'><parent>a</parent><child>d</child>
+          <rotor_inertia>0</rotor_inertia><gear_ratio>1</gear_ratio>
           <screw_thread_pitch>0.01</screw_thread_pitch><axis><xyz>0 0 1</xyz></axis></joint>
         <joint name='r' type='screw'><parent>a</parent><child>e</child><thread_pitch>-100</thread_pitch><axis>
-          <xyz>0 0 1</xyz><mimic joint='k' axis='axis'><multiplier>2</multiplier><offset>0</offset>
+          <xyz>0 0 1</xyz><mimic joint='k' axis='axis' multiplier='1' offset='0'><multiplier>2</multiplier><offset>0</offset>
           <reference>0</reference></mimic></axis></joint>
         <include merge='false'><uri>included.sdf</uri><name>tool</name><pose/><placement_frame>tip</placement_frame>
           <static>false</static></include>

@@ -4,34 +4,59 @@ use super::{
     Reader,
     bodies::first,
     defaults::{ACTUATOR, MAIN},
+    tendons::Tendons,
 };
 use crate::{
-    model::{Kind, Model},
+    model::{Kind, Model, Motor},
     xml::Element,
 };
 
-pub(super) fn read(reader: &Reader<'_>, root: &Element, model: &mut Model) {
+pub(super) fn read(reader: &Reader<'_>, root: &Element, tendons: &mut Tendons, model: &mut Model) {
     for section in root.all("actuator") {
         for element in &section.children {
             model.says_motors = true;
             let whole = reader
                 .defaults
                 .apply_as(ACTUATOR, reader.files, element, MAIN);
-            actuator(reader, &whole, model);
+            actuator(reader, &whole, tendons, model);
         }
     }
 }
 
-fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
+fn actuator(reader: &Reader<'_>, element: &Element, tendons: &mut Tendons, model: &mut Model) {
     let files = reader.files;
     let name = element.get("name").unwrap_or(&element.name).to_owned();
+    let gear = element
+        .list(files, "gear")
+        .and_then(|gear| gear.first().copied())
+        .unwrap_or(1.0);
+    // Rotor inertia and damping of the actuator, at the joint.
+    let armature = gear * gear * element.number(files, "armature", 0.0);
+    let damping = gear * gear * first(files, element, "damping");
+    if let Some((tendon, place)) = element.attribute("tendon") {
+        let Some(tendon) = tendons.find(files, tendon, place) else {
+            return;
+        };
+        let Some(joints) = tendon.joints.clone() else {
+            let message =
+                format!("the actuator `{name}` pulls at a spatial tendon, which is not supported");
+            files.report(place, message, "let it act on a joint or a fixed tendon");
+            return;
+        };
+        let mut motor = tendon.motor(&joints, &element.place);
+        motor.armature += armature;
+        motor.damping += damping;
+        (motor.name, motor.ratio) = (name, gear);
+        model.motors.push(motor);
+        return;
+    }
     let Some((joint, place)) = element
         .attribute("joint")
         .or_else(|| element.attribute("jointinparent"))
     else {
         // The table rejects other transmission targets.
         if files.is_clean() {
-            let message = format!("the actuator `{name}` has no joint");
+            let message = format!("the actuator `{name}` has neither joint nor tendon");
             files.report(&element.place, message, "write joint=\"…\"");
         }
         return;
@@ -52,16 +77,17 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         return;
     }
     own.actuated = true;
-    let gear = element
-        .list(files, "gear")
-        .and_then(|gear| gear.first().copied())
-        .unwrap_or(1.0);
-    // Rotor inertia and damping of the actuator, at the joint.
-    own.armature += gear * gear * element.number(files, "armature", 0.0);
-    own.damping += gear * gear * first(files, element, "damping");
+    own.armature += armature;
+    own.damping += damping;
     if gear != 1.0 {
         own.drive = format!(
             "Actuator `{name}` with gear {gear}: the joint's torque is {gear} times its force, `torque_gain` of [data]"
         );
     }
+    model.motors.push(Motor {
+        name,
+        turns: vec![(at, 1.0)],
+        ratio: gear,
+        ..Motor::new(element.place.clone())
+    });
 }

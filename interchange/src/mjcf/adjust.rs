@@ -91,7 +91,7 @@ const NOTHING: Inertia = Inertia {
 };
 
 /// Bodies that a joint moves.
-fn moving(model: &Model) -> Vec<bool> {
+pub(super) fn moving(model: &Model) -> Vec<bool> {
     let mut moving = vec![false; model.bodies.len()];
     for (at, body) in model.bodies.iter().enumerate().skip(1) {
         moving[at] = body.joint.is_some() || moving[body.parent];

@@ -1,6 +1,9 @@
 //! Bodies, their joints and inertias.
 
-use super::{BOOLEAN_OR_AUTO, Reader, Sites, adjust::SpringDamper, defaults::MAIN, inertia};
+use super::{
+    BOOLEAN_OR_AUTO, Reader, Sites, adjust::SpringDamper, compensation::Compensation,
+    defaults::MAIN, inertia,
+};
 use crate::{
     files::Files,
     geometry::exact,
@@ -10,14 +13,15 @@ use crate::{
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeSet;
 
-/// Reads all bodies; returns the springs that depend on inertias.
+/// Reads all bodies; returns what depends on inertias.
 pub(super) fn read(
     reader: &Reader<'_>,
     root: &Element,
     model: &mut Model,
     sites: &mut Sites,
-) -> Vec<SpringDamper> {
+) -> (Vec<SpringDamper>, Compensation) {
     let mut springs = Vec::new();
+    let mut compensation = Compensation::default();
     for world in root.all("worldbody") {
         let class = world.get("childclass").unwrap_or(MAIN).to_owned();
         let mut tree = Tree {
@@ -25,10 +29,11 @@ pub(super) fn read(
             model: &mut *model,
             sites: &mut *sites,
             springs: &mut springs,
+            compensation: &mut compensation,
         };
         inside(reader, world, 0, &Pose::identity(), &class, &mut tree);
     }
-    springs
+    (springs, compensation)
 }
 
 /// Output of the body reader.
@@ -38,6 +43,7 @@ struct Tree<'t> {
     model: &'t mut Model,
     sites: &'t mut Sites,
     springs: &'t mut Vec<SpringDamper>,
+    compensation: &'t mut Compensation,
 }
 
 /// Reads the bodies, sites and frames in a body; `offset` is the pose of the enclosing frames.
@@ -93,6 +99,9 @@ fn body(
     let mut parent = parent;
     let count = joints.len();
     for (at, (own, offset)) in joints.iter().enumerate() {
+        if own.name == "joint" {
+            tree.compensation.joint(files, own);
+        }
         let Some(mut joint) = joint(reader, own, model) else {
             continue;
         };
@@ -135,6 +144,7 @@ fn body(
         });
     }
     let own = model.bodies.len() - 1;
+    tree.compensation.body(files, element, own);
     let (inertia, is_unknown) = inertia::read(reader, element, class);
     model.bodies[own].inertia = inertia;
     model.bodies[own].has_unknown_inertia = is_unknown;

@@ -3,6 +3,7 @@
 use super::{
     BOOLEAN, Reader, Sites,
     defaults::{EQUALITY, MAIN},
+    tendons::Tendons,
 };
 use crate::{
     account::Use,
@@ -15,7 +16,13 @@ use crate::{
 use nalgebra::{Point3, Vector3};
 
 /// Reads `<equality>`: closures into the model, couplings into its joints.
-pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &mut Model) {
+pub(super) fn read(
+    reader: &Reader<'_>,
+    root: &Element,
+    sites: &Sites,
+    tendons: &mut Tendons,
+    model: &mut Model,
+) {
     // A constraint gives the frame on one body. The other follows from the poses of the file.
     let poses = Motion::new(model).start().poses;
     let mut couplings = Couplings::default();
@@ -40,12 +47,16 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &m
                     }
                 }
                 "joint" => read_coupling(reader, &whole, model, &mut couplings),
+                "tendon" => {
+                    let found = of_tendons(reader, &whole, tendons, model);
+                    found.into_iter().for_each(|own| couplings.add(own));
+                }
                 other => {
                     let message = format!("the equality <{other}> is not supported");
                     reader.files.report(
                         &whole.place,
                         message,
-                        "supported are connect, weld and joint",
+                        "supported are connect, weld, joint and tendon",
                     );
                 }
             }
@@ -160,7 +171,6 @@ fn read_coupling(reader: &Reader<'_>, element: &Element, model: &Model, coupling
         }
         found
     };
-    let coefficients = element.list(files, "polycoef").unwrap_or_default();
     let (Some(own), Some(leader)) = (joint("joint1"), joint("joint2")) else {
         if element.get("joint2").is_none() {
             let help = "fix the body: remove the joint";
@@ -172,18 +182,9 @@ fn read_coupling(reader: &Reader<'_>, element: &Element, model: &Model, coupling
         }
         return;
     };
-    if coefficients.iter().skip(2).any(|c| *c != 0.0) {
-        let help = "a coupling must be linear: polycoef=\"c0 c1 0 0 0\"";
-        files.report(
-            &element.place,
-            "a nonlinear coupling of joints is not supported",
-            help,
-        );
+    let Some([c0, factor]) = linear(reader, element) else {
         return;
-    }
-    // Missing coefficients have MuJoCo's defaults 0 1 0 0 0.
-    let coefficient = |at: usize, default| coefficients.get(at).copied().unwrap_or(default);
-    let (c0, factor) = (coefficient(0, 0.0), coefficient(1, 1.0));
+    };
     // MuJoCo couples displacements from the reference positions (`ref`) of both joints.
     let offset = c0 + model.joints[own].reference - factor * model.joints[leader].reference;
     couplings.add(Coupling {
@@ -193,4 +194,62 @@ fn read_coupling(reader: &Reader<'_>, element: &Element, model: &Model, coupling
         offset,
         place: element.place.clone(),
     });
+}
+
+/// Constant and factor of `polycoef`; `None` after an error.
+fn linear(reader: &Reader<'_>, element: &Element) -> Option<[f64; 2]> {
+    let coefficients = element.list(reader.files, "polycoef").unwrap_or_default();
+    if coefficients.iter().skip(2).any(|c| *c != 0.0) {
+        let message = "a nonlinear coupling of joints is not supported";
+        let help = "a coupling must be linear: polycoef=\"c0 c1 0 0 0\"";
+        reader.files.report(&element.place, message, help);
+        return None;
+    }
+    // Missing coefficients have MuJoCo's defaults 0 1 0 0 0.
+    let coefficient = |at: usize, default| coefficients.get(at).copied().unwrap_or(default);
+    Some([coefficient(0, 0.0), coefficient(1, 1.0)])
+}
+
+/// Coupling of two joints by the lengths of fixed tendons; `None` after an error.
+///
+/// MuJoCo couples changes of length from the reference positions (`ref`) of the joints:
+/// l1 = c0 + c1 l2.
+fn of_tendons(
+    reader: &Reader<'_>,
+    element: &Element,
+    tendons: &mut Tendons,
+    model: &Model,
+) -> Option<Coupling> {
+    let files = reader.files;
+    let mut joints = |key: &str| {
+        let (name, place) = element.attribute(key)?;
+        let tendon = tendons.find(files, name, place)?;
+        if tendon.joints.is_none() {
+            let message = format!("`{name}` is a spatial tendon, whose length cannot be coupled");
+            files.report(place, message, "couple fixed tendons, or joints");
+        }
+        tendon.joints.clone()
+    };
+    element.required(files, "tendon1")?;
+    let first = joints("tendon1")?;
+    let second = match element.get("tendon2") {
+        Some(_) => joints("tendon2")?,
+        None => Vec::new(),
+    };
+    let [c0, factor] = linear(reader, element)?;
+    let second = second
+        .into_iter()
+        .map(|(joint, own)| (joint, -factor * own));
+    let terms: Vec<(usize, f64)> = first.into_iter().chain(second).collect();
+    let references = terms
+        .iter()
+        .map(|(joint, own)| own * model.joints[*joint].reference);
+    let constant = c0 + references.sum::<f64>();
+    let found = Coupling::of_sum(&terms, constant, &element.place);
+    if found.is_none() {
+        let message = "an equality of tendons that does not couple two joints is not supported";
+        let help = "couple two joints, or fix a body: remove its joint";
+        files.report(&element.place, message, help);
+    }
+    found
 }

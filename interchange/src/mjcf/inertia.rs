@@ -100,13 +100,12 @@ fn of_geoms(
                 match geom(reader, &whole) {
                     Shape::Body(own) => (Some(own.transformed(offset)), false),
                     Shape::Empty => (None, false),
-                    Shape::Unknown => {
-                        let reason =
-                            "the inertia of this shape is not computed: the body's is unknown here";
+                    Shape::Unknown(reason) => {
+                        let reason = format!("{reason}: the body's mass is unknown here");
                         let place = &child.place;
                         reader
                             .files
-                            .record(Use::Reported, place, "geom", None, reason);
+                            .record(Use::Reported, place, "geom", None, &reason);
                         (None, true)
                     }
                 }
@@ -131,7 +130,8 @@ fn of_geoms(
 enum Shape {
     Body(Inertia),
     Empty,
-    Unknown,
+    /// With the reason.
+    Unknown(String),
 }
 
 fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
@@ -155,10 +155,26 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
     if group < low || group > high || kind == "plane" || mass.unwrap_or(density) == 0.0 {
         return Shape::Empty;
     }
+    if kind == "mesh" {
+        let name = geom.get("mesh").unwrap_or_default();
+        return match reader.meshes.get(name) {
+            Some(Ok(mesh)) => {
+                let mass = mass.unwrap_or(density * mesh.size);
+                let own = Inertia {
+                    mass,
+                    centre: Point3::from(mesh.centre),
+                    tensor: mesh.inertia * (mass / mesh.size),
+                };
+                Shape::Body(own.transformed(&reader.compiler.frame(files, geom)))
+            }
+            Some(Err(reason)) => Shape::Unknown(format!("mesh `{name}`: {reason}")),
+            None => Shape::Unknown(format!("there is no mesh `{name}`")),
+        };
+    }
     let is_solid = geom.keyword(files, "shellinertia", BOOLEAN) != Some("true");
     let solid = solid(reader, geom, kind).filter(|_| is_solid && geom.get("mesh").is_none());
     let Some((volume, unit)) = solid else {
-        return Shape::Unknown;
+        return Shape::Unknown("the inertia of this shape is not computed".to_owned());
     };
     let mass = mass.unwrap_or(density * volume);
     let frame = match Segment::of_geom(files, geom) {

@@ -3,10 +3,13 @@
 mod actuators;
 mod adjust;
 mod bodies;
+mod compensation;
 mod defaults;
 mod equality;
 mod include;
 mod inertia;
+mod mesh;
+mod tendons;
 #[cfg(test)]
 mod tests;
 
@@ -22,18 +25,21 @@ use adjust::Adjustments;
 use defaults::Defaults;
 use nalgebra::{Rotation3, Vector3};
 use std::collections::BTreeMap;
+use tendons::Tendons;
 
 /// Reads a robot; errors are recorded in `files`.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
     let root = include::whole(files, file)?;
     bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("model").unwrap_or("robot"));
-    let reader = Reader {
+    let mut reader = Reader {
         files,
         compiler: Compiler::new(files, &root),
         defaults: Defaults::new(files, &root)?,
+        meshes: mesh::Meshes::new(),
         options,
     };
+    reader.meshes = mesh::read(&reader, &root, &files.folder(file));
     let mut has_gravity = true;
     for option in root.all("option") {
         if let Some(gravity) = option.numbers(files, "gravity") {
@@ -49,14 +55,17 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         model.gravity = [0.0; 3];
     }
     let mut sites = BTreeMap::new();
-    let springs = bodies::read(&reader, &root, &mut model, &mut sites);
+    let (springs, compensation) = bodies::read(&reader, &root, &mut model, &mut sites);
     if !files.is_clean() {
         return None;
     }
-    equality::read(&reader, &root, &sites, &mut model);
-    actuators::read(&reader, &root, &mut model);
+    let mut tendons = Tendons::read(&reader, &root, &model);
+    equality::read(&reader, &root, &sites, &mut tendons, &mut model);
+    actuators::read(&reader, &root, &mut tendons, &mut model);
+    tendons.finish(files, &mut model);
     // Springs given by time constants need all inertias, including rotor inertias.
     adjust::inertias(files, &root, &reader.compiler, &mut model);
+    compensation.apply(files, &mut model);
     adjust::springs(files, &mut model, &springs);
     files.is_clean().then_some(model)
 }
@@ -71,6 +80,7 @@ struct Reader<'r> {
     files: &'r Files,
     compiler: Compiler,
     defaults: Defaults,
+    meshes: mesh::Meshes,
     options: &'r Options,
 }
 
@@ -89,6 +99,10 @@ struct Compiler {
     adjustments: Adjustments,
     /// Whether a joint with a range is limited by default.
     limits_ranges: bool,
+    /// Folder of mesh files, relative to that of the model.
+    mesh_folder: String,
+    /// Whether only the last part of the path of a mesh file counts.
+    strips_paths: bool,
 }
 
 impl Compiler {
@@ -100,6 +114,8 @@ impl Compiler {
             inertia_groups: [0.0, 5.0],
             adjustments: Adjustments::default(),
             limits_ranges: true,
+            mesh_folder: String::new(),
+            strips_paths: false,
         };
         for compiler in root.all("compiler") {
             match compiler.attribute("angle") {
@@ -143,6 +159,14 @@ impl Compiler {
             if let Some(groups) = compiler.numbers(files, "inertiagrouprange") {
                 own.inertia_groups = groups;
             }
+            // `meshdir` overrides `assetdir`.
+            let folders = ["assetdir", "meshdir"].map(|key| compiler.get(key));
+            if let Some(folder) = folders.into_iter().flatten().next_back() {
+                folder.clone_into(&mut own.mesh_folder);
+            }
+            if let Some(word) = compiler.keyword(files, "strippath", BOOLEAN) {
+                own.strips_paths = word == "true";
+            }
             own.adjustments.read(files, compiler);
         }
         own
@@ -170,6 +194,7 @@ impl Compiler {
         }
         if let Some([x, y, z, angle]) = of.numbers(files, "axisangle") {
             let axis = exact::unit(&Vector3::new(x, y, z), 1e-12);
+            bounds::check_angles(files, &of.place, &[self.angle(angle)]);
             return axis.map_or_else(Rotation3::identity, |axis| {
                 exact::turn(&axis, self.angle(angle))
             });
@@ -186,6 +211,8 @@ impl Compiler {
             return exact::cleaned(&to.unwrap_or_else(turned));
         }
         if let Some(angles) = of.numbers::<3>(files, "euler") {
+            let turned = angles.map(|angle| self.angle(angle));
+            bounds::check_angles(files, &of.place, &turned);
             let mut whole = Rotation3::identity();
             for (angle, (axis, turns_along)) in angles.into_iter().zip(self.sequence) {
                 let turn = exact::about(axis, self.angle(angle));

@@ -276,3 +276,176 @@ fn joints_and_inertias_stand_in_the_frames_of_their_body() {
         [1.0, 0.1, -0.2, 0.0, 1.0, 3.0, 2.0, 0.0, 0.0, 0.0],
     );
 }
+
+/// A prism with a U-shaped base, which no point sees whole, as OBJ.
+fn u_shape() -> String {
+    let base = [
+        (0, 0),
+        (3, 0),
+        (3, 3),
+        (2, 3),
+        (2, 1),
+        (1, 1),
+        (1, 3),
+        (0, 3),
+    ];
+    let parts = [
+        [0, 1, 4],
+        [0, 4, 5],
+        [1, 2, 3],
+        [1, 3, 4],
+        [0, 5, 6],
+        [0, 6, 7],
+    ];
+    let mut text = String::new();
+    for height in [0, 1] {
+        for (x, y) in base {
+            text += &format!(
+                "v {} {} {}\n",
+                f64::from(x) * 0.1,
+                f64::from(y) * 0.1,
+                f64::from(height) * 0.1
+            );
+        }
+    }
+    for [a, b, c] in parts {
+        text += &format!(
+            "f {} {} {}\nf {}//1 {}//1 {}//1\n",
+            a + 1,
+            c + 1,
+            b + 1,
+            a + 9,
+            b + 9,
+            c + 9
+        );
+    }
+    for at in 0..8 {
+        let next = (at + 1) % 8;
+        text += &format!("f {} {} {} {}\n", at + 1, next + 1, next + 9, at + 9);
+    }
+    text
+}
+
+/// Inertia of a body with a mesh geom, from a folder with `u.obj`.
+fn with_mesh(asset: &str, geom: &str) -> Model {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir(folder.path().join("meshes")).expect("a folder");
+    std::fs::write(folder.path().join("meshes/u.obj"), u_shape()).expect("a mesh");
+    let path = folder.path().join("robot.xml");
+    let text = format!(
+        "<mujoco><compiler angle='radian' meshdir='meshes'/><asset><mesh file='u.obj' {asset}/></asset><worldbody><body>\
+         <joint/><geom type='mesh' mesh='u' {geom}/></body></worldbody></mujoco>"
+    );
+    std::fs::write(&path, text).expect("a file");
+    let files = Files::default();
+    let file = files.read(&path, None).expect("a file");
+    let model = super::read(&files, file, &Options::default());
+    model.unwrap_or_else(|| panic!("{:?}", files.into_errors()))
+}
+
+#[test]
+fn inertias_of_meshes_are_those_of_mujoco() {
+    // MuJoCo keeps the corners in single precision.
+    let is_near = |found: f64, expected: f64, size: f64| (found - expected).abs() < 3e-7 * size;
+    for (asset, geom, expected) in [
+        (
+            "",
+            "",
+            [
+                8.617540924,
+                0.15,
+                0.14263102,
+                0.05,
+                0.06699130284,
+                0.07461755273,
+                0.1283246471,
+            ],
+        ),
+        (
+            "inertia='exact'",
+            "",
+            [
+                7.000000685,
+                0.15,
+                0.13571429,
+                0.05,
+                0.06023810578,
+                0.07166667896,
+                0.1202381166,
+            ],
+        ),
+        (
+            "inertia='shell'",
+            "mass='3'",
+            [
+                3.0,
+                0.15,
+                0.14333334,
+                0.05,
+                0.03420000249,
+                0.03700000256,
+                0.06153333803,
+            ],
+        ),
+        (
+            "inertia='exact' scale='-1 1 1'",
+            "density='500'",
+            [
+                3.5000003425,
+                -0.15,
+                0.13571429,
+                0.05,
+                0.03011905289,
+                0.03583333948,
+                0.0601190583,
+            ],
+        ),
+    ] {
+        let model = with_mesh(asset, geom);
+        let own = model.bodies[1].inertia.expect("an inertia");
+        let tensor = own.tensor;
+        let found = [
+            [own.mass, own.centre.x, own.centre.y, own.centre.z],
+            [tensor[(0, 0)], tensor[(1, 1)], tensor[(2, 2)], 0.0],
+        ]
+        .concat();
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!(
+                is_near(found, expected, own.mass),
+                "{asset} {geom}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn meshes_are_moved_by_their_reference_pose() {
+    let asset = "inertia='exact' scale='2 2 -2' refpos='0.1 0 0' refquat='0.9 0.1 0.2 0.3'";
+    let own = with_mesh(asset, "mass='3' pos='1 2 3' euler='0.3 0 0'").bodies[1].inertia;
+    let own = own.expect("an inertia");
+    let [x, y, z] = [1.206766934, 2.219042944, 2.945768067];
+    assert!(
+        (own.centre.coords - nalgebra::Vector3::new(x, y, z)).norm() < 1e-6,
+        "{own:?}"
+    );
+    let moments = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| own.tensor[at]);
+    for (found, expected) in moments.into_iter().zip([
+        0.1208252451,
+        0.1468274388,
+        0.1645922475,
+        -0.009589405534,
+        0.02824525412,
+        -0.04010566593,
+    ]) {
+        assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+    }
+}
+
+#[test]
+fn a_mesh_without_a_file_leaves_the_mass_unknown() {
+    for asset in ["inertia='convex'", "name='v'", "builtin='sphere'"] {
+        let model = with_mesh(asset, "");
+        assert!(model.bodies[1].inertia.is_none(), "{asset}");
+        assert!(model.bodies[1].has_unknown_inertia, "{asset}");
+    }
+}

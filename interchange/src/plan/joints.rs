@@ -11,7 +11,7 @@ use crate::{
         leg::{Framed, Node, any_across},
         step::Step,
     },
-    model::{Kind, Pose},
+    model::{Kind, Motor, Pose},
 };
 use nalgebra::{Point3, Vector3};
 
@@ -101,6 +101,17 @@ impl<'d, 'm> Draft<'d, 'm> {
         let joints = &self.network.model.joints;
         let leader = joints[joint].follow.map(|follow| joints[follow.joint].kind);
         edge.kind == Kind::Prismatic && leader == Some(Kind::Revolute)
+    }
+
+    /// Whether every motor of a joint turns other joints as well.
+    fn is_turned_with_others(&self, joint: usize) -> bool {
+        let motors = self.network.model.motors.iter();
+        let turns = |motor: &&Motor| motor.turns.iter().any(|(own, _)| *own == joint);
+        let counts: Vec<usize> = motors
+            .filter(turns)
+            .map(|motor| motor.turns.len())
+            .collect();
+        !counts.is_empty() && counts.iter().all(|count| *count > 1)
     }
 
     /// Constant offset of a coupled joint's position.
@@ -248,7 +259,9 @@ impl<'d, 'm> Draft<'d, 'm> {
             if value != 0.0 {
                 joint.values.push((symbol, value));
             }
-            if value != 0.0 || own.actuated {
+            // The rotor of a motor that turns several joints is a parameter of the motor.
+            let is_of_motor = symbol == "ia" && self.is_turned_with_others(at);
+            if value != 0.0 || own.actuated && !is_of_motor {
                 symbols.push(symbol);
             }
         }

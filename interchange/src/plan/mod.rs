@@ -1,6 +1,7 @@
 //! Legs of a description with constants, parameters and values, from skeleton and chains.
 
 mod joints;
+mod motors;
 mod names;
 mod screws;
 
@@ -30,6 +31,19 @@ pub(crate) struct Leg {
     pub(crate) base: Option<(Option<String>, Pose)>,
     pub(crate) joints: Vec<Joint>,
     pub(crate) end: Option<End>,
+    /// Motors, if one of them turns several joints.
+    pub(crate) motors: Vec<Motor>,
+}
+
+/// A motor.
+#[derive(Debug)]
+pub(crate) struct Motor {
+    pub(crate) name: String,
+    /// The combination of joints that it turns, as an expression.
+    pub(crate) turns: String,
+    pub(crate) ratio: f64,
+    /// Parameter values by symbol.
+    pub(crate) values: Vec<(&'static str, f64)>,
 }
 
 /// A joint.
@@ -90,6 +104,7 @@ impl Plan {
         let mut names = Names::default();
         let (leg, mut axes) = skeleton(files, network, layout, &mut bodies, &mut names);
         let mut legs = vec![leg];
+        legs[0].motors = motors::of_leg(network.model, &legs[0]);
         for piece in &layout.pieces {
             legs.push(match piece {
                 Piece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
@@ -134,6 +149,7 @@ fn skeleton(
         base: None,
         joints,
         end: None,
+        motors: Vec::new(),
     };
     (leg, axes)
 }
@@ -204,6 +220,7 @@ fn branch(
         base: Some((Some(base_name), base_frame.inv_mul(&base))),
         joints,
         end: None,
+        motors: Vec::new(),
     };
     Some((leg, axes))
 }
@@ -271,6 +288,7 @@ fn chain(
             is_rigid: !is_point,
             at,
         }),
+        motors: Vec::new(),
     })
 }
 

@@ -65,9 +65,14 @@ fn mimic(
         files.report(&mimic.place, message, "name another joint that moves");
         return None;
     };
-    let factor = number(files, mimic, "multiplier", 1.0);
+    // `<drake:mimic>` has attributes.
+    let value = |tag: &str, default: f64| {
+        let given = mimic.number(files, tag, default);
+        number(files, mimic, tag, given)
+    };
+    let factor = value("multiplier", 1.0);
     let reference = number(files, mimic, "reference", 0.0);
-    let offset = number(files, mimic, "offset", 0.0) - factor * reference;
+    let offset = value("offset", 0.0) - factor * reference;
     Some(Coupling {
         follower,
         leader,

@@ -116,6 +116,11 @@ fn axis(
     };
     let mut joint = Joint::new(&name, kind, item.element.place.clone());
     joint.axis = direction(gathered, item, element)?;
+    if tag == "axis" {
+        // Drake: the inertia of the rotor before its gear.
+        let gear = number(files, &item.element, "gear_ratio", 1.0);
+        joint.armature = gear * gear * number(files, &item.element, "rotor_inertia", 0.0);
+    }
     if let Some(dynamics) = element.child("dynamics") {
         joint.damping = number(files, dynamics, "damping", 0.0);
         joint.friction = number(files, dynamics, "friction", 0.0);

@@ -1,6 +1,7 @@
 //! Values of SDFormat, read from the text of elements.
 
 use crate::{
+    bounds,
     files::{Files, Place},
     geometry::exact,
     model::Pose,
@@ -98,7 +99,9 @@ pub(super) fn pose(files: &Files, element: Option<&Element>) -> Pose {
         None | Some("euler_rpy") => several(files, element).map(|[x, y, z, r, p, q]| {
             let in_degrees = attribute_flag(files, element, "degrees");
             let angle = |v: f64| if in_degrees { v.to_radians() } else { v };
-            ([x, y, z], exact::roll_pitch_yaw([r, p, q].map(angle)))
+            let angles = [r, p, q].map(angle);
+            bounds::check_angles(files, &element.text.1, &angles);
+            ([x, y, z], exact::roll_pitch_yaw(angles))
         }),
         Some(other) => {
             let message = format!("`{other}` is not a format of rotations");

@@ -7,14 +7,14 @@ use super::Tree;
 use crate::{
     account::YAML,
     files::{Files, Place},
-    model::{Closure, ClosureKind, Kind, Model, Pose},
+    model::{Body, Closure, ClosureKind, Joint, Kind, Model, Pose},
     prune::record_key,
 };
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use std::{collections::BTreeMap, path::Path};
 
 /// Reads the YAML file, if there is one.
-pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
+pub(super) fn read(files: &Files, file: usize, tree: &mut Tree, model: &mut Model) {
     let name = files.name(file);
     let urdf = Path::new(&name);
     let found = ["yaml", "yml"].map(|ending| urdf.with_extension(ending));
@@ -35,13 +35,15 @@ pub(super) fn read(files: &Files, file: usize, tree: &Tree, model: &mut Model) {
     for (key, (place, value)) in &entries {
         record_key(files, &YAML, "yaml", key, &value.words().join(" "), place);
     }
-    for (key, (place, value)) in &entries {
-        match key.as_str() {
-            "name_mot" => motors(files, place, value, model),
-            "closed_loop" => closures(files, place, value, &entries, tree, model),
-            "joint_name" => kinds(files, place, value, &entries, model),
-            _ => {}
-        }
+    // Joints first: closures and motors refer to those that result.
+    if let Some((place, value)) = entries.get("joint_name") {
+        kinds(files, place, value, &entries, tree, model);
+    }
+    if let Some((place, value)) = entries.get("closed_loop") {
+        closures(files, place, value, &entries, tree, model);
+    }
+    if let Some((place, value)) = entries.get("name_mot") {
+        motors(files, place, value, model);
     }
 }
 
@@ -202,7 +204,7 @@ fn closures(
             );
             continue;
         };
-        let find = |name| tree.find(files, model, name, place);
+        let find = |name| tree.find(files, name, place);
         let (Some(first), Some(second)) = (find(a), find(b)) else {
             continue;
         };
@@ -237,31 +239,76 @@ fn closures(
     }
 }
 
-/// Applies `joint_type`, which changes joints to spherical ones.
-fn kinds(files: &Files, place: &Place, value: &Value, entries: &Entries, model: &mut Model) {
+/// Applies `joint_type`, which changes joints: to spherical, universal or fixed ones.
+fn kinds(
+    files: &Files,
+    place: &Place,
+    value: &Value,
+    entries: &Entries,
+    tree: &mut Tree,
+    model: &mut Model,
+) {
     let kinds = entries
         .get("joint_type")
         .map(|(_, value)| value.words())
         .unwrap_or_default();
     for (at, name) in value.words().into_iter().enumerate() {
         let kind = kinds.get(at).copied().unwrap_or("no type").to_uppercase();
-        let joint = model.joint_named(name);
-        match (kind.as_str(), joint) {
-            ("SPHERICAL", Some(joint)) => model.joints[joint].kind = Kind::Ball,
-            (_, None) => {
-                let message = format!("there is no moving joint `{name}`");
-                files.report(place, message, "name joints of the URDF that are not fixed");
-            }
-            (other, _) => {
+        let Some(joint) = model.joint_named(name) else {
+            let message = format!("there is no moving joint `{name}`");
+            files.report(place, message, "name joints of the URDF that are not fixed");
+            continue;
+        };
+        match kind.as_str() {
+            "SPHERICAL" => model.joints[joint].kind = Kind::Ball,
+            "CARDAN" | "UJOINT_XY" => make_universal(files, joint, tree, model),
+            "FIXED" => model.remove_joint(joint),
+            other => {
                 let message = format!("the joint `{name}` is `{other}`, which is not supported");
-                files.report(
-                    place,
-                    message,
-                    "write SPHERICAL, or two revolute joints in the URDF",
-                );
+                let help = "write SPHERICAL, CARDAN, UJOINT_XY or FIXED";
+                files.report(place, message, help);
             }
         }
     }
+}
+
+/// Replaces a joint by two revolute joints about x, then y, of its frame.
+///
+/// They have no torques, as in the toolbox of these files.
+fn make_universal(files: &Files, joint: usize, tree: &mut Tree, model: &mut Model) {
+    let body = model.carried_by(joint);
+    let (name, own) = (
+        model.joints[joint].name.clone(),
+        model.joints[joint].place.clone(),
+    );
+    let given = [
+        ("damping", model.joints[joint].damping),
+        ("friction", model.joints[joint].friction),
+    ];
+    for (attribute, _) in given.into_iter().filter(|(_, value)| *value != 0.0) {
+        let reason = "LEFT OUT: the YAML file replaces the joint by a universal one";
+        files.demote(&own, "dynamics", Some(attribute), reason);
+    }
+    let revolute = |suffix: &str, axis: Vector3<f64>| Joint {
+        axis,
+        ..Joint::new(&format!("{name}_{suffix}"), Kind::Revolute, own.clone())
+    };
+    model.joints[joint] = revolute("X", Vector3::x());
+    model.joints.push(revolute("Y", Vector3::y()));
+    let last = model.joints.len() - 1;
+    let between = Body {
+        name: format!("{}_{}", model.bodies[body].name, "X"),
+        parent: model.bodies[body].parent,
+        placement: model.bodies[body].placement,
+        place: None,
+        joint: Some(joint),
+        inertia: None,
+        has_unknown_inertia: false,
+    };
+    tree.insert_before(body, between, model);
+    let carried = &mut model.bodies[body + 1];
+    (carried.parent, carried.placement) = (body, Pose::identity());
+    carried.joint = Some(last);
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ pub(super) fn tree<'e>(
     for edge in &edges {
         below.entry(edge.parent).or_default().push(edge);
     }
-    let mut bodies = BTreeMap::new();
+    let (mut bodies, mut by_joint) = (BTreeMap::new(), BTreeMap::new());
     model
         .bodies
         .push(body(files, links[base], 0, Pose::identity()));
@@ -50,6 +50,7 @@ pub(super) fn tree<'e>(
             let mut own = body(files, links[edge.child], at, placement);
             own.joint = joint(files, edge, options, model);
             bodies.insert(edge.child.to_owned(), model.bodies.len());
+            by_joint.insert(edge.name.to_owned(), model.bodies.len());
             model.bodies.push(own);
         }
         open.extend(edges.iter().rev().map(|edge| edge.child));
@@ -61,7 +62,7 @@ pub(super) fn tree<'e>(
         let help = "a <joint> may not close a loop: cut it, and name the frames of the closure in <loop>, <constraint> or a YAML file next to it";
         files.report(&link.place, message, help);
     }
-    files.is_clean().then_some(Tree { bodies })
+    files.is_clean().then_some(Tree { bodies, by_joint })
 }
 
 fn edges<'e>(files: &Files, root: &'e Element, links: &Links<'e>) -> Vec<Edge<'e>> {

@@ -27,7 +27,7 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
             let frame = |at: usize| {
                 let end = element.child(ends[at])?;
                 let link = end.required(files, "link")?;
-                let body = tree.find(files, model, link, &end.place)?;
+                let body = tree.find(files, link, &end.place)?;
                 let own = match frames[at] {
                     "" => end.child("origin").or(Some(end)),
                     frame => element.child(frame),
@@ -62,7 +62,7 @@ fn ball_constraints(files: &Files, root: &Element, tree: &Tree, model: &mut Mode
     for element in root.all("ball_constraint") {
         let end = |body: &str, point: &str| {
             let body = element.child(body)?;
-            let body = tree.find(files, model, body.required(files, "name")?, &body.place)?;
+            let body = tree.find(files, body.required(files, "name")?, &body.place)?;
             let point = element.child(point);
             let point = point.map_or(Some([0.0; 3]), |point| point.numbers(files, "value"))?;
             Some((body, Point3::from(point)))
@@ -144,36 +144,80 @@ fn axis_of(files: &Files, element: &Element, tag: &str) -> Option<Vector3<f64>> 
 }
 
 /// Frame with a given z axis, by the smallest rotation.
-fn frame_with_z(axis: &Vector3<f64>) -> Pose {
+pub(super) fn frame_with_z(axis: &Vector3<f64>) -> Pose {
     let rotation = Rotation3::rotation_between(&Vector3::z(), axis);
     let rotation = rotation
         .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
     Pose::from_parts(Vector3::zeros().into(), rotation)
 }
 
-/// Reads `<coupling>` of URDF+: the successor's joint follows the predecessor's.
+/// Reads `<coupling>` of URDF+.
 ///
-/// Position of the successor's joint = `ratio` × position of the predecessor's joint.
-pub(super) fn couplings(files: &Files, root: &Element, model: &Model, couplings: &mut Couplings) {
+/// Sum of the joints to the successor = `ratio` × sum of the joints to the predecessor; both sums
+/// begin at the nearest common ancestor of the two links.
+pub(super) fn couplings(
+    files: &Files,
+    root: &Element,
+    tree: &Tree,
+    model: &Model,
+    couplings: &mut Couplings,
+) {
     for element in root.all("coupling") {
-        let end = |tag: &str| element.child(tag).and_then(|end| end.get("link"));
-        let joint = |link: Option<&str>| model.bodies[model.body_named(link?)?].joint;
-        let (Some(leader), Some(follower)) = (joint(end("predecessor")), joint(end("successor")))
-        else {
-            let message = "the coupling does not connect two links of joints";
-            let help = "name child links of moving joints, or write the coupling as <mimic>";
-            files.report(&element.place, message, help);
+        let link = |tag: &str| {
+            let Some(end) = element.child(tag) else {
+                let message = format!("the coupling has no <{tag}>");
+                let help = format!("write <{tag} link=\"…\"/>");
+                files.report(&element.place, message, help);
+                return None;
+            };
+            tree.find(files, end.required(files, "link")?, &end.place)
+        };
+        let (Some(predecessor), Some(successor)) = (link("predecessor"), link("successor")) else {
             continue;
         };
         let ratio = element
             .child("ratio")
             .map_or(1.0, |ratio| ratio.number(files, "value", 1.0));
-        couplings.add(Coupling {
-            follower,
-            leader,
-            factor: ratio,
-            offset: 0.0,
-            place: element.place.clone(),
-        });
+        let [to_predecessor, to_successor] = paths(model, [predecessor, successor]);
+        let terms: Vec<(usize, f64)> = to_successor
+            .iter()
+            .map(|joint| (*joint, 1.0))
+            .chain(to_predecessor.iter().map(|joint| (*joint, -ratio)))
+            .collect();
+        match Coupling::of_sum(&terms, 0.0, &element.place) {
+            Some(coupling) => couplings.add(coupling),
+            None => {
+                let names: Vec<String> = terms
+                    .iter()
+                    .map(|(joint, _)| format!("`{}`", model.joints[*joint].name))
+                    .collect();
+                let message = format!(
+                    "the coupling is between {} joints, not two: {}",
+                    names.len(),
+                    names.join(", ")
+                );
+                let help = "only two joints between both links and their nearest common ancestor can be coupled; \
+                            write other couplings as <mimic>";
+                files.report(&element.place, message, help);
+            }
+        }
     }
+}
+
+/// Joints from the nearest common ancestor of two bodies to each of them.
+fn paths(model: &Model, ends: [usize; 2]) -> [Vec<usize>; 2] {
+    let to_ground = |end: usize| {
+        let bodies =
+            std::iter::successors(Some(end), |at| (*at != 0).then(|| model.bodies[*at].parent));
+        let mut bodies: Vec<usize> = bodies.collect();
+        bodies.reverse();
+        bodies
+    };
+    let all = ends.map(to_ground);
+    let shared = all[0].iter().zip(&all[1]).take_while(|(a, b)| a == b);
+    let shared = shared.count();
+    all.map(|bodies| {
+        let own = bodies[shared..].iter();
+        own.filter_map(|body| model.bodies[*body].joint).collect()
+    })
 }

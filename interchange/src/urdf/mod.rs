@@ -1,6 +1,7 @@
 //! Reader of URDF: a tree of links and joints, and loops in several notations.
 
 mod beside;
+mod gazebo;
 mod joints;
 mod loops;
 mod massless;
@@ -29,23 +30,47 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         files.report(&root.place, message, "the first element of URDF is <robot>");
         return None;
     }
+    refuse_macros(files, file)?;
     let shaped = massless::shaped_links(&root);
     keep_honoured(files, &URDF, &mut root);
     bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("name").unwrap_or("robot"));
     let links = links(files, &root);
-    let tree = joints::tree(files, &root, &links, options, &mut model)?;
-    transmissions::read(files, &root, &mut model);
+    let mut tree = joints::tree(files, &root, &links, options, &mut model)?;
+    transmissions::read(files, &root, &tree, &mut model);
     loops::read(files, &root, &tree, &mut model);
-    beside::read(files, file, &tree, &mut model);
+    gazebo::read(files, &root, &tree, &mut model);
+    beside::read(files, file, &mut tree, &mut model);
     others::report(files, file, &tree);
     massless::report(files, &shaped, &tree, &model);
     // After the YAML file, which may change joints to ball joints.
     let mut couplings = Couplings::default();
     joints::mimics(files, &root, &model, &mut couplings);
-    loops::couplings(files, &root, &model, &mut couplings);
+    loops::couplings(files, &root, &tree, &model, &mut couplings);
     couplings.resolve(files, &mut model);
     files.is_clean().then_some(model)
+}
+
+/// Rejects files with elements of xacro, which stand for others; `None` after an error.
+fn refuse_macros(files: &Files, file: usize) -> Option<()> {
+    let text = files.text(file);
+    let mut rest = 0;
+    while let Some(at) = text[rest..].find('<').map(|at| rest + at) {
+        if text[at..].starts_with("<!--") {
+            rest = text[at..].find("-->").map_or(text.len(), |end| at + end);
+        } else if text[at..].starts_with("<xacro:") {
+            let place = Place {
+                file,
+                span: at..at + "<xacro".len(),
+            };
+            let help = "expand its macros first: `xacro FILE -o robot.urdf`";
+            files.report(&place, "this is a xacro file, not URDF", help);
+            return None;
+        } else {
+            rest = at + 1;
+        }
+    }
+    Some(())
 }
 
 /// Links by name.
@@ -73,9 +98,11 @@ pub(crate) fn origin(files: &Files, of: Option<&Element>) -> Pose {
     let [x, y, z] = element.numbers(files, "xyz").unwrap_or_default();
     let rotation = match element.numbers::<4>(files, "quat_xyzw") {
         Some([qx, qy, qz, qw]) => exact::quaternion([qw, qx, qy, qz]),
-        None => Some(exact::roll_pitch_yaw(
-            element.numbers(files, "rpy").unwrap_or_default(),
-        )),
+        None => {
+            let angles = element.numbers(files, "rpy").unwrap_or_default();
+            bounds::check_angles(files, &element.place, &angles);
+            Some(exact::roll_pitch_yaw(angles))
+        }
     };
     Pose::from_parts(Translation3::new(x, y, z), rotation.unwrap_or_default())
 }
@@ -133,17 +160,19 @@ fn inertia(files: &Files, inertial: &Element) -> Inertia {
     .transformed(&frame)
 }
 
-/// Bodies by link name, and frames that joints name.
+/// Bodies by the names of links and joints.
 #[derive(Debug)]
 struct Tree {
     bodies: BTreeMap<String, usize>,
+    /// Body that each joint carries, fixed joints included; its frame is that of the joint.
+    by_joint: BTreeMap<String, usize>,
 }
 
 impl Tree {
     /// Body of a link or of a joint's name; reports an error if there is neither.
-    fn find(&self, files: &Files, model: &Model, name: &str, place: &Place) -> Option<usize> {
-        let carried = || model.joint_named(name).map(|joint| model.carried_by(joint));
-        let found = self.bodies.get(name).copied().or_else(carried);
+    fn find(&self, files: &Files, name: &str, place: &Place) -> Option<usize> {
+        let found = self.bodies.get(name).or_else(|| self.by_joint.get(name));
+        let found = found.copied();
         if found.is_none() {
             let message = format!("there is no link or joint `{name}`");
             let names = self.bodies.keys().map(String::as_str);
@@ -155,5 +184,14 @@ impl Tree {
             );
         }
         found
+    }
+
+    /// Inserts an auxiliary body before another one; both maps are kept up to date.
+    fn insert_before(&mut self, body: usize, new: Body, model: &mut Model) {
+        model.insert_body(body, new);
+        let all = self.bodies.values_mut().chain(self.by_joint.values_mut());
+        for own in all.filter(|own| **own >= body) {
+            *own += 1;
+        }
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     geometry::digits::{angle, decimal, fine, is_zero},
     model::Pose,
     options::Options,
-    plan::{Joint, Leg, Plan, word},
+    plan::{Joint, Leg, Motor, Plan, word},
 };
 use overact_description::diagnostic::Span;
 use std::fmt::Write as _;
@@ -139,6 +139,9 @@ fn shape(text: &mut String, leg: &Leg, joints: &mut Vec<(Span, usize)>) {
         self::joint(text, &leg.name, joint);
         joints.extend(joint.of.map(|of| (start..text.len(), of)));
     }
+    for motor in &leg.motors {
+        self::motor(text, &leg.name, motor);
+    }
     if let Some(end) = &leg.end {
         let _ = writeln!(text, "\n[leg.{}.end]", leg.name);
         let kind = if end.is_rigid { "rigid" } else { "point" };
@@ -146,6 +149,20 @@ fn shape(text: &mut String, leg: &Leg, joints: &mut Vec<(Span, usize)>) {
         for part in placement(&end.at, end.is_rigid) {
             let _ = writeln!(text, "{part}");
         }
+    }
+}
+
+/// Table of a motor; its torque and position are those behind the gear.
+fn motor(text: &mut String, leg: &str, motor: &Motor) {
+    let Motor {
+        name, turns, ratio, ..
+    } = motor;
+    let _ = writeln!(
+        text,
+        "\n[[leg.{leg}.motor]]\nname = \"{name}\"\nturns = \"{turns}\""
+    );
+    if *ratio != 1.0 {
+        let _ = writeln!(text, "ratio = {}", fine(*ratio, *ratio));
     }
 }
 
@@ -309,6 +326,13 @@ fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
                 let line = format!("{symbol}_{}{of} = {shown}", joint.name);
                 lines.push((is_prior, line, joint.of));
             }
+        }
+    }
+    let motors = plan.legs.iter().flat_map(|leg| &leg.motors);
+    for motor in motors {
+        for (symbol, value) in &motor.values {
+            let line = format!("{symbol}_{} = {}", motor.name, fine(*value, value.abs()));
+            lines.push((true, line, None));
         }
     }
     if lines.is_empty() {

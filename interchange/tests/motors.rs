@@ -1,0 +1,344 @@
+//! Motors that turn several joints, tendons, and driven joints that are coupled.
+
+use overact_interchange::{Imported, Options, import};
+
+/// Imports a file; errors are listed with their lines.
+fn read(name: &str, text: &str, options: &Options) -> Result<Imported, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join(name);
+    std::fs::write(&file, text).expect("a file");
+    import(&file, options).map_err(|errors| {
+        let mut all = String::new();
+        for (source, diagnostics) in &errors.0 {
+            for error in diagnostics {
+                let line = error.span.as_ref().map(|span| source.position(span).line);
+                let line = line.map_or(String::new(), |line| format!("{line}: "));
+                all += &format!("{line}{}\n", error.message);
+            }
+        }
+        all
+    })
+}
+
+fn imported(name: &str, text: &str) -> Imported {
+    read(name, text, &Options::default()).unwrap_or_else(|errors| panic!("{text}: {errors}"))
+}
+
+fn refused(name: &str, text: &str) -> String {
+    match read(name, text, &Options::default()) {
+        Ok(_) => panic!("not refused: {text}"),
+        Err(errors) => errors,
+    }
+}
+
+/// Joints of a description, without comments and parameters.
+fn joints(found: &Imported) -> String {
+    let lines = found.text.lines();
+    let lines = lines.take_while(|line| !line.starts_with("[identification]"));
+    let lines = lines.filter(|line| !line.starts_with('#'));
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+/// Combinations and ratios of the motor tables.
+fn motors(found: &Imported) -> Vec<String> {
+    let lines = found.text.lines();
+    let of_motor = |line: &&str| line.starts_with("turns") || line.starts_with("ratio");
+    lines.filter(of_motor).map(str::to_owned).collect()
+}
+
+/// URDF of a wrist with two joints, pitch and roll, and a transmission.
+fn wrist(transmission: &str) -> String {
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='0.02 0 0.1'/><mass value='1'/>\
+             <inertia ixx='0.02' iyy='0.02' izz='0.01'/></inertial></link>"
+        )
+    };
+    let joint = |name: &str, ends: [&str; 2], axis: &str| {
+        format!(
+            "<joint name='{name}' type='revolute'><parent link='{}'/><child link='{}'/><axis xyz='{axis}'/></joint>",
+            ends[0], ends[1]
+        )
+    };
+    format!(
+        "<robot name='wrist' xmlns:drake='d'><link name='base'/>{}{}{}{}\n<transmission>{transmission}</transmission></robot>",
+        link("a"),
+        link("b"),
+        joint("pitch", ["base", "a"], "0 1 0"),
+        joint("roll", ["a", "b"], "0 0 1"),
+    )
+}
+
+const ROLES: &str = "<actuator name='left'><role>actuator1</role><mechanicalReduction>50</mechanicalReduction></actuator>\
+    <actuator name='right'><role>actuator2</role><mechanicalReduction>-40</mechanicalReduction></actuator>\
+    <joint name='pitch'><role>joint1</role><mechanicalReduction>2</mechanicalReduction></joint>\
+    <joint name='roll'><role>joint2</role><mechanicalReduction>3</mechanicalReduction></joint>";
+
+#[test]
+fn transmissions_of_two_joints_are_motors_of_both() {
+    let differential =
+        format!("<type>transmission_interface/DifferentialTransmission</type>{ROLES}");
+    let found = imported("wrist.urdf", &wrist(&differential));
+    assert_eq!(
+        motors(&found),
+        [
+            r#"turns = "2.0 * q_pitch + 3.0 * q_roll""#,
+            "ratio = 50.0",
+            r#"turns = "2.0 * q_pitch - 3.0 * q_roll""#,
+            "ratio = -40.0"
+        ]
+    );
+    assert!(found.text.contains("name = \"left\""), "{}", found.text);
+    let linkage = differential.replace("Differential", "FourBarLinkage");
+    let expected = [
+        r#"turns = "q_pitch""#,
+        "ratio = 100.0",
+        r#"turns = "q_pitch + 3.0 * q_roll""#,
+        "ratio = -40.0",
+    ];
+    assert_eq!(motors(&imported("wrist.urdf", &wrist(&linkage))), expected);
+    // ROS 2 has attributes; roles decide, not the order.
+    let plugin = "<plugin>transmission_interface/FourBarLinkageTransmission</plugin>\
+        <joint name='roll' role='joint2'><mechanical_reduction>3</mechanical_reduction></joint>\
+        <actuator name='right' role='actuator2'><mechanical_reduction>-40</mechanical_reduction></actuator>\
+        <joint name='pitch' role='joint1'><mechanical_reduction>2</mechanical_reduction></joint>\
+        <actuator name='left' role='actuator1'><mechanical_reduction>50</mechanical_reduction></actuator>";
+    let text = wrist(plugin)
+        .replace("<transmission>", "<ros2_control><transmission>")
+        .replace("</transmission>", "</transmission></ros2_control>");
+    assert_eq!(motors(&imported("wrist.urdf", &text)), expected);
+}
+
+#[test]
+fn transmissions_that_are_incomplete_are_refused() {
+    for (from, to, expected) in [
+        (
+            "joint2",
+            "joint3",
+            "the transmission needs two elements <joint>",
+        ),
+        (
+            "name='roll'><role>",
+            "name='rol'><role>",
+            "there is no joint `rol`",
+        ),
+        (
+            ">3<",
+            ">0<",
+            "<mechanicalReduction> must be a number other than 0",
+        ),
+    ] {
+        let text = format!("<type>transmission_interface/DifferentialTransmission</type>{ROLES}");
+        assert!(text.contains(from));
+        let said = refused("wrist.urdf", &wrist(&text.replacen(from, to, 1)));
+        assert!(said.starts_with(&format!("2: {expected}")), "{said}");
+    }
+}
+
+#[test]
+fn rotors_of_drake_become_inertias_of_joints_and_motors() {
+    let rotor = "<drake:rotor_inertia value='0.001'/><drake:gear_ratio value='30'/>";
+    let single = format!("<joint name='pitch'/><actuator name='m'>{rotor}</actuator>");
+    let found = imported("wrist.urdf", &wrist(&single));
+    assert!(found.text.contains("ia_pitch = 0.9\n"), "{}", found.text);
+    let both = format!("<type>transmission_interface/DifferentialTransmission</type>{ROLES}")
+        .replacen("</role>", &format!("</role>{rotor}"), 1);
+    let found = imported("wrist.urdf", &wrist(&both));
+    assert!(found.text.contains("ia_left = 0.9\n"), "{}", found.text);
+}
+
+/// MJCF of three hinges in a row, with more elements.
+fn hinges(more: &str) -> String {
+    let body = |at: usize| {
+        format!(
+            "<body pos='0.3 0 0'><joint name='j{at}' axis='0 1 0' ref='0.{at}'/>\
+             <inertial pos='0.1 0 0' mass='1' diaginertia='0.01 0.02 0.02'/>"
+        )
+    };
+    let bodies: String = (1..=3).map(body).collect();
+    format!(
+        "<mujoco model='row'><compiler angle='radian'/><worldbody>{bodies}</body></body></body></worldbody>\n{more}</mujoco>"
+    )
+}
+
+fn tendon(attributes: &str) -> String {
+    format!(
+        "<tendon><fixed name='t' {attributes}><joint joint='j2' coef='1'/><joint joint='j3' coef='-0.5'/></fixed></tendon>"
+    )
+}
+
+#[test]
+fn a_motor_at_a_fixed_tendon_turns_its_joints() {
+    let more = tendon("damping='0.2' armature='0.01'")
+        + "<actuator><motor joint='j1' gear='7'/><motor name='m' tendon='t' gear='10' armature='0.001'/></actuator>";
+    let found = imported("row.xml", &hinges(&more));
+    assert_eq!(
+        motors(&found),
+        [
+            r#"turns = "q_j1""#,
+            "ratio = 7.0",
+            r#"turns = "q_j2 - 0.5 * q_j3""#,
+            "ratio = 10.0"
+        ]
+    );
+    for line in ["ia_m = 0.11\n", "fv_m = 0.2\n"] {
+        assert!(found.text.contains(line), "{}", found.text);
+    }
+    // The rotor belongs to the motor, not to its joints.
+    let joint = found.text.split("name = \"j2\"").nth(1).expect("j2");
+    let own = joint.lines().find(|line| line.starts_with("parameters"));
+    assert_eq!(
+        own,
+        Some("parameters = [\"inertia\", \"fv\", \"fs\", \"off\"]")
+    );
+}
+
+#[test]
+fn a_motor_at_a_tendon_of_coupled_joints_is_that_of_one_joint() {
+    let coupling = "<equality><joint joint1='j3' joint2='j2' polycoef='0 2'/></equality>";
+    let more = tendon("frictionloss='0.1'").replace("-0.5", "0.5")
+        + coupling
+        + "<actuator><motor name='m' tendon='t' gear='10' armature='0.001'/></actuator>";
+    let found = imported("row.xml", &hinges(&more));
+    assert_eq!(motors(&found), [""; 0]);
+    // j2 + 0.5 · 2 j2 = 2 j2: 4 times gear² · 0.001, and 2 times 0.1.
+    for line in ["ia_j2 = 0.4\n", "fs_j2 = 0.2\n"] {
+        assert!(found.text.contains(line), "{}", found.text);
+    }
+}
+
+#[test]
+fn an_equality_of_tendons_couples_two_joints() {
+    let motor = "<actuator><motor joint='j1'/><motor joint='j2'/></actuator>";
+    let both = "<tendon><fixed name='s'><joint joint='j3' coef='2'/></fixed>\
+        <fixed name='t'><joint joint='j2' coef='3'/></fixed></tendon>";
+    let equality = "<equality><tendon tendon1='s' tendon2='t' polycoef='0.2 4'/></equality>";
+    let found = imported("row.xml", &hinges(&format!("{both}{equality}{motor}")));
+    // 2 (j3 - ref3) = 0.2 + 4 · 3 (j2 - ref2).
+    let joint = "<equality><joint joint1='j3' joint2='j2' polycoef='0.1 6'/></equality>";
+    let expected = imported("row.xml", &hinges(&format!("{joint}{motor}")));
+    assert_eq!(joints(&found), joints(&expected));
+    let one = "<tendon><fixed name='s'><joint joint='j3' coef='2'/><joint joint='j2' coef='-12'/></fixed></tendon>";
+    let equality = "<equality><tendon tendon1='s' polycoef='0.2'/></equality>";
+    let found = imported("row.xml", &hinges(&format!("{one}{equality}{motor}")));
+    assert_eq!(joints(&found), joints(&expected));
+    let equality = "<equality><tendon tendon1='s' tendon2='t'/></equality>";
+    let three = format!(
+        "{}{equality}{motor}",
+        tendon("").replace(
+            "</tendon>",
+            "<fixed name='s'><joint joint='j1' coef='1'/></fixed></tendon>"
+        )
+    );
+    let said = refused("row.xml", &hinges(&three));
+    assert!(said.contains("does not couple two joints"), "{said}");
+}
+
+#[test]
+fn tendons_that_exert_forces_are_refused_and_others_reported() {
+    let motor = "<actuator><motor joint='j1'/></actuator>";
+    for attributes in [
+        "stiffness='3'",
+        "damping='3'",
+        "frictionloss='3'",
+        "armature='3'",
+    ] {
+        let said = refused("row.xml", &hinges(&(tendon(attributes) + motor)));
+        assert!(said.starts_with("2: the "), "{said}");
+        let path =
+            format!("<tendon><spatial {attributes}><site site='s'/></spatial></tendon>{motor}");
+        let said = refused("row.xml", &hinges(&path));
+        assert!(said.starts_with("2: the "), "{said}");
+    }
+    let limited = tendon("range='-1 1' limited='true'") + motor;
+    let found = imported("row.xml", &hinges(&limited));
+    let reported: Vec<String> = found
+        .account
+        .reported
+        .iter()
+        .map(|own| own.subject())
+        .collect();
+    assert_eq!(reported, ["fixed"]);
+    let pulled = "<tendon><spatial name='t'/></tendon><actuator><motor tendon='t'/></actuator>";
+    let said = refused("row.xml", &hinges(pulled));
+    assert!(said.contains("pulls at a spatial tendon"), "{said}");
+    let said = refused(
+        "row.xml",
+        &hinges("<actuator><motor tendon='t'/></actuator>"),
+    );
+    assert!(said.contains("there is no tendon `t`"), "{said}");
+}
+
+#[test]
+fn damping_of_a_tendon_of_one_joint_is_that_of_the_joint() {
+    let one = "<tendon><fixed damping='0.5' frictionloss='0.25' armature='0.1'><joint joint='j2' coef='-2'/></fixed></tendon>\
+        <actuator><motor joint='j1'/></actuator>";
+    let found = imported("row.xml", &hinges(one));
+    for line in ["ia_j2 = 0.4\n", "fv_j2 = 2.0\n", "fs_j2 = 0.5\n"] {
+        assert!(found.text.contains(line), "{}", found.text);
+    }
+}
+
+#[test]
+fn a_driven_joint_leads_the_joints_that_it_is_coupled_to() {
+    let motors = "<actuator><motor joint='j1'/><motor joint='j3'/></actuator>";
+    let coupled =
+        |relation: &str| hinges(&format!("<equality><joint {relation}/></equality>{motors}"));
+    // j3 - ref3 = 0.1 + 2 (j2 - ref2), and its inverse.
+    let follower = imported(
+        "row.xml",
+        &coupled("joint1='j3' joint2='j2' polycoef='0.1 2'"),
+    );
+    let leader = imported(
+        "row.xml",
+        &coupled("joint1='j2' joint2='j3' polycoef='-0.05 0.5'"),
+    );
+    assert_eq!(joints(&follower), joints(&leader));
+}
+
+#[test]
+fn motors_of_several_joints_are_refused_in_robots_with_loops() {
+    let more = "<equality><connect body1='b3' anchor='0.2 0 0'/></equality>".to_owned()
+        + &tendon("")
+        + "<actuator><motor tendon='t'/></actuator>";
+    let text = hinges(&more).replacen("<body pos", "<body name='b1' pos", 1);
+    let at = text.rfind("<body pos").expect("a body");
+    let text = format!("{}<body name='b3' {}", &text[..at], &text[at + 6..]);
+    let said = refused("row.xml", &text);
+    assert!(
+        said.contains("turns several joints is not supported in a robot with loops"),
+        "{said}"
+    );
+}
+
+#[test]
+fn equal_compensation_of_all_weights_scales_gravity() {
+    let row = |second: &str, joints: &str| {
+        let text = hinges("<actuator><motor joint='j1'/></actuator>");
+        let text = text.replace("<joint ", &format!("<joint {joints} "));
+        let text = text.replace("<body pos", "<body gravcomp='0.75' pos");
+        let at = text.rfind("gravcomp='0.75'").expect("a body");
+        format!("{}gravcomp='{second}'{}", &text[..at], &text[at + 15..])
+    };
+    let found = imported("row.xml", &row("0.75", ""));
+    assert!(
+        found.text.contains("gravity = [0, 0, -2.4525]"),
+        "{}",
+        found.text
+    );
+    assert!(found.account.reported.is_empty());
+    let found = imported("row.xml", &row("0.5", ""));
+    assert!(
+        found.text.contains("gravity = [0, 0, -9.81]"),
+        "{}",
+        found.text
+    );
+    assert_eq!(found.account.reported[0].subject(), "body gravcomp");
+    let found = imported("row.xml", &row("0.5", "actuatorgravcomp='true'"));
+    assert!(
+        found.text.contains("gravity = [0, 0, -9.81]"),
+        "{}",
+        found.text
+    );
+    assert!(found.account.reported.is_empty());
+}
