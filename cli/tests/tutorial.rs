@@ -182,13 +182,60 @@ fn the_arm_is_imported_and_identified_from_a_log_as_shown() {
     if !overact_tier::is_full() {
         return;
     }
-    let text = fs::read_to_string(docs().join("tutorial-serial.md")).expect("the page");
+    let (simulated, _) = serial_tutorial();
     let files = Files {
         toml: "arm.toml",
         xml: "arm.urdf",
         ..Files::default()
     };
-    assert_eq!(follow(&Bench::new(), &text, &files), 12);
+    assert_eq!(follow(&Bench::new(), &simulated, &files), 12);
+}
+
+/// The tutorial of serial arms: the parts with a simulated and with a measured log.
+fn serial_tutorial() -> (String, String) {
+    let text = fs::read_to_string(docs().join("tutorial-serial.md")).expect("the page");
+    let (simulated, measured) = text
+        .split_once("## A measured arm")
+        .expect("both parts of the page");
+    (simulated.to_owned(), measured.to_owned())
+}
+
+/// A log of the UR10e in the folder of reference data: `OVERACT_SHARED`, or `shared` next to the
+/// repository.
+fn ur10e_log(name: &str) -> PathBuf {
+    let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        PathBuf::from,
+    );
+    folder.join("data/ur10e").join(name)
+}
+
+#[test]
+fn the_measured_arm_is_identified_as_shown() {
+    // It is identified twice.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let logs = [
+        ("empty.csv", "14harm_unloaded.csv"),
+        ("loaded.csv", "14harm_loaded.csv"),
+        ("other.csv", "15harm_unloaded.csv"),
+    ];
+    let bench = Bench::new();
+    for (name, file) in logs {
+        let log = ur10e_log(file);
+        if !log.exists() {
+            eprintln!("skipped: the UR10e data are not here; set OVERACT_SHARED to their folder");
+            return;
+        }
+        std::os::unix::fs::symlink(log, bench.path(name)).expect("a link");
+    }
+    let (_, measured) = serial_tutorial();
+    let files = Files {
+        toml: "ur10e.toml",
+        ..Files::default()
+    };
+    assert_eq!(follow(&bench, &measured, &files), 3);
 }
 
 #[test]
