@@ -2,7 +2,8 @@
 //! compares their output.
 //!
 //! Other blocks are files: TOML is appended to the page's TOML file, XML and Rust are written to
-//! theirs. Commands of a console block run in a shell in the same folder. A line `…` matches any
+//! theirs. Commands of a console block run in a shell in the same folder; their further lines begin
+//! with `> `. A line `…` matches any
 //! lines, and numbers may differ in their last digits between machines.
 #![cfg(unix)]
 
@@ -96,6 +97,19 @@ struct Files<'n> {
     rust: &'n str,
 }
 
+/// Command, with its continuation lines, and the shown output.
+///
+/// A continuation line begins with `> `, as in a shell.
+fn command_and_output(text: &str) -> (String, Vec<&str>) {
+    let mut lines = text.trim_end().lines().peekable();
+    let mut command = lines.next().unwrap_or_default().to_owned();
+    while let Some(more) = lines.next_if(|line| line.starts_with("> ")) {
+        command.push('\n');
+        command.push_str(&more[2..]);
+    }
+    (command, lines.collect())
+}
+
 /// Runs the blocks of a document; returns the number of commands.
 fn follow(bench: &Bench, text: &str, files: &Files<'_>) -> usize {
     let mut commands = 0;
@@ -110,9 +124,8 @@ fn follow(bench: &Bench, text: &str, files: &Files<'_>) -> usize {
             "rust" if !files.rust.is_empty() => bench.write(files.rust, &content),
             "console" => {
                 for part in block.lines.join("\n").split("$ ").skip(1) {
-                    let (command, shown) = part.split_once('\n').unwrap_or((part, ""));
-                    let printed = run(bench, command);
-                    let shown: Vec<&str> = shown.trim_end().lines().collect();
+                    let (command, shown) = command_and_output(part);
+                    let printed = run(bench, &command);
                     let lines: Vec<&str> = printed.trim_end().lines().collect();
                     assert!(
                         matches(&shown, &lines),
@@ -282,6 +295,12 @@ fn the_commands_of_the_readme_run() {
         "{}",
         printed[1]
     );
+}
+
+#[test]
+fn a_command_has_continuation_lines() {
+    let (command, shown) = command_and_output("echo 'a\n> b'\na\nb\n");
+    assert_eq!((command.as_str(), shown), ("echo 'a\nb'", vec!["a", "b"]));
 }
 
 #[test]
