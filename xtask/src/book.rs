@@ -137,7 +137,10 @@ fn copy_assets(from: &Path, to: &Path) -> Result<(), Failure> {
         let (path, target) = (entry.path(), to.join(entry.file_name()));
         if entry.file_type()?.is_dir() {
             copy_assets(&path, &target)?;
-        } else if path.extension().is_some_and(|e| e == "svg" || e == "png" || e == "css") {
+        } else if path
+            .extension()
+            .is_some_and(|e| e == "svg" || e == "png" || e == "css")
+        {
             fs::create_dir_all(to)?;
             fs::copy(&path, &target)?;
         }

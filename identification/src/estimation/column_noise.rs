@@ -23,7 +23,7 @@ use crate::{
         factor::Factor,
         observation::MeasuredRun,
         observer::Observer,
-        system::{Observed, System},
+        system::{RunEquations, System},
     },
 };
 
@@ -75,7 +75,7 @@ impl ColumnNoise {
                 log: &piece,
                 instruments: Some(&noisy),
                 budget: 0,
-                returns: None,
+                periodic_motion: None,
             };
             // Skip this run if the noise leaves the workspace.
             let Ok((observed, _)) = observer.run(&measured, &|_, _| {}) else {
@@ -96,7 +96,7 @@ impl ColumnNoise {
     }
 
     /// Adds the equations of a run.
-    fn add(&mut self, observed: &Observed) {
+    fn add(&mut self, observed: &RunEquations) {
         for (own, line) in self.lines.iter_mut().zip(&observed.instruments) {
             let parameters = own.parameters();
             let difference = DMatrix::from_fn(2 * parameters, parameters, |row, column| {

@@ -9,7 +9,7 @@ use crate::{
     consistent::{ConsistencySearch, Consistent},
     data::{
         Log,
-        periods::{Return, returns},
+        periods::{PeriodicMotion, returns},
     },
     error::Error,
     estimation::{
@@ -26,7 +26,7 @@ use crate::{
         observation::{MeasuredRun, RunObservation},
         observer::Observer,
         projection::Projection,
-        system::{Observed, System},
+        system::{RunEquations, System},
         uncertainty_propagation::PropagatedUncertainty,
     },
     result::{Estimate, RunSummary},
@@ -39,7 +39,7 @@ pub(crate) const LARGEST_STRETCHES: usize = 1 << 23;
 /// Prepared data: systems of the projections, columns and base parameters.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Prepared {
+pub struct PreparedSystem {
     /// Columns of the model.
     pub columns: ColumnSet,
     /// The base parameters.
@@ -59,12 +59,12 @@ pub struct Prepared {
     /// Instruments.
     pub(super) instrument_runs: InstrumentRuns,
     /// Periodic motion of each run, if it has one.
-    pub(super) returns: Vec<Option<Return>>,
+    pub(super) returns: Vec<Option<PeriodicMotion>>,
     /// Effect of the uncertainty of previous identifications.
     pub(super) propagated_uncertainty: Option<PropagatedUncertainty>,
 }
 
-impl Prepared {
+impl PreparedSystem {
     /// Systems of the projections, without runs.
     pub(crate) fn new(
         columns: ColumnSet,
@@ -226,7 +226,7 @@ pub fn prepare(
     projections: &[Projection],
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
-) -> Result<Prepared, Error> {
+) -> Result<PreparedSystem, Error> {
     let info = model.info();
     settings.check(&info)?;
     check_projections(projections, model)?;
@@ -270,12 +270,14 @@ pub fn prepare(
             log,
             instruments: instrument_runs.of(number),
             budget,
-            returns: returns[number],
+            periodic_motion: returns[number],
         };
         match observer.run(&measured, &report) {
-            Ok((equations, told)) => {
-                instrument_runs.missing = instrument_runs.missing.or_else(|| told.unusable.clone());
-                observations.push(told);
+            Ok((equations, run_observation)) => {
+                instrument_runs.missing = instrument_runs
+                    .missing
+                    .or_else(|| run_observation.unusable.clone());
+                observations.push(run_observation);
                 points.push(add(&mut systems, equations));
             }
             Err(error) => problems.extend(assessment::explained(model, log, error).problems),
@@ -283,7 +285,7 @@ pub fn prepare(
     }
     Error::check(problems)?;
     let runs = runs.iter().zip(&observations);
-    Ok(Prepared {
+    Ok(PreparedSystem {
         runs: runs
             .map(|(log, observation)| RunSummary::new(log, observation))
             .collect(),
@@ -291,12 +293,12 @@ pub fn prepare(
         points,
         instrument_runs,
         returns,
-        ..Prepared::new(columns, base, payload, projections.to_vec(), systems)
+        ..PreparedSystem::new(columns, base, payload, projections.to_vec(), systems)
     })
 }
 
 /// Equations of a run for each projection, or the error.
-type Equations = Vec<Result<Observed, Error>>;
+type Equations = Vec<Result<RunEquations, Error>>;
 
 /// Adds the equations of a run to the systems, and returns those at the plotted points.
 fn add(systems: &mut [Result<System, Error>], observed: Equations) -> Vec<Vec<DMatrix<f64>>> {
@@ -338,7 +340,7 @@ pub(super) fn check_runs(
 }
 
 /// Warnings before any estimate.
-pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<String> {
+pub(super) fn prepared_warnings(prepared: &PreparedSystem, others: &[Log]) -> Vec<String> {
     let mut warnings = Vec::new();
     if prepared.payload == PayloadUse::Regrouped {
         warnings.push(String::from(
@@ -381,7 +383,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
 }
 
 /// Warning if standstill excludes most data, as positions in a wrong unit would.
-fn mostly_still(prepared: &Prepared) -> Option<String> {
+fn mostly_still(prepared: &PreparedSystem) -> Option<String> {
     let still = prepared.left_out();
     let system = prepared.systems.iter().find_map(|one| one.as_ref().ok())?;
     let left: usize = system.lines.iter().map(Factor::equations).sum();

@@ -10,18 +10,18 @@ use rayon::prelude::*;
 
 use super::{
     chunk::{Chunk, projected},
-    fold::Phases,
     instruments::InstrumentRun,
     observer::{Conditioning, Observer},
+    phase_sums::Phases,
     points::Points,
     projection::Projection,
     sink::{LineSink, Plan, observed},
     states::SampledStates,
-    system::{Observed, singular},
+    system::{RunEquations, singular},
 };
 use crate::{
     blocks::{BLOCK, slice},
-    data::{Log, periods::Return},
+    data::{Log, periods::PeriodicMotion},
     error::Error,
     filters::Decimator,
     kinematics::{
@@ -42,7 +42,7 @@ pub(crate) struct MeasuredRun<'a> {
     /// Largest number of values in stretches.
     pub(crate) budget: usize,
     /// Its periodic motion, if it has one.
-    pub(crate) returns: Option<Return>,
+    pub(crate) periodic_motion: Option<PeriodicMotion>,
 }
 
 /// Other results of a pass over a run.
@@ -74,7 +74,7 @@ impl Observer<'_> {
         &self,
         run: &MeasuredRun<'_>,
         progress: &dyn Fn(usize, usize),
-    ) -> Result<(Vec<Result<Observed, Error>>, RunObservation), Error> {
+    ) -> Result<(Vec<Result<RunEquations, Error>>, RunObservation), Error> {
         let (info, log) = (self.model.info(), run.log);
         let instrument_run =
             |own| InstrumentRun::new(self.model, own, log.samples(), self.settings);
@@ -93,7 +93,7 @@ impl Observer<'_> {
             run.budget / (lines * width * self.projections.len()).max(1),
         )
         .with_phases(
-            run.returns
+            run.periodic_motion
                 .and_then(|motion| Phases::new(motion, self.settings.decimation)),
         );
         let mut sinks = self.sinks(&plan, &decimator, samples, instrument_run.is_some())?;

@@ -6,7 +6,7 @@ use super::{
     defaults::{ACTUATOR, MAIN},
 };
 use crate::{
-    model::{Kind, Model},
+    model::{JointType, Model},
     xml::Element,
 };
 
@@ -44,7 +44,7 @@ fn actuator(reader: &Reader<'_>, element: &Element, model: &mut Model) {
         return;
     };
     let own = &mut model.joints[at];
-    if own.kind == Kind::Ball {
+    if own.kind == JointType::Ball {
         let message = format!(
             "the actuator `{name}` drives the ball joint `{joint}`, which is not supported"
         );

@@ -6,7 +6,7 @@ mod screws;
 
 use crate::{
     assembly::{
-        layout::{Layout, Piece, Tree},
+        layout::{Layout, LayoutPiece, Tree},
         network::Network,
         solvable_chains::{Ending, SolvableChain},
     },
@@ -92,8 +92,8 @@ impl Plan {
         let mut legs = vec![leg];
         for piece in &layout.pieces {
             legs.push(match piece {
-                Piece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
-                Piece::Branch(tree) => {
+                LayoutPiece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
+                LayoutPiece::Branch(tree) => {
                     let (leg, own) = branch(files, network, tree, &mut bodies, &mut names)?;
                     axes.extend(own);
                     leg

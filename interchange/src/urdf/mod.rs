@@ -1,11 +1,11 @@
 //! Reader of URDF: a tree of links and joints, and loops in several notations.
 
-mod beside;
 mod joints;
 mod loops;
 mod massless;
 mod others;
 mod transmissions;
+mod yaml;
 
 use crate::{
     account::{URDF, Use},
@@ -37,7 +37,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     let tree = joints::tree(files, &root, &links, options, &mut model)?;
     transmissions::read(files, &root, &mut model);
     loops::read(files, &root, &tree, &mut model);
-    beside::read(files, file, &tree, &mut model);
+    yaml::read(files, file, &tree, &mut model);
     others::report(files, file, &tree);
     massless::report(files, &shaped, &tree, &model);
     // After the YAML file, which may change joints to ball joints.

@@ -12,7 +12,7 @@ use super::{Context, fault_hypotheses::only};
 use crate::{assessment::hypotheses::FaultHypothesis, error::Error};
 
 /// Fraction of the size that must remain in half the band if there is a filter.
-const LEFT: f64 = 0.5;
+const REMAINING: f64 = 0.5;
 
 /// Whether a fault of `size` is also found in half the band.
 ///
@@ -39,7 +39,7 @@ pub(super) fn confirms(
 
 /// Whether enough of the size remains in half the band.
 fn remains(size: f64, half: f64) -> bool {
-    half * size.signum() >= LEFT * size.abs()
+    half * size.signum() >= REMAINING * size.abs()
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::{
         Motions,
         conditioning::{KeptActuators, home_scales},
     },
-    regression::{chunk::projected, fold::Phases, projection::ModelKind},
+    regression::{chunk::projected, phase_sums::Phases, projection::ModelKind},
 };
 
 /// Number of rows computed before decimation; few, since rows are long and should fit the cache.

@@ -16,13 +16,13 @@ use super::{
     wald_test::WaldTest,
 };
 use crate::{
-    data::{Dataset, Log, periods::Return},
+    data::{Dataset, Log, periods::PeriodicMotion},
     error::Error,
     estimation::periodic_variance::Mean,
     filters::DECIMATION_PADDING,
     regression::{
         columns::ColumnSet,
-        fold::{self, Folds, Phases},
+        phase_sums::{self, PhaseSums, Phases},
         projection::ModelKind,
     },
     result::Estimate,
@@ -83,7 +83,7 @@ pub(crate) struct ScoreTest<'a> {
     /// Position ranges of the actuators.
     pub(crate) position_ranges: &'a [PositionRange],
     /// Periodic motion of each run, if it has one.
-    pub(crate) returns: &'a [Option<Return>],
+    pub(crate) returns: &'a [Option<PeriodicMotion>],
     pub(crate) settings: &'a Settings,
 }
 
@@ -161,7 +161,7 @@ fn means(runs: &[RunScores]) -> Vec<MotionMean> {
         if run.folds.is_empty() {
             continue;
         }
-        let place = fold::add(&mut all, run.folds.clone());
+        let place = phase_sums::add(&mut all, run.folds.clone());
         owners.resize(all.len(), Vec::new());
         owners[place].push(number);
     }
@@ -172,7 +172,7 @@ fn means(runs: &[RunScores]) -> Vec<MotionMean> {
             rows.column(last).clone_owned(),
         )
     };
-    let mean = |(runs, folds): (Vec<usize>, Folds)| {
+    let mean = |(runs, folds): (Vec<usize>, Vec<PhaseSums>)| {
         let mean = Mean::new(&folds, split)?;
         Some(MotionMean { runs, mean })
     };

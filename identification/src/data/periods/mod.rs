@@ -18,7 +18,7 @@
 mod find;
 mod returns;
 
-pub(crate) use returns::{Return, returns};
+pub(crate) use returns::{PeriodicMotion, returns};
 
 use super::Log;
 use crate::error::{Error, Problem};

@@ -8,7 +8,7 @@ const LENGTHS: f64 = 0.01;
 
 /// Periodic motion of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Return {
+pub(crate) struct PeriodicMotion {
     /// Samples of the period; those of the run if it only repeats in another run.
     pub(crate) samples: usize,
     /// Number of the first run with this motion.
@@ -18,7 +18,7 @@ pub(crate) struct Return {
 /// Periodic motions of runs with a given `period` (s), or one to be found.
 ///
 /// Runs with different payloads count as different motions, since their equations differ.
-pub(crate) fn returns(runs: &[Log], period: Option<f64>) -> Vec<Option<Return>> {
+pub(crate) fn returns(runs: &[Log], period: Option<f64>) -> Vec<Option<PeriodicMotion>> {
     let within: Vec<Option<usize>> = runs.iter().map(|log| of_run(log, period)).collect();
     let first = |number: usize| {
         let own = &runs[number];
@@ -43,7 +43,7 @@ pub(crate) fn returns(runs: &[Log], period: Option<f64>) -> Vec<Option<Return>> 
             let whole = (!alone(number)).then(|| runs[number].samples());
             let samples = within[number].or(whole)?;
             let motion = motions[number];
-            Some(Return { samples, motion })
+            Some(PeriodicMotion { samples, motion })
         })
         .collect()
 }

@@ -1,6 +1,6 @@
 //! Periodic runs with periodic errors and with random errors.
 
-use super::{Log, Return, periods, returns};
+use super::{Log, PeriodicMotion, periods, returns};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -101,13 +101,13 @@ fn motions_that_return_are_found_within_a_run_and_from_run_to_run() {
         ],
         None,
     );
-    let told = |samples, motion| Some(Return { samples, motion });
+    let output = |samples, motion| Some(PeriodicMotion { samples, motion });
     let expected = [
-        told(500, 0),
-        told(400, 1),
-        told(1700, 2),
-        told(500, 0),
-        told(1700, 2),
+        output(500, 0),
+        output(400, 1),
+        output(1700, 2),
+        output(500, 0),
+        output(1700, 2),
     ];
     assert_eq!(found, expected);
     assert_eq!(returns(&[once], None), [None]);

@@ -7,7 +7,7 @@ use super::Tree;
 use crate::{
     account::YAML,
     files::{Files, Place},
-    model::{Closure, ClosureKind, Kind, Model, Pose},
+    model::{Closure, ClosureKind, JointType, Model, Pose},
     prune::record_key,
 };
 use nalgebra::Point3;
@@ -247,7 +247,7 @@ fn kinds(files: &Files, place: &Place, value: &Value, entries: &Entries, model: 
         let kind = kinds.get(at).copied().unwrap_or("no type").to_uppercase();
         let joint = model.joint_named(name);
         match (kind.as_str(), joint) {
-            ("SPHERICAL", Some(joint)) => model.joints[joint].kind = Kind::Ball,
+            ("SPHERICAL", Some(joint)) => model.joints[joint].kind = JointType::Ball,
             (_, None) => {
                 let message = format!("there is no moving joint `{name}`");
                 files.report(place, message, "name joints of the URDF that are not fixed");
