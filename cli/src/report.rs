@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     /// numbers as one flat table (.csv); once for each
     #[arg(long = "report", value_name = "FILE")]
     reports: Vec<PathBuf>,
-    /// Published results to show beside the own ones [default: `published/NAME.toml` beside
+    /// Published results to compare with [default: `published/NAME.toml` in the folder of
     /// the description NAME.toml, where it exists]
     #[arg(long, value_name = "TOML")]
     published: Option<PathBuf>,
@@ -38,7 +38,7 @@ enum Format {
 
 /// Requested reports, checked before the long work begins.
 #[derive(Debug)]
-pub(crate) struct Asked {
+pub(crate) struct ReportRequest {
     files: Vec<(PathBuf, Format)>,
     published: Option<PathBuf>,
 }
@@ -55,17 +55,20 @@ impl Arguments {
     ///
     /// # Errors
     /// A file with an unknown extension.
-    pub(crate) fn check(&self, description: &Path) -> Result<Asked, Failure> {
+    pub(crate) fn check(&self, description: &Path) -> Result<ReportRequest, Failure> {
         let with_format = |path: &PathBuf| Ok((path.clone(), format(path)?));
         let files = self.reports.iter().map(with_format);
-        Ok(Asked {
+        Ok(ReportRequest {
             files: files.collect::<Result<_, Failure>>()?,
-            published: self.published.clone().or_else(|| beside(description)),
+            published: self
+                .published
+                .clone()
+                .or_else(|| default_published_file(description)),
         })
     }
 }
 
-impl Asked {
+impl ReportRequest {
     /// Files to read.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         self.published.iter().map(PathBuf::as_path).collect()
@@ -169,7 +172,7 @@ pub fn html(
 
 /// Default file of published results for a description.
 #[must_use]
-pub fn beside(description: &Path) -> Option<PathBuf> {
+pub fn default_published_file(description: &Path) -> Option<PathBuf> {
     let folder = description.parent()?.join("published");
     let file = folder.join(description.file_name()?);
     file.is_file().then_some(file)

@@ -389,19 +389,19 @@ mod tests {
 
     #[test]
     fn quantities_that_nobody_takes_are_named_in_json() {
-        let told = |text: &str| {
+        let message_of = |text: &str| {
             let states = States::parse("s.json".into(), text).unwrap();
             states.unknown(&["pose", "twist"])
         };
-        assert_eq!(told("[{\"pose\": [1], \"twist\": [2]}]"), None);
-        assert_eq!(told("pose[0],note\n1,2\n"), None);
+        assert_eq!(message_of("[{\"pose\": [1], \"twist\": [2]}]"), None);
+        assert_eq!(message_of("pose[0],note\n1,2\n"), None);
         let expected =
             "s.json: no function has the input `twits` of the states: did you mean `twist`?";
         assert_eq!(
-            told("[{\"pose\": [1], \"twits\": [2]}]").as_deref(),
+            message_of("[{\"pose\": [1], \"twits\": [2]}]").as_deref(),
             Some(expected)
         );
-        let two = told("[{\"a1\": 1}, {\"b\": 1}]");
+        let two = message_of("[{\"a1\": 1}, {\"b\": 1}]");
         assert_eq!(
             two.as_deref(),
             Some("s.json: no function has the input `a1` and 1 more of the states")

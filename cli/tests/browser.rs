@@ -144,16 +144,16 @@ fn view(browser: &Path, bench: &Bench, page: &str, width: u32, dark: bool) -> Va
     }
     let output = run("--dump-dom".to_owned());
     let dom = String::from_utf8_lossy(&output.stdout).into_owned();
-    let told = dom.split_once("hidden=\"\">").map(|(_, rest)| rest);
-    let told = told.and_then(|rest| rest.split_once("</pre>"));
-    let (told, _) = told.unwrap_or_else(|| {
+    let shown_output = dom.split_once("hidden=\"\">").map(|(_, rest)| rest);
+    let shown_output = shown_output.and_then(|rest| rest.split_once("</pre>"));
+    let (shown_output, _) = shown_output.unwrap_or_else(|| {
         panic!(
             "no page from {}: {}",
             browser.display(),
             String::from_utf8_lossy(&output.stderr)
         )
     });
-    let text = told
+    let text = shown_output
         .replace("&lt;", "<")
         .replace("&gt;", ">")
         .replace("&nbsp;", "\u{a0}")

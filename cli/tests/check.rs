@@ -209,7 +209,7 @@ fn what_may_not_be_meant_is_noted_with_its_line() {
         ("d = \"d3\"", "is 450 m long"),
     ] {
         let line = line(&bench, part);
-        let note = outcome.err.lines().find(|told| told.contains(expected));
+        let note = outcome.err.lines().find(|output| output.contains(expected));
         let note = note.unwrap_or_else(|| panic!("{expected}: {}", outcome.err));
         assert!(
             note.starts_with(&format!("note: my.toml: line {line}: ")),

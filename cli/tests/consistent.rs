@@ -67,7 +67,7 @@ fn parameters_go_from_identification_to_control_and_simulation() {
 fn a_file_of_parameters_that_does_not_fit_is_refused() {
     let (bench, _) = bench();
     let text = bench.read("parameters.toml");
-    let told = |text: &str| {
+    let output = |text: &str| {
         bench.write("other.toml", text);
         let run = bench.run(&[
             "simulate",
@@ -84,9 +84,9 @@ fn a_file_of_parameters_that_does_not_fit_is_refused() {
         .lines()
         .filter(|line| !line.starts_with("fv_"))
         .collect();
-    assert!(told(&shortened.join("\n")).contains("missing parameters: fv_"));
+    assert!(output(&shortened.join("\n")).contains("missing parameters: fv_"));
     assert!(
-        told(&format!("{text}nonsense = 1\n")).contains("the robot has no parameter `nonsense`")
+        output(&format!("{text}nonsense = 1\n")).contains("the robot has no parameter `nonsense`")
     );
     // Inconsistent estimates cause a warning with line, and the command continues as far as
     // possible.

@@ -190,12 +190,12 @@ fn a_crossed_singularity_of_the_kept_actuators_is_told() {
         worst(1)
     );
     assert!(reasons.contains("outweigh all others"), "{reasons}");
-    let told = |before: &str| -> f64 {
+    let output = |before: &str| -> f64 {
         let (_, rest) = reasons.split_once(before).expect(before);
         let (percent, _) = rest.split_once(" %").expect("percent");
         percent.parse().expect("a number")
     };
     // To three digits.
-    assert!((told("its relative error of ") / error(1) - 1.0).abs() < 5e-3);
-    assert!((told("is lower than the ") / error(0) - 1.0).abs() < 5e-3);
+    assert!((output("its relative error of ") / error(1) - 1.0).abs() < 5e-3);
+    assert!((output("is lower than the ") / error(0) - 1.0).abs() < 5e-3);
 }

@@ -311,17 +311,17 @@ fn a_run_of_another_description_is_told_with_what_differs() {
     let text = bench.read("my.toml");
     bench.write("commented.toml", &format!("{text}# Looked through.\n"));
     bench.good(&["factor", "commented.toml", "log_2.csv", "-o", "2.parquet"]);
-    let told = bench.bad(&["identify", "my.toml", "--factors", "1.parquet", "2.parquet"]);
-    assert!(told.contains("a comment suffices"), "{told}");
+    let output = bench.bad(&["identify", "my.toml", "--factors", "1.parquet", "2.parquet"]);
+    assert!(output.contains("a comment suffices"), "{output}");
     bench.write(
         "renamed.toml",
         &text.replace("name = \"FiveBar\"", "name = \"Other\""),
     );
     bench.good(&["factor", "renamed.toml", "log_2.csv", "-o", "3.parquet"]);
-    let told = bench.bad(&["identify", "my.toml", "--factors", "1.parquet", "3.parquet"]);
+    let output = bench.bad(&["identify", "my.toml", "--factors", "1.parquet", "3.parquet"]);
     assert!(
-        told.contains("the robot `Other`, the others of `FiveBar`"),
-        "{told}"
+        output.contains("the robot `Other`, the others of `FiveBar`"),
+        "{output}"
     );
     bench.write(
         "slower.toml",
@@ -336,9 +336,9 @@ fn a_run_of_another_description_is_told_with_what_differs() {
         "slower.csv",
     ]);
     bench.good(&["factor", "my.toml", "slower.csv", "-o", "4.parquet"]);
-    let told = bench.bad(&["merge", "1.parquet", "4.parquet", "-o", "both.parquet"]);
+    let output = bench.bad(&["merge", "1.parquet", "4.parquet", "-o", "both.parquet"]);
     assert!(
-        told.contains("sampled at 1000 Hz, the others at 2000 Hz"),
-        "{told}"
+        output.contains("sampled at 1000 Hz, the others at 2000 Hz"),
+        "{output}"
     );
 }

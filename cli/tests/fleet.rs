@@ -29,9 +29,13 @@ fn logs_and_factors_are_of_the_same_runs() {
     let fleet = [
         "simulate", "my.toml", "--fleet", "3", "--days", "2", "--faults", "25",
     ];
-    let told = bench.json(&[&fleet[..], &["-o", "logs"]].concat());
+    let shown_output = bench.json(&[&fleet[..], &["-o", "logs"]].concat());
     assert_eq!(
-        (&told["runs"], &told["files"], &told["left_out"]),
+        (
+            &shown_output["runs"],
+            &shown_output["files"],
+            &shown_output["left_out"]
+        ),
         (&6.into(), &6.into(), &0.into())
     );
     bench.good(&[&fleet[..], &["--factors", "-o", "factors"]].concat());
@@ -51,11 +55,11 @@ fn logs_and_factors_are_of_the_same_runs() {
     let log = "logs/serial=R00001/day=2026-03-03/fast.parquet";
     bench.good(&["factor", "my.toml", log, "-o", "own.parquet"]);
     let files = ["factors/day=2026-03-03/robots-00000.parquet", "own.parquet"];
-    let told = bench.json(&[&["identify", "my.toml", "--factors"], &files[..]].concat());
-    let left_out = told["left_out"].as_array().expect("a list");
+    let shown_output = bench.json(&[&["identify", "my.toml", "--factors"], &files[..]].concat());
+    let left_out = shown_output["left_out"].as_array().expect("a list");
     assert_eq!(left_out.len(), 1, "{left_out:?}");
     assert_eq!(left_out[0]["reason"], "twice");
-    assert_eq!(told["runs"].as_array().map(Vec::len), Some(3));
+    assert_eq!(shown_output["runs"].as_array().map(Vec::len), Some(3));
 }
 
 #[test]

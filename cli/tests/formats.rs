@@ -157,15 +157,18 @@ fn a_format_that_is_not_built_in_is_named_with_its_feature() {
             "--parameters",
             "p.toml",
         ];
-        let told = bench.bad(&arguments);
+        let output = bench.bad(&arguments);
         assert!(
-            told.contains("this build of overact does not support"),
-            "{told}"
+            output.contains("this build of overact does not support"),
+            "{output}"
         );
-        assert!(told.contains(&format!("--features {feature}")), "{told}");
-        assert!(told.contains(name), "{told}");
-        let raw = told.chars().any(|one| one.is_control() && one != '\n');
-        assert!(!raw, "{told:?}");
+        assert!(
+            output.contains(&format!("--features {feature}")),
+            "{output}"
+        );
+        assert!(output.contains(name), "{output}");
+        let raw = output.chars().any(|one| one.is_control() && one != '\n');
+        assert!(!raw, "{output:?}");
         assert_eq!(bench.files(), ["drive.toml"]);
     }
 }

@@ -296,13 +296,13 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
     };
     let all = format!("[parameters]\n{}{}", joint(1), joint(2));
     bench.write("parameters.toml", &all);
-    let told = [
+    let shown_output = [
         "--functions",
         "idm_red_platform",
         "--parameters",
         "parameters.toml",
     ];
-    let said = bench.bad(&quick(&told));
+    let said = bench.bad(&quick(&shown_output));
     assert!(
         said.contains("has no function `idm_red_platform`: with known parameters"),
         "{said}"

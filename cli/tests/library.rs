@@ -411,14 +411,14 @@ fn all_read_their_own_parameters() {
         let torques = list(&read[0]["inverse_dynamics"]);
         assert!(torques.iter().any(|torque| number(torque) != 0.0), "{name}");
         // Two parsers may round the last digit differently.
-        let told = ask(&["explicit.json"]);
-        let told = list(&told[0]["inverse_dynamics"]).iter().map(number);
-        let largest = told
+        let output = ask(&["explicit.json"]);
+        let output = list(&output[0]["inverse_dynamics"]).iter().map(number);
+        let largest = output
             .clone()
             .fold(0.0, |largest: f64, torque| largest.max(torque.abs()));
-        for (torque, told) in torques.iter().zip(told) {
-            let miss = (number(torque) - told).abs();
-            assert!(miss <= 1e-12 * largest, "{name}: {torque} is not {told}");
+        for (torque, output) in torques.iter().zip(output) {
+            let miss = (number(torque) - output).abs();
+            assert!(miss <= 1e-12 * largest, "{name}: {torque} is not {output}");
         }
         bench.good(&[
             "simulate",

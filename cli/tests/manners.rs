@@ -104,11 +104,11 @@ fn every_error_has_a_code_that_is_explained() {
         err.contains("cause and remedy: overact explain OA102"),
         "{err}"
     );
-    let told = bench.good(&["explain", "oa102", "101"]);
+    let shown_output = bench.good(&["explain", "oa102", "101"]);
     for part in ["OA102: an unknown key", "OA101: ", "Cause\n", "Remedy\n"] {
-        assert!(told.contains(part), "{part} in {told}");
+        assert!(shown_output.contains(part), "{part} in {shown_output}");
     }
-    assert!(told.lines().all(|line| line.chars().count() <= 100));
+    assert!(shown_output.lines().all(|line| line.chars().count() <= 100));
     let all = bench.good(&["explain"]);
     let document = bench.json(&["explain"]);
     let codes = document["codes"].as_array().expect("codes");
@@ -128,13 +128,25 @@ fn every_error_has_a_code_that_is_explained() {
         &["check", "--frob", "my.toml"],
         &["explain", "x"],
     ] {
-        let told = bench.run(wrong);
-        assert_eq!((told.code, told.out.as_str()), (Some(2), ""), "{wrong:?}");
-        assert!(told.err.starts_with("error[OA601]: "), "{}", told.err);
-        let told = bench.run(&[&["--json"], wrong].concat());
-        let document: serde_json::Value = serde_json::from_str(&told.err).expect("JSON");
+        let shown_output = bench.run(wrong);
+        assert_eq!(
+            (shown_output.code, shown_output.out.as_str()),
+            (Some(2), ""),
+            "{wrong:?}"
+        );
+        assert!(
+            shown_output.err.starts_with("error[OA601]: "),
+            "{}",
+            shown_output.err
+        );
+        let shown_output = bench.run(&[&["--json"], wrong].concat());
+        let document: serde_json::Value = serde_json::from_str(&shown_output.err).expect("JSON");
         assert_eq!(document["errors"][0]["code"], "OA601", "{wrong:?}");
-        assert_eq!((told.code, told.out.as_str()), (Some(2), ""), "{wrong:?}");
+        assert_eq!(
+            (shown_output.code, shown_output.out.as_str()),
+            (Some(2), ""),
+            "{wrong:?}"
+        );
     }
 }
 
@@ -145,11 +157,15 @@ fn quiet_leaves_errors_alone_on_standard_error() {
         lines.map(|line| format!("{line}\n")).collect()
     };
     let bench = Bench::with("planar-4rrr", redundant);
-    let told = bench.run(&["check", "my.toml"]);
-    assert!(told.err.starts_with("note: my.toml: "), "{}", told.err);
+    let shown_output = bench.run(&["check", "my.toml"]);
+    assert!(
+        shown_output.err.starts_with("note: my.toml: "),
+        "{}",
+        shown_output.err
+    );
     for quiet in ["-q", "--quiet"] {
         let still = bench.run(&[quiet, "check", "my.toml"]);
-        assert_eq!((still.err.as_str(), &still.out), ("", &told.out));
+        assert_eq!((still.err.as_str(), &still.out), ("", &shown_output.out));
         let failed = bench.run(&[quiet, "check", "none.toml"]);
         assert!(failed.err.starts_with("error[OA114]"), "{}", failed.err);
     }
@@ -262,17 +278,22 @@ fn warnings_are_told_on_standard_error_where_the_result_goes_to_a_file() {
         "-o",
         "result.txt",
     ];
-    let told = bench.run(&run);
-    assert_eq!(told.code, Some(0), "{}", told.err);
+    let shown_output = bench.run(&run);
+    assert_eq!(shown_output.code, Some(0), "{}", shown_output.err);
     assert!(
-        told.err.starts_with("warning: joint model: "),
+        shown_output.err.starts_with("warning: joint model: "),
         "{}",
-        told.err
+        shown_output.err
     );
-    let mut lines: Vec<&str> = told.err.lines().collect();
+    let mut lines: Vec<&str> = shown_output.err.lines().collect();
     lines.sort_unstable();
     lines.dedup();
-    assert_eq!(lines.len(), told.err.lines().count(), "{}", told.err);
+    assert_eq!(
+        lines.len(),
+        shown_output.err.lines().count(),
+        "{}",
+        shown_output.err
+    );
     let still = bench.run(&[&run[..], &["--quiet"]].concat());
     assert_eq!(still.err, "");
     let strict = bench.run(&[&run[..], &["--strict"]].concat());

@@ -2,7 +2,8 @@
 //! compares their output.
 //!
 //! Other blocks are files: TOML is appended to the page's TOML file, XML and Rust are written to
-//! theirs. Commands of a console block run in a shell in the same folder. A line `…` matches any
+//! theirs. Commands of a console block run in a shell in the same folder; their further lines begin
+//! with `> `. A line `…` matches any
 //! lines, and numbers may differ in their last digits between machines.
 #![cfg(unix)]
 
@@ -96,6 +97,19 @@ struct Files<'n> {
     rust: &'n str,
 }
 
+/// Command, with its continuation lines, and the shown output.
+///
+/// A continuation line begins with `> `, as in a shell.
+fn command_and_output(text: &str) -> (String, Vec<&str>) {
+    let mut lines = text.trim_end().lines().peekable();
+    let mut command = lines.next().unwrap_or_default().to_owned();
+    while let Some(more) = lines.next_if(|line| line.starts_with("> ")) {
+        command.push('\n');
+        command.push_str(&more[2..]);
+    }
+    (command, lines.collect())
+}
+
 /// Runs the blocks of a document; returns the number of commands.
 fn follow(bench: &Bench, text: &str, files: &Files<'_>) -> usize {
     let mut commands = 0;
@@ -110,9 +124,8 @@ fn follow(bench: &Bench, text: &str, files: &Files<'_>) -> usize {
             "rust" if !files.rust.is_empty() => bench.write(files.rust, &content),
             "console" => {
                 for part in block.lines.join("\n").split("$ ").skip(1) {
-                    let (command, shown) = part.split_once('\n').unwrap_or((part, ""));
-                    let printed = run(bench, command);
-                    let shown: Vec<&str> = shown.trim_end().lines().collect();
+                    let (command, shown) = command_and_output(part);
+                    let printed = run(bench, &command);
                     let lines: Vec<&str> = printed.trim_end().lines().collect();
                     assert!(
                         matches(&shown, &lines),
@@ -182,13 +195,60 @@ fn the_arm_is_imported_and_identified_from_a_log_as_shown() {
     if !overact_tier::is_full() {
         return;
     }
-    let text = fs::read_to_string(docs().join("tutorial-serial.md")).expect("the page");
+    let (simulated, _) = serial_tutorial();
     let files = Files {
         toml: "arm.toml",
         xml: "arm.urdf",
         ..Files::default()
     };
-    assert_eq!(follow(&Bench::new(), &text, &files), 12);
+    assert_eq!(follow(&Bench::new(), &simulated, &files), 12);
+}
+
+/// The tutorial of serial arms: the parts with a simulated and with a measured log.
+fn serial_tutorial() -> (String, String) {
+    let text = fs::read_to_string(docs().join("tutorial-serial.md")).expect("the page");
+    let (simulated, measured) = text
+        .split_once("## A measured arm")
+        .expect("both parts of the page");
+    (simulated.to_owned(), measured.to_owned())
+}
+
+/// A log of the UR10e in the folder of reference data: `OVERACT_SHARED`, or `shared` next to the
+/// repository.
+fn ur10e_log(name: &str) -> PathBuf {
+    let folder = std::env::var_os("OVERACT_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"),
+        PathBuf::from,
+    );
+    folder.join("data/ur10e").join(name)
+}
+
+#[test]
+fn the_measured_arm_is_identified_as_shown() {
+    // It is identified twice.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let logs = [
+        ("empty.csv", "14harm_unloaded.csv"),
+        ("loaded.csv", "14harm_loaded.csv"),
+        ("other.csv", "15harm_unloaded.csv"),
+    ];
+    let bench = Bench::new();
+    for (name, file) in logs {
+        let log = ur10e_log(file);
+        if !log.exists() {
+            eprintln!("skipped: the UR10e data are not here; set OVERACT_SHARED to their folder");
+            return;
+        }
+        std::os::unix::fs::symlink(log, bench.path(name)).expect("a link");
+    }
+    let (_, measured) = serial_tutorial();
+    let files = Files {
+        toml: "ur10e.toml",
+        ..Files::default()
+    };
+    assert_eq!(follow(&bench, &measured, &files), 3);
 }
 
 #[test]
@@ -235,6 +295,12 @@ fn the_commands_of_the_readme_run() {
         "{}",
         printed[1]
     );
+}
+
+#[test]
+fn a_command_has_continuation_lines() {
+    let (command, shown) = command_and_output("echo 'a\n> b'\na\nb\n");
+    assert_eq!((command.as_str(), shown), ("echo 'a\nb'", vec!["a", "b"]));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The stages of the generator, in order.
 
 use crate::choice::{Chosen, Missing};
-use crate::derivation::{FunctionForm, Selection, Underivable, function_name, inventory};
+use crate::derivation::{DerivationError, FunctionForm, Selection, function_name, inventory};
 use crate::float::Float;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
@@ -46,23 +46,26 @@ pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<Compiled, 
 /// The model of a checked mechanism.
 ///
 /// # Errors
-/// See [`Underivable`].
-pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotModel, Underivable> {
+/// See [`DerivationError`].
+pub fn model_with(
+    mechanism: Mechanism,
+    request: &Request<'_>,
+) -> Result<RobotModel, DerivationError> {
     derived(mechanism, request.effort_for(None), request)
 }
 
 /// The error for requested functions that are not available.
-fn not_offered(missing: Vec<Missing>) -> Underivable {
-    let told = missing.into_iter().map(|one| (one.sentence, one.help));
-    Underivable::NotOffered(told.collect())
+fn not_offered(missing: Vec<Missing>) -> DerivationError {
+    let sentences = missing.into_iter().map(|one| (one.sentence, one.help));
+    DerivationError::NotOffered(sentences.collect())
 }
 
 /// Checks that the floating-point type can represent the constants of all functions.
-fn representable(functions: &[CompiledFunction], float: Float) -> Result<(), Underivable> {
+fn representable(functions: &[CompiledFunction], float: Float) -> Result<(), DerivationError> {
     for function in functions {
         let mut constants = function.program.constants();
         if let Some(value) = constants.find(|value| !float.holds(*value)) {
-            return Err(Underivable::Unrepresentable {
+            return Err(DerivationError::Unrepresentable {
                 function: function.name.clone(),
                 value: value.to_string(),
                 float: float.name(),
@@ -77,7 +80,7 @@ fn chosen(
     mechanism: &Mechanism,
     selection: &Selection,
     request: &Request<'_>,
-) -> Result<(Vec<FunctionForm>, Chosen), Underivable> {
+) -> Result<(Vec<FunctionForm>, Chosen), DerivationError> {
     let mut offered = inventory(mechanism, selection.joints);
     offered.retain(|form| {
         let function = form.function;
@@ -104,11 +107,11 @@ fn compiled(
     assembler: &Assembler<'_>,
     request: &Request<'_>,
     form: FunctionForm,
-) -> Result<CompiledFunction, Underivable> {
+) -> Result<CompiledFunction, DerivationError> {
     let FunctionForm { function, from } = form;
     let program = Forms::new(*assembler, function, from).cheapest()?;
     let lanes = if request.side_by_side && request.float == Float::F64 {
-        selection::beside(assembler, function, from, &program)
+        selection::lane_program(assembler, function, from, &program)
     } else {
         None
     };
@@ -123,7 +126,7 @@ fn derived(
     mechanism: Mechanism,
     effort: Effort,
     request: &Request<'_>,
-) -> Result<RobotModel, Underivable> {
+) -> Result<RobotModel, DerivationError> {
     let tell = |done: usize, functions: usize, work: &str| {
         (request.progress)(Progress {
             mechanism: &mechanism,
@@ -152,7 +155,7 @@ fn derived(
     });
     let functions = functions
         .into_iter()
-        .collect::<Result<Vec<_>, Underivable>>()?;
+        .collect::<Result<Vec<_>, DerivationError>>()?;
     representable(&functions, request.float)?;
     Ok(RobotModel {
         functions,

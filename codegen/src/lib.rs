@@ -22,7 +22,7 @@
 //! The crate is pure: it maps text to a model or diagnostics.
 
 pub mod backends;
-#[allow(unreachable_pub, reason = "public to the stages that stand above")]
+#[allow(unreachable_pub, reason = "public to the stages above")]
 mod cas;
 mod checked;
 mod choice;

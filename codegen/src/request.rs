@@ -27,7 +27,7 @@ pub struct Progress<'p> {
 pub(crate) type Watcher<'a> = &'a (dyn Fn(Progress<'_>) + Sync);
 
 /// Predicate for the functions of a model.
-pub(crate) type Wanted<'a> = &'a (dyn Fn(&Mechanism, Function, MotionInput) -> bool + Sync);
+pub(crate) type FunctionFilter<'a> = &'a (dyn Fn(&Mechanism, Function, MotionInput) -> bool + Sync);
 
 /// Contents of a model and effort; by default all functions, with a quick search.
 #[derive(Clone, Copy)]
@@ -37,7 +37,7 @@ pub struct Request<'a> {
     /// Effort of the search if the description has none.
     pub otherwise: Effort,
     /// The functions that are derived, which takes most of the time.
-    pub wanted: Wanted<'a>,
+    pub wanted: FunctionFilter<'a>,
     /// Functions chosen by name, if not all are requested; called functions are included.
     ///
     /// Generated code is an `overact::Model` if all functions of such a model are included.

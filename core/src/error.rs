@@ -267,14 +267,14 @@ mod tests {
 
     #[test]
     fn a_determinant_of_zero_is_not_infinitely_smaller() {
-        let told = |condition| {
+        let message = |condition| {
             Error::SingularLeg {
                 leg: "left",
                 condition,
             }
             .to_string()
         };
-        assert!(told(f64::INFINITY).ends_with("its determinant is zero"));
-        assert!(told(2e9).ends_with("its determinant is 2.0e9 times smaller than at home"));
+        assert!(message(f64::INFINITY).ends_with("its determinant is zero"));
+        assert!(message(2e9).ends_with("its determinant is 2.0e9 times smaller than at home"));
     }
 }

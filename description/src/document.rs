@@ -48,7 +48,7 @@ pub struct Description {
     /// Warnings about text that is probably not intended, sorted by location.
     ///
     /// Examples are numbers without a unit that would fit another unit.
-    pub doubts: Vec<Spanned<String>>,
+    pub warnings: Vec<Spanned<String>>,
 }
 
 /// Choice of the columns that represent the base parameters, among sets of equal rank.

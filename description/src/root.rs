@@ -153,7 +153,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         controller,
         prior: prior.unwrap_or_default(),
         identification,
-        doubts: table.context.doubts(),
+        warnings: table.context.warnings(),
     })
 }
 

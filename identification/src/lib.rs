@@ -69,7 +69,7 @@ pub use estimation::{
 pub use gains::{DriveGain, Gains, JointParameter, drive_gains};
 pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
-    BaseParameter, Identification, Prepared, PriorStage, Progress, ProjectionEstimates,
+    BaseParameter, Identification, PreparedSystem, PriorStage, Progress, ProjectionEstimates,
     RankedProjection, Study, estimate_projection,
     figures::{Figures, PredictionFigures, ResidualFigures},
     identify, identify_after, prepare, study,
@@ -86,7 +86,7 @@ pub use regression::{
     factor::Factor,
     projection::{ModelKind, Projection},
     states::SampledStates,
-    system::{Part, PartitionCondition, Stretch, System},
+    system::{PartitionCondition, RunPart, Stretch, System},
 };
 pub use result::{
     CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, ParameterEstimate,

@@ -221,7 +221,7 @@ fn broken_mat_files_are_errors() {
             .starts_with("log.mat: the file is not a MATLAB v5 file: ")
     );
     fs::write(&path, b"MATLAB 7.3 MAT-file, Platform: GLNXA64").expect("written");
-    let told = text(read(&path, &mapping, false), folder.path());
+    let output = text(read(&path, &mapping, false), folder.path());
     let expected = if cfg!(feature = "hdf5") {
         "log.mat: the HDF5 file can't be read: "
     } else {
@@ -229,7 +229,7 @@ fn broken_mat_files_are_errors() {
          build it with the feature `hdf5`: `cargo run --release --features hdf5 -- …`; or save it in MATLAB with \
          `save(..., '-v7')`"
     };
-    assert!(told.starts_with(expected), "{told}");
+    assert!(output.starts_with(expected), "{output}");
     let Some(path) = common::shared("data/emps/DATA_EMPS.mat") else {
         return;
     };

@@ -98,9 +98,9 @@ fn symmetric_friction_is_the_published_table() {
         // One motor: the torque is the line.
         assert!((pulses.torques[0].residual_norm - pulses.residual_norm).abs() < 1e-9);
         // The period is found in the run, and encoder errors are harmless.
-        let told = &result.errors_in_regressor[0];
-        assert_eq!(told.runs[0].period_s, 6.24);
-        assert!(told.parameters.iter().all(|parameter| !parameter.spoiled));
+        let output = &result.errors_in_regressor[0];
+        assert_eq!(output.runs[0].period_s, 6.24);
+        assert!(output.parameters.iter().all(|parameter| !parameter.spoiled));
         // Friction depends on the direction, as the asymmetric model shows.
         let known = |warning: &String| {
             warning.contains("cancelled") || warning.contains("friction that differs by direction")

@@ -98,7 +98,7 @@ fn files_with_one_clock_are_joined_sample_by_sample() {
 fn files_that_do_not_overlap_or_leap_are_refused() {
     let row = |k: i32| (f64::from(k) / 10.0, f64::from(k));
     let positions = text("q", (100..150).map(row));
-    let told = |rows: &mut dyn Iterator<Item = (f64, f64)>| {
+    let output = |rows: &mut dyn Iterator<Item = (f64, f64)>| {
         let torques = text("tau", rows);
         let log = joined(
             ("q.csv", positions.as_bytes()),
@@ -108,22 +108,22 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
     };
     let way_out = "files are joined by time: check that they are of one run and that their clocks have the same origin";
     assert_eq!(
-        told(&mut (0..50).map(row)),
+        output(&mut (0..50).map(row)),
         format!("i.csv: the file ends at 4.9 s, before q.csv begins at 10 s\n  help: {way_out}")
     );
     assert_eq!(
-        told(&mut (200..250).map(row)),
+        output(&mut (200..250).map(row)),
         format!(
             "i.csv: the file begins at 20 s, when q.csv has ended at 14.9 s\n  help: {way_out}"
         )
     );
     let grow = "interpolation needs increasing times: cut the run there, or use another column of the time";
     assert_eq!(
-        told(&mut (90..160).filter(|k| !(120..130).contains(k)).map(row)),
+        output(&mut (90..160).filter(|k| !(120..130).contains(k)).map(row)),
         "i.csv: the time steps from 11.9 s to 13 s\n  help: samples are missing for too long to be interpolated: cut the run there into two"
     );
     assert_eq!(
-        told(&mut (90..160).map(|k| row(if k == 130 { 110 } else { k }))),
+        output(&mut (90..160).map(|k| row(if k == 130 { 110 } else { k }))),
         format!("i.csv: the time steps from 12.9 s to 11 s\n  help: {grow}")
     );
     let empty = joined(("q.csv", positions.as_bytes()), ("i.csv", b"t,tau\n"));
@@ -179,12 +179,12 @@ fn the_result_says_what_was_interpolated() {
     };
     let result =
         identify(&EMPS, &dataset, &settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"));
-    let told = result
+    let output = result
         .warnings
         .iter()
         .find(|warning| warning.contains("i.csv was interpolated onto"));
     assert!(
-        told.is_some_and(|told| told.starts_with(log.name())),
+        output.is_some_and(|output| output.starts_with(log.name())),
         "{:?}",
         result.warnings
     );

@@ -67,7 +67,7 @@ fn identified(
         instruments,
         ..settings(robot)
     };
-    let told = Cell::new(0);
+    let output = Cell::new(0);
     let result = identify(
         robot,
         &Dataset {
@@ -81,14 +81,14 @@ fn identified(
         &|progress| {
             if let Progress::Run { done, samples, .. } = progress {
                 assert!(done <= samples);
-                told.set(told.get() + 1);
+                output.set(output.get() + 1);
             }
         },
     )
     .expect("an identification");
     assert_eq!(result.runs[0].samples, times * record.time.len());
     // A block of some thousand samples at a time.
-    assert!(told.get() > log.samples() / 5000, "{}", told.get());
+    assert!(output.get() > log.samples() / 5000, "{}", output.get());
     f64::from(ALLOCATOR.peak_usage_as_mb())
 }
 

@@ -203,12 +203,15 @@ fn every_format_written_anew_gives_the_same_numbers() {
         eprintln!("skipped: there is no Python here");
         return;
     };
-    let told = String::from_utf8_lossy(&output.stderr);
-    if told.contains("ModuleNotFoundError") {
-        eprintln!("skipped: {}", told.lines().last().unwrap_or_default());
+    let shown_output = String::from_utf8_lossy(&output.stderr);
+    if shown_output.contains("ModuleNotFoundError") {
+        eprintln!(
+            "skipped: {}",
+            shown_output.lines().last().unwrap_or_default()
+        );
         return;
     }
-    assert!(output.status.success(), "{told}");
+    assert!(output.status.success(), "{shown_output}");
     all_are_the_log(folder.path());
 }
 
@@ -223,12 +226,15 @@ fn a_file_of_a_feature_is_named_with_it() {
         if feature == "hdf5" && cfg!(feature = "hdf5") {
             continue;
         }
-        let told = read(&kept().join(name), &matrices(""), false).expect_err(name);
-        let told = told.to_string();
+        let shown_output = read(&kept().join(name), &matrices(""), false).expect_err(name);
+        let shown_output = shown_output.to_string();
         assert!(
-            told.contains("which this build of overact does not support"),
-            "{told}"
+            shown_output.contains("which this build of overact does not support"),
+            "{shown_output}"
         );
-        assert!(told.contains(&format!("--features {feature}")), "{told}");
+        assert!(
+            shown_output.contains(&format!("--features {feature}")),
+            "{shown_output}"
+        );
     }
 }

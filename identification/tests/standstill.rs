@@ -90,14 +90,14 @@ fn equations_at_standstill_are_left_out_and_counted() {
 }
 
 #[test]
-fn limits_that_leave_little_are_told() {
+fn limits_that_leave_few_equations_are_reported() {
     let most = identified(vec![0.5]);
     let left_out = most.runs[0].standstill_equations[0];
     let all = left_out + most.estimates[0].equations;
     assert!(2 * left_out > all, "{left_out} of {all}");
     let expected = format!("{left_out} of {all} equations are skipped at standstill");
-    let told = |text: &String| text.starts_with(&expected) && text.contains("`position_scale`");
-    assert!(most.warnings.iter().any(told), "{:?}", most.warnings);
+    let output = |text: &String| text.starts_with(&expected) && text.contains("`position_scale`");
+    assert!(most.warnings.iter().any(output), "{:?}", most.warnings);
     let few = identified(vec![0.08]);
     assert!(!few.warnings.iter().any(|text| text.contains("skipped at")));
     let log = log();
@@ -128,7 +128,7 @@ fn limits_that_leave_little_are_told() {
 }
 
 /// Words of a check for friction of 20 N times `friction` of the speed.
-fn said_of(friction: impl Fn(f64) -> f64) -> String {
+fn check_words_for(friction: impl Fn(f64) -> f64) -> String {
     let mut log = log();
     let (positions, _) = log.load().expect("numbers");
     let rate = |k: usize| FREQUENCY * (positions[k + 1] - positions[k - 1]) / 2.0;
@@ -162,7 +162,7 @@ fn said_of(friction: impl Fn(f64) -> f64) -> String {
 
 #[test]
 fn friction_near_standstill_rises_or_falls() {
-    let rises = said_of(|speed| 1.0 + (-speed / 0.07).exp());
+    let rises = check_words_for(|speed| 1.0 + (-speed / 0.07).exp());
     assert!(
         rises.starts_with("the friction in the torque of joint 1 rises towards standstill by "),
         "{rises}"
@@ -171,7 +171,7 @@ fn friction_near_standstill_rises_or_falls() {
         rises.contains(" N beyond the model, over about ") && rises.contains("`stribeck`"),
         "{rises}"
     );
-    let falls = said_of(|speed| 1.0 - (-speed / 0.07).exp());
+    let falls = check_words_for(|speed| 1.0 - (-speed / 0.07).exp());
     assert!(
         falls.starts_with("the friction in the torque of joint 1 falls towards standstill by "),
         "{falls}"

@@ -2,7 +2,7 @@
 
 use crate::{
     files::{Files, Place},
-    model::{Follow, Kind, Model},
+    model::{Follow, JointType, Model},
 };
 
 /// One relation of a file: follower = factor · leader + offset.
@@ -85,7 +85,7 @@ impl Couplings {
         for coupling in known.chain(self.all) {
             let name = |joint: usize| &model.joints[joint].name;
             let mut ends = [coupling.follower, coupling.leader].into_iter();
-            if let Some(ball) = ends.find(|&joint| model.joints[joint].kind == Kind::Ball) {
+            if let Some(ball) = ends.find(|&joint| model.joints[joint].kind == JointType::Ball) {
                 let message = format!("`{}` is a ball joint and cannot be coupled", name(ball));
                 let help = "couple revolute and prismatic joints";
                 files.report(&coupling.place, message, help);

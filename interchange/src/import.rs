@@ -20,7 +20,7 @@ use crate::{
     par,
     plan::Plan,
     sdf, unsupported, urdf,
-    writing::{self, Written},
+    writing::{self, WrittenDescription},
     xml,
 };
 use overact_description::diagnostic::Diagnostics;
@@ -89,7 +89,7 @@ fn described(files: &Files, path: &Path, options: &Options) -> Option<Described>
     let robot = Robot::new(files, &model, options)?;
     let designed = experiment::design(&robot.network, &robot.layout, &robot.plan);
     let name = options.name.clone().unwrap_or_else(|| model.name.clone());
-    let Written { text, joints } = robot.toml(files, &designed, path, options);
+    let WrittenDescription { text, joints } = robot.toml(files, &designed, path, options);
     Some(Described {
         name,
         text,
@@ -143,7 +143,7 @@ impl<'m> Robot<'m> {
         designed: &Result<Experiment, String>,
         path: &Path,
         options: &Options,
-    ) -> Written {
+    ) -> WrittenDescription {
         let source = path
             .file_name()
             .map(|name| name.to_string_lossy().into_owned());
@@ -322,7 +322,7 @@ fn no_balls_in_trees(files: &Files, model: &Model) -> Option<()> {
         return Some(());
     }
     let mut balls = model.joints.iter();
-    let ball = balls.find(|joint| joint.kind == crate::model::Kind::Ball);
+    let ball = balls.find(|joint| joint.kind == crate::model::JointType::Ball);
     let Some(ball) = ball else {
         return Some(());
     };

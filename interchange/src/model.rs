@@ -56,7 +56,7 @@ pub(crate) struct Inertia {
 
 /// Joint types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum JointType {
     Revolute,
     Prismatic,
     /// Spherical joint.
@@ -76,7 +76,7 @@ pub(crate) struct Follow {
 pub(crate) struct Joint {
     /// Name.
     pub(crate) name: String,
-    pub(crate) kind: Kind,
+    pub(crate) kind: JointType,
     /// Unit axis in the frame of the carried body.
     pub(crate) axis: Vector3<f64>,
     /// Point on the axis, or centre of a ball joint, in that frame.
@@ -259,7 +259,7 @@ impl Motor {
 
 impl Joint {
     /// A passive, frictionless joint about z.
-    pub(crate) fn new(name: &str, kind: Kind, place: Place) -> Self {
+    pub(crate) fn new(name: &str, kind: JointType, place: Place) -> Self {
         Self {
             name: name.to_owned(),
             kind,

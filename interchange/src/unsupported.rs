@@ -3,7 +3,7 @@
 use crate::{
     files::Files,
     format::Format,
-    model::{Joint, Kind, Model},
+    model::{Joint, JointType, Model},
 };
 
 /// Torque components that a file may give for a joint.
@@ -19,7 +19,7 @@ enum Torque {
 pub(crate) fn leave_out(files: &Files, format: Format, model: &mut Model) {
     let has_loops = !model.closures.is_empty();
     for joint in &mut model.joints {
-        if joint.kind == Kind::Ball {
+        if joint.kind == JointType::Ball {
             let reason = "LEFT OUT: torques of ball joints are not supported";
             for torque in given(joint) {
                 report(files, format, joint, torque, reason);

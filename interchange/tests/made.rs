@@ -162,10 +162,10 @@ fn a_joint_that_follows_keeps_its_constant() {
     };
     // The centre of mass is 0.1 m along x of a body that is rotated by 0.3 rad when the leader is
     // at zero.
-    let told = text(" offset='0.3'");
-    assert!(told.contains("theta = \"0.5 * q_j\""), "{told}");
+    let output = text(" offset='0.3'");
+    assert!(output.contains("theta = \"0.5 * q_j\""), "{output}");
     let value = |name: &str| {
-        let line = told
+        let line = output
             .lines()
             .find_map(|line| line.strip_prefix(name))
             .expect(name);
@@ -175,11 +175,11 @@ fn a_joint_that_follows_keeps_its_constant() {
     };
     assert!(
         (value("mx_k") - 0.1 * 0.3_f64.cos()).abs() < 1e-15,
-        "{told}"
+        "{output}"
     );
     assert!(
         (value("my_k") - 0.1 * 0.3_f64.sin()).abs() < 1e-15,
-        "{told}"
+        "{output}"
     );
     assert!(text("").contains("mx_k = 0.1\n"));
 }

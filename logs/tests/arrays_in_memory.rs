@@ -62,11 +62,11 @@ fn what_is_missing_or_no_number_is_told_by_name() {
     let mut positions = [series(f64::sin), series(f64::cos)].concat();
     positions[7] = f64::NAN;
     let arrays = [array("t", 1, &time), array("q", 2, &positions)];
-    let told = |arrays: &[Array<'_>]| {
+    let output = |arrays: &[Array<'_>]| {
         let error = read_arrays("mine", arrays, &mapping(), false).expect_err("no run");
         error.to_string()
     };
-    let missing = told(&arrays);
+    let missing = output(&arrays);
     assert!(
         missing.contains("gain") && missing.contains("mine"),
         "{missing}"
@@ -79,7 +79,7 @@ fn what_is_missing_or_no_number_is_told_by_name() {
         array("motor 2", 1, &torque),
         array("gain", 1, &[1.0]),
     ];
-    let broken = told(&all);
+    let broken = output(&all);
     assert!(
         broken.contains("sample 7 is not a finite number"),
         "{broken}"

@@ -51,21 +51,23 @@ fn what_is_no_vector_of_numbers_is_named() {
         ("lost", "there is no dataset `lost`"),
         ("elsewhere", "there is no dataset `elsewhere`"),
     ] {
-        let told = log(name, "run/tau(:,2)").expect_err(name);
-        assert!(told.contains(what), "{told}");
+        let output = log(name, "run/tau(:,2)").expect_err(name);
+        assert!(output.contains(what), "{output}");
     }
     // Booleans count as numbers.
     let flags = log("flags", "run.tau(:,1)").unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(flags.load().expect("numbers").0[100..103], [0.0, 1.0, 1.0]);
-    let told = read(
+    let output = read(
         &written("same_v73.mat"),
         &timed("q(:,1)", "tau(:,7)"),
         false,
     )
     .expect_err("no column");
     assert!(
-        told.to_string().contains("there is no dataset `tau(:,7)`"),
-        "{told}"
+        output
+            .to_string()
+            .contains("there is no dataset `tau(:,7)`"),
+        "{output}"
     );
 }
 

@@ -74,22 +74,22 @@ fn files_are_joined_sample_by_sample() {
 
 #[test]
 fn columns_of_joined_files_are_called_by_their_file() {
-    let told = |files: &[(&str, &str)], torque: &str| {
+    let output = |files: &[(&str, &str)], torque: &str| {
         let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
         let mapping = mapping(at(10.0), "file1.b", torque);
         run(&names.join("+"), files, &mapping).expect_err("a slip")
     };
-    let text = told(&[POSITIONS, TORQUES], "file2.C2");
+    let text = output(&[POSITIONS, TORQUES], "file2.C2");
     assert!(
         text.ends_with("help: did you mean `file2.c` for `file2.C2`?"),
         "{text}"
     );
-    let text = told(&[POSITIONS], "file2.c");
+    let text = output(&[POSITIONS], "file2.c");
     assert!(
         text.ends_with("`file2` is number 2 of the files of a run that are joined, `--data a.csv+b.csv`; this run has 1 file"),
         "{text}"
     );
-    let text = told(
+    let text = output(
         &[POSITIONS, ("bare.csv", "0.5,7\n1.5,8\n2.5,9\n")],
         "file2.c",
     );
@@ -99,32 +99,32 @@ fn columns_of_joined_files_are_called_by_their_file() {
         ),
         "{text}"
     );
-    let text = told(&[POSITIONS, ("colons.csv", "a:c\n1:2\n3:4\n")], "file2.c");
+    let text = output(&[POSITIONS, ("colons.csv", "a:c\n1:2\n3:4\n")], "file2.c");
     assert!(
         text.contains("colons.csv has one column only, `a:c`: separate columns by commas, semicolons, tabs or blanks"),
         "{text}"
     );
-    let text = told(&[POSITIONS, ("none.csv", "")], "file2.c");
+    let text = output(&[POSITIONS, ("none.csv", "")], "file2.c");
     assert!(text.starts_with("none.csv: the file is empty\n"), "{text}");
-    let text = told(&[POSITIONS, TORQUES], "file2.c Nm");
+    let text = output(&[POSITIONS, TORQUES], "file2.c Nm");
     assert!(
         text.contains("`file2.c Nm`: `file2.c` is followed by `Nm`"),
         "{text}"
     );
-    let text = told(&[POSITIONS, TORQUES], "deg2rad(file2.c)");
+    let text = output(&[POSITIONS, TORQUES], "deg2rad(file2.c)");
     assert!(
         text.contains("there is no function `deg2rad`; there are sin, cos"),
         "{text}"
     );
     assert!(text.contains("write `* pi/180` after the column"), "{text}");
     // One file instead of two.
-    let text = told(&[POSITIONS, POSITIONS], "file2.b");
+    let text = output(&[POSITIONS, POSITIONS], "file2.b");
     assert!(
         text.starts_with("pos.csv: the file is given twice in one run"),
         "{text}"
     );
     // An additional line in one file is reported alone, without its consequences.
-    let text = told(
+    let text = output(
         &[POSITIONS, ("words.csv", "a;c\n1;7\na;c\n2;8\n3;9\n")],
         "file2.c",
     );

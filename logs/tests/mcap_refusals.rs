@@ -108,13 +108,13 @@ fn topics_with_clocks_of_their_own_are_joined_by_time() {
         }
     }
     let bytes = file(&records);
-    let told = log(&bytes).expect_err("two of a name");
+    let output = log(&bytes).expect_err("two of a name");
     assert!(
-        told.ends_with(
+        output.ends_with(
             "several of the topics of the file have a column `position.a`\n  help: call it `/fast.position.a` or \
              `/slow.position.a`"
         ),
-        "{told}"
+        "{output}"
     );
     let mapping = mapping("/fast.position.a", "effort.a");
     let own =
@@ -149,10 +149,10 @@ fn topics_with_clocks_of_their_own_are_joined_by_time() {
 
 #[test]
 fn messages_that_do_not_fit_are_located() {
-    let told = |state: &dyn Fn(u64) -> Vec<u8>| refused(&file(&messages(state)));
-    let at_7 = |other: Vec<u8>| told(&|k| if k == 7 { other.clone() } else { usual(k) });
+    let output = |state: &dyn Fn(u64) -> Vec<u8>| refused(&file(&messages(state)));
+    let at_7 = |other: Vec<u8>| output(&|k| if k == 7 { other.clone() } else { usual(k) });
     let two = |k: u64, names: &[&str; 2]| state(k * STEP, names, [&[1.0, 2.0], &[], &[1.0, 2.0]]);
-    let order = told(&|k| two(k, if k < 9 { &["a", "b"] } else { &["b", "a"] }));
+    let order = output(&|k| two(k, if k < 9 { &["a", "b"] } else { &["b", "a"] }));
     assert!(
         order.starts_with(
             "a.mcap: message 9 of `/joint_states` has the joints of the first message in another order: b, a, and not a, b"
@@ -188,7 +188,7 @@ fn messages_that_do_not_fit_are_located() {
         other.contains("has the representation 0x00 0x07 instead of plain CDR"),
         "{other}"
     );
-    let unstamped = told(&|k| stamped((0, 0), &["a"], [&[k as f64], &[], &[0.0]]));
+    let unstamped = output(&|k| stamped((0, 0), &["a"], [&[k as f64], &[], &[0.0]]));
     assert!(
         unstamped.contains("has no stamp: it is zero") && unstamped.contains("log_time"),
         "{unstamped}"
@@ -232,24 +232,24 @@ fn messages_that_do_not_fit_are_located() {
 
 #[test]
 fn files_without_states_of_joints_say_what_they_have() {
-    let told = refused(&file(&[
+    let output = refused(&file(&[
         topic(1, "/tf", ("tf2_msgs/msg/TFMessage", "cdr")),
         topic(2, "/js", (JOINT_STATE, "json")),
     ]));
     assert!(
-        told.starts_with(
+        output.starts_with(
             "a.mcap: the MCAP file has no messages of the type sensor_msgs/msg/JointState in CDR; it has /tf \
              (tf2_msgs/msg/TFMessage, cdr), /js (sensor_msgs/msg/JointState, json)"
         ),
-        "{told}"
+        "{output}"
     );
-    let told = refused(&file(&[]));
-    assert!(told.contains("it has no topic"), "{told}");
+    let output = refused(&file(&[]));
+    assert!(output.contains("it has no topic"), "{output}");
     // A topic without messages.
-    let told = refused(&file(&[topic(1, "/joint_states", CDR)]));
+    let output = refused(&file(&[topic(1, "/joint_states", CDR)]));
     assert!(
-        told.contains("it has /joint_states (sensor_msgs/msg/JointState, cdr)"),
-        "{told}"
+        output.contains("it has /joint_states (sensor_msgs/msg/JointState, cdr)"),
+        "{output}"
     );
 }
 
@@ -258,19 +258,20 @@ fn files_that_are_cut_off_or_broken_are_located() {
     let records = messages(usual);
     let whole = file(&records);
     for end in [8, 9, 30, 200, 1000, whole.len() - 1] {
-        let told = refused(&whole[..end]);
+        let output = refused(&whole[..end]);
         assert!(
-            told.contains("it is truncated: its end is missing") && told.contains("mcap recover"),
-            "{told}"
+            output.contains("it is truncated: its end is missing")
+                && output.contains("mcap recover"),
+            "{output}"
         );
     }
     let all = records.concat();
     let size = all.len() as u64;
     let place = mcap_file::beginning().len();
     let broken = |packing: &str, packed: &[u8], said: (u64, u32), why: &str| {
-        let told = refused(&file(&[chunk(packing, packed, said)]));
+        let output = refused(&file(&[chunk(packing, packed, said)]));
         let expected = format!("the chunk at byte {place} is broken: {why}");
-        assert!(told.contains(&expected), "{told}");
+        assert!(output.contains(&expected), "{output}");
     };
     broken(
         "",
@@ -298,16 +299,19 @@ fn files_that_are_cut_off_or_broken_are_located() {
     for length in [u64::MAX, 1 << 40, 1 << 63] {
         let mut record = record(5, &[0; 30]);
         record[1..9].copy_from_slice(&length.to_le_bytes());
-        let told = refused(&file(&[record.clone()]));
-        assert!(told.contains("ends after the end of the file"), "{told}");
-        let told = refused(&file(&[chunk("", &record, (record.len() as u64, 0))]));
-        assert!(told.contains("a record ends after its end"), "{told}");
+        let output = refused(&file(&[record.clone()]));
+        assert!(
+            output.contains("ends after the end of the file"),
+            "{output}"
+        );
+        let output = refused(&file(&[chunk("", &record, (record.len() as u64, 0))]));
+        assert!(output.contains("a record ends after its end"), "{output}");
     }
     let long = message(1, 0, &vec![0; 5_000_000]);
-    let told = refused(&file(&[topic(1, "/joint_states", CDR), long]));
+    let output = refused(&file(&[topic(1, "/joint_states", CDR), long]));
     assert!(
-        told.contains("a record has 5000000 bytes, more than"),
-        "{told}"
+        output.contains("a record has 5000000 bytes, more than"),
+        "{output}"
     );
 }
 

@@ -298,12 +298,12 @@ fn the_files_of_pyarrow_have_the_same_numbers() {
         assert!(own_torques == torques, "{name}");
         assert!((frequency - 1000.0).abs() < 1e-6, "{name}: {frequency}");
     }
-    let told = from("brotli.parquet").expect_err("Brotli").to_string();
+    let shown_output = from("brotli.parquet").expect_err("Brotli").to_string();
     assert!(
-        told.ends_with(
+        shown_output.ends_with(
             "column `t` can't be read from sample 0 on: it is compressed by Brotli, which is not supported\n  help: write it \
              with the compression snappy, zstd, gzip or lz4, or none"
         ),
-        "{told}"
+        "{shown_output}"
     );
 }

@@ -18,9 +18,9 @@ use parquet_drive::{SCHEMA, log, samples};
 use parquet_file::{Cells, written, written_with};
 
 /// Checks that a message suits a terminal.
-fn assert_legible(told: &str) {
+fn assert_legible(output: &str) {
     let is_control = |c: char| c.is_control() && c != '\n';
-    assert!(!told.contains(is_control), "{told:?}");
+    assert!(!output.contains(is_control), "{output:?}");
 }
 
 #[test]
@@ -46,8 +46,8 @@ fn cells_without_numbers_are_located() {
         "message log { optional double q; }",
         &[Cells::Optional(&nothing)],
     );
-    let told = log(&file, &untimed("q", "q")).expect_err("nulls");
-    assert_eq!(told.lines().count(), 20);
+    let output = log(&file, &untimed("q", "q")).expect_err("nulls");
+    assert_eq!(output.lines().count(), 20);
 }
 
 #[test]
@@ -125,16 +125,16 @@ fn files_that_are_cut_off_or_empty_are_refused() {
     let file = written_with(packed.build(), SCHEMA, &columns, 20);
     let mapping = timed("q", "tau");
     for length in 4..file.len() {
-        let told = log(&file[..length], &mapping).expect_err("truncated");
+        let output = log(&file[..length], &mapping).expect_err("truncated");
         assert!(
-            told.starts_with("a.parquet: the file starts like Parquet, but can't be read: "),
-            "{told}"
+            output.starts_with("a.parquet: the file starts like Parquet, but can't be read: "),
+            "{output}"
         );
         assert!(
-            told.contains("\n  help: if it was copied or its writer was stopped, "),
-            "{told}"
+            output.contains("\n  help: if it was copied or its writer was stopped, "),
+            "{output}"
         );
-        assert_legible(&told);
+        assert_legible(&output);
     }
     // The middle is missing: the pages are not where the file says.
     let half = [&file[..4], &file[file.len() / 2..]].concat();
@@ -186,10 +186,10 @@ fn files_with_any_wrong_byte_are_read_or_refused() {
             let mut broken = file.clone();
             broken[place] ^= flip;
             all += 1;
-            if let Err(told) = log(&broken, &mapping) {
+            if let Err(output) = log(&broken, &mapping) {
                 refused += 1;
-                assert!(told.starts_with("a.parquet: "), "{told}");
-                assert_legible(&told);
+                assert!(output.starts_with("a.parquet: "), "{output}");
+                assert_legible(&output);
             }
         }
     }

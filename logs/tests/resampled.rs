@@ -180,44 +180,44 @@ fn times_may_be_expressions_and_stand_in_several_files() {
     // Times without overlap.
     let late = torques.replace("\n", "\n1");
     let files = [("a.csv", positions.as_bytes()), ("b.csv", late.as_bytes())];
-    let told = run("a.csv+b.csv", &files, &at(100.0)).expect_err("apart");
-    assert!(told.contains("when a.csv has ended at"), "{told}");
+    let output = run("a.csv+b.csv", &files, &at(100.0)).expect_err("apart");
+    assert!(output.contains("when a.csv has ended at"), "{output}");
 }
 
 #[test]
 fn what_can_not_be_resampled_is_refused() {
     let uneven = || jitter(1000, 100.0, 0.3).map(|t| (t, [t, t]));
-    let told = run(
+    let output = run(
         "a.csv",
         &[("a.csv", text(uneven()).as_bytes())],
         &timed("q", "tau"),
     );
-    let told = told.expect_err("not uniform");
+    let output = output.expect_err("not uniform");
     assert!(
-        told.contains("the time is not uniform")
-            && told.contains("`resample = \"1 kHz\"` in [data]"),
-        "{told}"
+        output.contains("the time is not uniform")
+            && output.contains("`resample = \"1 kHz\"` in [data]"),
+        "{output}"
     );
-    let told = |rate: f64| resampled(rate, uneven()).expect_err("a rate");
+    let output = |rate: f64| resampled(rate, uneven()).expect_err("a rate");
     assert!(
-        told(2000.0).contains("which is more than ten times its"),
+        output(2000.0).contains("which is more than ten times its"),
         "{}",
-        told(2000.0)
-    );
-    assert!(
-        told(0.01).contains("which is less than a thousandth of its"),
-        "{}",
-        told(0.01)
+        output(2000.0)
     );
     assert!(
-        told(f64::NAN).contains("can't be resampled at NaN Hz"),
+        output(0.01).contains("which is less than a thousandth of its"),
         "{}",
-        told(f64::NAN)
+        output(0.01)
     );
     assert!(
-        told(-1.0).contains("can't be resampled at -1 Hz"),
+        output(f64::NAN).contains("can't be resampled at NaN Hz"),
         "{}",
-        told(-1.0)
+        output(f64::NAN)
+    );
+    assert!(
+        output(-1.0).contains("can't be resampled at -1 Hz"),
+        "{}",
+        output(-1.0)
     );
     let gap = resampled(100.0, uneven().filter(|(t, _)| *t < 5.0 || *t > 5.1)).expect_err("a gap");
     assert!(
@@ -241,12 +241,15 @@ fn what_can_not_be_resampled_is_refused() {
         time: Time::Frequency(100.0),
         ..at(10.0)
     };
-    let told =
+    let output =
         run("a.csv", &[("a.csv", text(uneven()).as_bytes())], &mapping).expect_err("no time");
-    assert!(told.contains("uniform and can't be resampled"), "{told}");
+    assert!(
+        output.contains("uniform and can't be resampled"),
+        "{output}"
+    );
     let broken = text(uneven()).replace("\n0.5", "\nx0.5");
-    let told = run("a.csv", &[("a.csv", broken.as_bytes())], &at(100.0)).expect_err("a cell");
-    assert!(told.contains("is not a number"), "{told}");
+    let output = run("a.csv", &[("a.csv", broken.as_bytes())], &at(100.0)).expect_err("a cell");
+    assert!(output.contains("is not a number"), "{output}");
 }
 
 /// Position of the tests below: slow against 1 kHz.

@@ -215,7 +215,7 @@ impl Identified {
     /// Tables that `overact identify --tables` prints below the summary.
     fn tables(&self) -> String {
         let mut text = overact_report::tables(&self.result);
-        text.push_str(&overact_report::beside(
+        text.push_str(&overact_report::compare_with_published(
             &self.result,
             self.published.as_ref(),
         ));

@@ -206,8 +206,8 @@ mod tests {
         assert!(text.lines().count() > 3);
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH));
         assert!(text.lines().skip(1).all(|line| line.starts_with("    ")));
-        let told: Vec<&str> = text.split_whitespace().skip(1).collect();
-        assert_eq!(told, words.split_whitespace().collect::<Vec<_>>());
+        let wrapped: Vec<&str> = text.split_whitespace().skip(1).collect();
+        assert_eq!(wrapped, words.split_whitespace().collect::<Vec<_>>());
     }
 
     #[test]

@@ -7,7 +7,6 @@
 //! choice of light or dark, and there is no script. Each section has a file in [`page()`]; axes and
 //! lines of plots are in the module `plot`.
 
-pub mod beside;
 mod chart_sheet;
 mod choice;
 mod intervals;
@@ -18,18 +17,19 @@ pub mod page;
 mod parameters_file;
 mod plot;
 pub mod published;
+pub mod published_comparison;
 mod report_bundle;
 pub mod summary;
 pub mod terminal;
 mod text;
 pub mod units;
 
-pub use beside::beside;
 pub use chart_sheet::{Plot, chart_sheet};
 pub use numbers::numbers;
 pub use page::{Attachment, Contents, page};
 pub use parameters_file::parameters_file;
 pub use published::Published;
+pub use published_comparison::compare_with_published;
 pub use report_bundle::{About, document, document_with_figures, whole_page};
 pub use summary::{Extent, summary};
 pub use terminal::{base_parameters, coefficient, cross_validation, estimate, tables};

@@ -46,10 +46,10 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
         (rows.model, rows.stage) = (estimate.model.name(), estimate.stage.name());
         add_estimate(&mut rows, estimate);
     }
-    for told in &identification.errors_in_regressor {
-        (rows.model, rows.stage) = (told.model.name(), Stage::Base.name());
+    for comparison in &identification.errors_in_regressor {
+        (rows.model, rows.stage) = (comparison.model.name(), Stage::Base.name());
         let table = "instruments";
-        for own in &told.parameters {
+        for own in &comparison.parameters {
             let name = own.name.as_str();
             rows.add(table, name, "value", own.instruments);
             rows.add_known(table, name, "total_least_squares", own.total_least_squares);

@@ -10,7 +10,7 @@ use overact_core::Code;
 use overact_identification::{Error, Figures, Identification, Problem};
 use serde::Serialize;
 
-/// Information about the robot besides its identification.
+/// Information about the robot, apart from its identification.
 #[derive(Debug, Clone, Copy)]
 pub struct About<'a> {
     /// Units of its coordinates and actuators.

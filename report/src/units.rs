@@ -6,7 +6,7 @@ use overact::Info;
 
 /// Physical dimension of a coordinate or actuator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum DimensionKind {
     /// Metres, newtons.
     Length,
     /// Radians, newton metres.
@@ -18,7 +18,7 @@ enum Kind {
 /// Units of a robot's coordinates and actuators.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Units {
-    kinds: BTreeMap<String, Kind>,
+    kinds: BTreeMap<String, DimensionKind>,
     /// Whether the robot has a platform, whose coordinates have their own names.
     has_platform: bool,
 }
@@ -31,17 +31,21 @@ impl Units {
     #[must_use]
     pub fn new(info: &Info<'_>) -> Self {
         let actuators = info.actuators.iter().zip(info.actuator_is_revolute);
-        let mut kinds: BTreeMap<String, Kind> = actuators
+        let mut kinds: BTreeMap<String, DimensionKind> = actuators
             .map(|(name, revolute)| {
-                let kind = if *revolute { Kind::Angle } else { Kind::Length };
+                let kind = if *revolute {
+                    DimensionKind::Angle
+                } else {
+                    DimensionKind::Length
+                };
                 ((*name).to_owned(), kind)
             })
             .collect();
         for name in info.coordinates {
             let kind = match *name {
-                "x" | "y" | "z" => Kind::Length,
-                "phi" => Kind::Angle,
-                "qw" | "qx" | "qy" | "qz" => Kind::Quaternion,
+                "x" | "y" | "z" => DimensionKind::Length,
+                "phi" => DimensionKind::Angle,
+                "qw" | "qx" | "qy" | "qz" => DimensionKind::Quaternion,
                 _ => continue,
             };
             kinds.entry((*name).to_owned()).or_insert(kind);
@@ -70,9 +74,9 @@ impl Units {
     #[must_use]
     pub fn position(&self, name: &str) -> &'static str {
         match self.kinds.get(name) {
-            Some(Kind::Length) => "m",
-            Some(Kind::Angle) => "rad",
-            Some(Kind::Quaternion) | None => "",
+            Some(DimensionKind::Length) => "m",
+            Some(DimensionKind::Angle) => "rad",
+            Some(DimensionKind::Quaternion) | None => "",
         }
     }
 
@@ -80,8 +84,8 @@ impl Units {
     #[must_use]
     pub fn torque(&self, name: &str) -> &'static str {
         match self.kinds.get(name) {
-            Some(Kind::Length) => "N",
-            Some(Kind::Angle | Kind::Quaternion) => "N m",
+            Some(DimensionKind::Length) => "N",
+            Some(DimensionKind::Angle | DimensionKind::Quaternion) => "N m",
             None => "",
         }
     }

@@ -121,8 +121,8 @@ fn motion(robot: &Robot, found: &Excitation, run: &str) -> Vec<Plot> {
     let ask = |function: Function, inputs: &[&[f64]]| {
         let (rows, columns) = function.shape(&sizes);
         let mut values = vec![0.0; SAMPLES * rows * columns];
-        let told = model.evaluate(function, inputs, &mut values);
-        told.map(|()| values).unwrap_or_default()
+        let result = model.evaluate(function, inputs, &mut values);
+        result.map(|()| values).unwrap_or_default()
     };
     let states: [&[f64]; 4] = [
         &motion.pose,

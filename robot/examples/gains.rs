@@ -62,10 +62,10 @@ struct Misses {
 }
 
 fn misses(result: &Identification, gains: &[f64]) -> Result<Misses, Failure> {
-    let mut told = Misses::default();
+    let mut run_misses = Misses::default();
     for (own, truth) in result.gains.iter().zip(gains) {
-        told.gains.push((own.factor - truth) / own.deviation);
-        told.largest = told.largest.max((own.factor / truth - 1.0).abs());
+        run_misses.gains.push((own.factor - truth) / own.deviation);
+        run_misses.largest = run_misses.largest.max((own.factor / truth - 1.0).abs());
     }
     for own in &result.gain_parameters {
         let mut all = result.base_parameters.iter();
@@ -74,9 +74,9 @@ fn misses(result: &Identification, gains: &[f64]) -> Result<Misses, Failure> {
             continue;
         };
         let miss = (own.value - truth) / own.deviation;
-        told.parameters.push(miss);
+        run_misses.parameters.push(miss);
         if own.name.starts_with("m_") {
-            told.masses.push(miss);
+            run_misses.masses.push(miss);
         }
     }
     let mut base = result.by_least_squares();
@@ -84,8 +84,8 @@ fn misses(result: &Identification, gains: &[f64]) -> Result<Misses, Failure> {
     let parameters = base.map_or(&[][..], |one| &one.parameters);
     let weighed = parameters.iter().find(|one| one.name == "m_payload");
     let weighed = weighed.ok_or("the payload's mass is not estimated")?;
-    told.weighed = weighed.error_percent.unwrap_or(f64::NAN) / 100.0;
-    Ok(told)
+    run_misses.weighed = weighed.error_percent.unwrap_or(f64::NAN) / 100.0;
+    Ok(run_misses)
 }
 
 /// Runs as logged with such gains, with torque noise of these standard deviations (N m).
@@ -123,13 +123,13 @@ fn largest(misses: &[f64]) -> f64 {
 /// Prints a row for each draw.
 fn rows(path: &str, draws: u64) -> Result<(), Failure> {
     let text = with_payload(&std::fs::read_to_string(path)?)?;
-    let told = |error: overact_robot::Error| error.render(false);
-    let robot = Robot::from_text(path, &text).map_err(told)?;
-    let mut experiment = robot.experiment().map_err(told)?;
+    let rendered = |error: overact_robot::Error| error.render(false);
+    let robot = Robot::from_text(path, &text).map_err(rendered)?;
+    let mut experiment = robot.experiment().map_err(rendered)?;
     let noise = std::mem::take(&mut experiment.plan_mut().torque_noise);
     // A serial robot needs all of its runs.
     let held_out = robot.held_out();
-    let exact = experiment.runs(&held_out, &|_, _| {}).map_err(told)?;
+    let exact = experiment.runs(&held_out, &|_, _| {}).map_err(rendered)?;
     let name = robot.model().info().name.to_owned();
     let n = robot.model().info().sizes.actuators;
     let parts = Uniform::new(WRONG[0], WRONG[1])?;
@@ -144,7 +144,10 @@ fn rows(path: &str, draws: u64) -> Result<(), Failure> {
             validation: Vec::new(),
             true_values: exact.true_values.clone(),
         };
-        let result = Identifier::new(&robot).data(&runs).run().map_err(told)?;
+        let result = Identifier::new(&robot)
+            .data(&runs)
+            .run()
+            .map_err(rendered)?;
         let own = misses(&result, &gains)?;
         let gains: Vec<String> = gains.iter().map(|gain| format!("{gain:.2}")).collect();
         println!(

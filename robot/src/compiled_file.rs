@@ -25,7 +25,7 @@ pub struct CompiledFile {
     /// The model.
     pub model: RobotModel,
     /// Sentences on values of a parameter file that no body or joint has.
-    pub doubts: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 impl CompiledFile {
@@ -48,7 +48,7 @@ impl CompiledFile {
                 source,
                 description: compiled.description,
                 model: compiled.model,
-                doubts: Vec::new(),
+                warnings: Vec::new(),
             }),
             Err(diagnostics) => Err(Error::Description {
                 source,
@@ -70,11 +70,11 @@ pub(crate) fn note(
     description: &Description,
     mechanism: &Mechanism,
 ) -> Option<String> {
-    let doubts = description.doubts.iter().map(|doubt| {
-        let line = source.position(&doubt.span).line;
-        format!("line {line}: {}", doubt.value)
+    let warnings = description.warnings.iter().map(|warning| {
+        let line = source.position(&warning.span).line;
+        format!("line {line}: {}", warning.value)
     });
-    let mut notes: Vec<String> = doubts.collect();
+    let mut notes: Vec<String> = warnings.collect();
     notes.extend(redundancy(description, mechanism));
     (!notes.is_empty()).then(|| notes.join("\n"))
 }

@@ -72,12 +72,12 @@ fn faultless_experiments_may_be_used_without_a_remark() {
     let cheap = files.iter().filter(|path| CHEAP.contains(&stem(path)));
     let cheap: Vec<_> = cheap.cloned().collect();
     let files = if is_full() { of_many(files) } else { cheap };
-    let accused: Vec<String> = files
+    let alarmed: Vec<String> = files
         .iter()
         .flat_map(|path| {
             let said = accusations(path).into_iter();
             said.map(|said| format!("{}: {said}", stem(path)))
         })
         .collect();
-    assert!(accused.is_empty(), "{}", accused.join("\n"));
+    assert!(alarmed.is_empty(), "{}", alarmed.join("\n"));
 }

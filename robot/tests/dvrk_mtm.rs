@@ -64,8 +64,8 @@ fn the_test_run_is_predicted_as_published() {
     assert!((250.0..300.0).contains(&stiffness.value), "{stiffness:?}");
     let held_out = |stage: Stage| {
         let mut all = result.cross_validation.iter();
-        let told = all.find(|one| one.stage == stage);
-        &told.expect("a cross-validation").torques
+        let output = all.find(|one| one.stage == stage);
+        &output.expect("a cross-validation").torques
     };
     let errors = |stage: Stage| -> Vec<f64> {
         let torques = held_out(stage).iter();

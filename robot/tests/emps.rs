@@ -28,12 +28,12 @@ fn the_closed_loop_gives_instruments_that_agree_with_least_squares() {
     let robot = Robot::from_toml(toml).expect("a robot");
     let logs = robot.read_logs(&[(&file, false)], &|_| {}).expect("a log");
     let result = Identifier::new(&robot).runs(&logs).run().expect("a result");
-    let told = &result.errors_in_regressor[0];
-    println!("{told:#?}");
+    let output = &result.errors_in_regressor[0];
+    println!("{output:#?}");
     // Published: 5.848 %.
-    let error = told.simulated[0].torque_error_percent;
+    let error = output.simulated[0].torque_error_percent;
     assert!((5.0..6.0).contains(&error), "{error}");
-    let agreement = told.agreement.as_ref().expect("a test");
+    let agreement = output.agreement.as_ref().expect("a test");
     assert!(agreement.weakest > 1e4, "{agreement:?}");
     let [least, instruments] =
         [Estimator::LeastSquares, Estimator::InstrumentalVariables].map(|how| {

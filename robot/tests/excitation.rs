@@ -232,8 +232,8 @@ fn a_time_that_is_up_ends_the_random_series_too() {
     let found = robot.excite(&effort, &|_, _| ()).expect("exciting runs");
     let count = found.hundred.len();
     assert!((1..100).contains(&count), "{count}");
-    let told = format!("the time sufficed for only {count} random series, not 100");
-    assert!(found.assumed.contains(&told), "{:?}", found.assumed);
+    let output = format!("the time sufficed for only {count} random series, not 100");
+    assert!(found.assumed.contains(&output), "{:?}", found.assumed);
     keeps_limits(&written(&robot, &found), &found);
 }
 
@@ -248,8 +248,8 @@ fn speeds_that_nothing_limits_are_told() {
     let bare = |limit: &str| {
         let text = format!("{text}\n[excitation]\nruns = 1\n{limit}");
         let robot = Robot::from_text("bare.toml", &text).expect("a robot");
-        let told = excited(&robot).assumed.join("\n");
-        told.contains("speeds have no limit") && told.contains("rad/s")
+        let output = excited(&robot).assumed.join("\n");
+        output.contains("speeds have no limit") && output.contains("rad/s")
     };
     assert!(bare(""));
     assert!(!bare("velocity = \"9 rad/s\"\n"));

@@ -158,13 +158,13 @@ fn parameters_of_motors_are_told_in_front_of_their_gears() {
         let mut all = parameters.iter();
         all.find(|one| one.name == name).expect(name).value
     };
-    let told = |name: &str| {
+    let output = |name: &str| {
         let mut all = result.motors.iter();
         let one = all.find(|one| one.name == name).expect(name);
         (one.motor.as_str(), one.value, one.unit.as_str())
     };
     let at = |name: &str, motor, divisor: f64, unit| {
-        assert_eq!(told(name), (motor, behind(name) / divisor, unit));
+        assert_eq!(output(name), (motor, behind(name) / divisor, unit));
     };
     at("fv_neg_1", "first", 400.0, "N m s/rad");
     at("fv_pos_both", "both", 2500.0, "N m s/rad");

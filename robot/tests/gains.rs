@@ -382,35 +382,41 @@ fn an_unknown_payload_of_a_serial_robot_is_found() {
 fn gains_that_nothing_fixes_are_refused_and_why() {
     let nothing = robot(&coarse(""));
     let runs = exact(&nothing, 0.5).identified;
-    let told = refused(&nothing, &runs);
-    assert!(told.contains("without a known parameter"), "{told}");
+    let output = refused(&nothing, &runs);
+    assert!(output.contains("without a known parameter"), "{output}");
     let payload = robot(&coarse(KNOWN));
     let (loaded, unloaded): (Vec<Log>, Vec<Log>) = runs.iter().cloned().partition(Log::payload);
-    let told = refused(&payload, &unloaded);
+    let output = refused(&payload, &unloaded);
     assert!(
-        told.contains("`m_payload` is known, but no run carries the payload"),
-        "{told}"
+        output.contains("`m_payload` is known, but no run carries the payload"),
+        "{output}"
     );
-    let told = refused(&payload, &loaded);
+    let output = refused(&payload, &loaded);
     assert!(
-        told.contains("combination of those of `m_platform`, which are not"),
-        "{told}"
+        output.contains("combination of those of `m_platform`, which are not"),
+        "{output}"
     );
-    assert!(told.contains("record some without it"), "{told}");
+    assert!(output.contains("record some without it"), "{output}");
     let regrouped = robot(&coarse("known = { m_2_leg1 = 1 }"));
-    let told = refused(&regrouped, &runs);
+    let output = refused(&regrouped, &runs);
     assert!(
-        told.contains("`m_2_leg1` is known, but its column is a combination"),
-        "{told}"
+        output.contains("`m_2_leg1` is known, but its column is a combination"),
+        "{output}"
     );
     let zero = robot(&coarse("known = { mx_payload = 0 }"));
-    let told = refused(&zero, &runs);
-    assert!(told.contains("`mx_payload` is known to be zero"), "{told}");
+    let output = refused(&zero, &runs);
+    assert!(
+        output.contains("`mx_payload` is known to be zero"),
+        "{output}"
+    );
 }
 
 #[test]
 fn robots_whose_motors_turn_several_joints_have_no_gains_of_joints() {
     let coupled = robot(&text("tx40.toml"));
-    let told = refused(&coupled, &[]);
-    assert!(told.contains("motors of this robot turn several"), "{told}");
+    let output = refused(&coupled, &[]);
+    assert!(
+        output.contains("motors of this robot turn several"),
+        "{output}"
+    );
 }

@@ -185,7 +185,7 @@ fn a_direction_that_nothing_tells_is_refused() {
 #[test]
 fn wrong_keys_are_told_at_their_places() {
     let emps = text("emps.toml");
-    let told = |key: &str, more: [&str; 2]| {
+    let output = |key: &str, more: [&str; 2]| {
         let own = replaced(
             &emps,
             "[identification]\n",
@@ -197,21 +197,21 @@ fn wrong_keys_are_told_at_their_places() {
             .lines()
             .position(|line| line.contains("gravity_direction"));
         let place = format!("robot.toml:{}:", line.expect("the key") + 1);
-        let told = error.render(false);
-        assert!(told.contains(&place), "{told}");
-        told
+        let output = error.render(false);
+        assert!(output.contains(&place), "{output}");
+        output
     };
     let none = ["", ""];
-    let error = told("gravity_direction = \"x\"", none);
+    let error = output("gravity_direction = \"x\"", none);
     assert!(error.contains("true or false"), "{error}");
-    let error = told("gravity_direction = [0, 0]", none);
+    let error = output("gravity_direction = [0, 0]", none);
     assert!(error.contains("true or false"), "{error}");
-    let error = told("gravity_direction = true", [DOWN, "gravity = [0, 0, 0]"]);
+    let error = output("gravity_direction = true", [DOWN, "gravity = [0, 0, 0]"]);
     assert!(error.contains("gravity is zero"), "{error}");
     let both = "gravity_direction = true\ngains = true\nknown = { m_1 = 100 }";
-    let error = told(both, none);
+    let error = output(both, none);
     assert!(error.contains("not identified together"), "{error}");
     assert_eq!(error.matches("error[").count(), 1, "{error}");
-    let error = told("gravity_directions = true", none);
+    let error = output("gravity_directions = true", none);
     assert!(error.contains("gravity_direction"), "{error}");
 }

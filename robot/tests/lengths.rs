@@ -32,7 +32,7 @@ fn a_wrong_length_of_a_serial_robot_is_named_with_its_size() {
 }
 
 #[test]
-fn the_right_length_is_not_accused() {
+fn the_right_length_passes() {
     let result = identified("upper_arm = \"0.30 m\"");
     let mut said = result.checks.iter().map(|check| check.words.as_str());
     assert!(said.any(|words| words.contains("no wrong length") && words.contains("`d_2_arm`")));

@@ -127,9 +127,9 @@ fn two_payloads_of_a_serial_robot_are_told_from_each_other() {
         println!("{name}: {} kg, {}", body.mass_kg, body.definiteness);
         assert!(body.definiteness > 0.0);
     }
-    let told = &result.runs[1];
+    let output = &result.runs[1];
     assert_eq!(
-        (told.payload, told.payload_name.as_deref()),
+        (output.payload, output.payload_name.as_deref()),
         (true, Some("heavy"))
     );
 }
@@ -231,21 +231,21 @@ fn runs_with_and_without_names_are_not_mixed() {
 
 #[test]
 fn wrong_names_are_told_at_their_places() {
-    let told = |pairs: &[(&str, &str)], place: &str| {
+    let output = |pairs: &[(&str, &str)], place: &str| {
         let own = replaced(&dualv(""), pairs);
         let error = Robot::from_text("robot.toml", &own).expect_err("a wrong name");
         let line = own
             .lines()
             .position(|line| line.contains(place))
             .expect(place);
-        let told = error.render(false);
+        let output = error.render(false);
         assert!(
-            told.contains(&format!("robot.toml:{}:", line + 1)),
-            "{told}"
+            output.contains(&format!("robot.toml:{}:", line + 1)),
+            "{output}"
         );
-        told
+        output
     };
-    let error = told(
+    let error = output(
         &[("payload = \"light\"", "payload = \"lihgt\"")],
         "\"lihgt\"",
     );
@@ -253,26 +253,26 @@ fn wrong_names_are_told_at_their_places() {
         error.contains("no payload `lihgt`") && error.contains("`light`"),
         "{error}"
     );
-    let error = told(
+    let error = output(
         &[("payload = \"light\"", "payload = true")],
         "payload = true",
     );
     assert!(error.contains("must name one"), "{error}");
-    let error = told(&[("payload = \"light\"", "payload = 3")], "payload = 3");
+    let error = output(&[("payload = \"light\"", "payload = 3")], "payload = 3");
     assert!(error.contains("true or false"), "{error}");
     let twice = [(
         "[\"heavy\", \"light\"]",
         "[\"heavy\", \"light\", \"heavy\"]",
     )];
-    assert!(told(&twice, "payloads").contains("listed twice"));
+    assert!(output(&twice, "payloads").contains("listed twice"));
     let word = [("[\"heavy\", \"light\"]", "[\"heavy\", \"light\", \"a b\"]")];
-    assert!(told(&word, "payloads").contains("cannot be the name"));
+    assert!(output(&word, "payloads").contains("cannot be the name"));
     let none = [(PAYLOADS, "payloads = []\n\n[constants]")];
-    assert!(told(&none, "payloads = []").contains("has 0 names"));
+    assert!(output(&none, "payloads = []").contains("has 0 names"));
     let one = [(PAYLOADS, "payloads = \"heavy\"\n\n[constants]")];
-    assert!(told(&one, "payloads = \"heavy\"").contains("list"));
-    let error = told(&[("m_payload_light", "m_payload_lite")], "m_payload_lite");
+    assert!(output(&one, "payloads = \"heavy\"").contains("list"));
+    let error = output(&[("m_payload_light", "m_payload_lite")], "m_payload_lite");
     assert!(error.contains("m_payload_light"), "{error}");
-    let error = told(&[("[platform.payload]", "[platform.burden]")], "payloads");
+    let error = output(&[("[platform.payload]", "[platform.burden]")], "payloads");
     assert!(error.contains("the robot has no payload"), "{error}");
 }

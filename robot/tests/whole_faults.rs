@@ -57,7 +57,7 @@ fn gravity_that_points_the_other_way_is_named() {
 }
 
 #[test]
-fn a_position_that_stands_for_two_joints_behind_their_gears_is_named() {
+fn one_position_column_for_two_joints_is_reported() {
     let result = identified(TEMPLATE, |positions, _| {
         positions[1] = 0.1 - positions[0] * 32.0 / 45.0;
     });
@@ -73,17 +73,17 @@ fn the_torque_of_one_drive_in_another_unit_is_named() {
 }
 
 /// Failed check of a kind.
-fn found(result: &Identification, kind: CheckKind) -> &Check {
+fn failed_check(result: &Identification, kind: CheckKind) -> &Check {
     let mut own = result.checks.iter().filter(|one| !one.passed);
-    let told = || format!("{:?}", result.warnings);
+    let output = || format!("{:?}", result.warnings);
     own.find(|one| one.kind == kind)
-        .unwrap_or_else(|| panic!("{}", told()))
+        .unwrap_or_else(|| panic!("{}", output()))
 }
 
 #[test]
 fn a_gain_that_differs_by_the_sign_of_the_torque_is_named() {
     let result = identified(TEMPLATE, |_, torques| torques[0] += 0.03 * torques[0].abs());
-    let check = found(&result, CheckKind::MissingParameter);
+    let check = failed_check(&result, CheckKind::MissingParameter);
     assert!(
         check.grade > Grade::Use && check.words.contains("differs by its sign"),
         "{check:?}"
@@ -91,13 +91,13 @@ fn a_gain_that_differs_by_the_sign_of_the_torque_is_named() {
 }
 
 #[test]
-fn what_all_drives_have_in_common_is_told_of_each() {
+fn a_fault_common_to_all_drives_is_reported_for_each() {
     let result = identified(TEMPLATE, |positions, torques| {
         for (position, torque) in positions.iter().zip(torques) {
             *torque += 0.05 * (3.0 * position).sin();
         }
     });
-    let check = found(&result, CheckKind::MissingParameter);
+    let check = failed_check(&result, CheckKind::MissingParameter);
     assert!(
         check.words.contains("the same test also fails for"),
         "{check:?}"
@@ -109,7 +109,7 @@ fn what_all_drives_have_in_common_is_told_of_each() {
 }
 
 #[test]
-fn a_filter_that_all_signals_have_passed_is_told_by_dry_friction() {
+fn a_filter_of_all_signals_is_detected_by_dry_friction() {
     // First-order lag of 10 ms at 1 kHz.
     let last = Cell::new(None::<[f64; 4]>);
     let result = identified(TEMPLATE, |positions, torques| {
@@ -120,7 +120,7 @@ fn a_filter_that_all_signals_have_passed_is_told_by_dry_friction() {
         torques.copy_from_slice(&lagged[2..]);
         last.set(Some(lagged));
     });
-    let check = found(&result, CheckKind::Reversals);
+    let check = failed_check(&result, CheckKind::Reversals);
     let fs = |name: &&String| name.starts_with("fs_");
     assert!(check.spoiled.iter().any(|name| fs(&name)), "{check:?}");
 }
@@ -145,7 +145,7 @@ fn an_experiment_of_which_all_runs_are_held_out_is_refused() {
 }
 
 #[test]
-fn nothing_of_this_is_said_of_the_robot_as_it_is() {
+fn the_faultless_robot_passes() {
     let result = identified(TEMPLATE, |_, _| ());
     assert_eq!(result.grade(), Grade::Use, "{:?}", result.warnings);
 }

@@ -248,12 +248,12 @@ fn eliminate<T: Float>(matrix: &mut [T], vector: &mut [T]) -> Result<(), Error> 
         }
         let rows = below.chunks_exact_mut(n).zip(unknown.iter_mut());
         for (i, (other, value)) in rows.enumerate() {
-            let beside = row.iter().skip(k + 1 + i);
-            let factor = beside
+            let rest_of_row = row.iter().skip(k + 1 + i);
+            let factor = rest_of_row
                 .clone()
                 .next()
                 .map_or(T::ZERO, |first| *first / pivot);
-            for (entry, above) in other.iter_mut().skip(k + 1 + i).zip(beside) {
+            for (entry, above) in other.iter_mut().skip(k + 1 + i).zip(rest_of_row) {
                 *entry -= factor * *above;
             }
             *value -= factor * *known;

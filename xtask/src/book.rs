@@ -40,9 +40,11 @@ pub(crate) fn write_all() -> Result<(), Failure> {
     }
     write(
         "target/book/book.toml",
-        &read("docs/book.toml")?.replace("src = \".\"", "src = \"docs\""),
+        &read("docs/book.toml")?
+            .replace("src = \".\"", "src = \"docs\"")
+            .replace("\"book.css\"", "\"docs/book.css\""),
     )?;
-    copy_pictures(&repository("docs"), &repository("target/book/docs"))
+    copy_assets(&repository("docs"), &repository("target/book/docs"))
 }
 
 /// Fails unless the page of all errors is up to date.
@@ -128,14 +130,17 @@ fn redirected(file: &str, text: &str) -> String {
     text
 }
 
-/// Copies pictures and their folders.
-fn copy_pictures(from: &Path, to: &Path) -> Result<(), Failure> {
+/// Copies pictures, styles and their folders.
+fn copy_assets(from: &Path, to: &Path) -> Result<(), Failure> {
     for entry in fs::read_dir(from)? {
         let entry = entry?;
         let (path, target) = (entry.path(), to.join(entry.file_name()));
         if entry.file_type()?.is_dir() {
-            copy_pictures(&path, &target)?;
-        } else if path.extension().is_some_and(|e| e == "svg" || e == "png") {
+            copy_assets(&path, &target)?;
+        } else if path
+            .extension()
+            .is_some_and(|e| e == "svg" || e == "png" || e == "css")
+        {
             fs::create_dir_all(to)?;
             fs::copy(&path, &target)?;
         }

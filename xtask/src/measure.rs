@@ -16,8 +16,9 @@ pub(crate) fn print(effort: &str, file: &str) -> Result<(), Failure> {
     let functions = model.functions.iter().map(|function| {
         let cost = model.cost(function);
         let pieces = function.program.pieces;
-        let told = json!({ "operations": cost.once.operations(), "cost": cost, "pieces": pieces });
-        (function.name.clone(), told)
+        let summary =
+            json!({ "operations": cost.once.operations(), "cost": cost, "pieces": pieces });
+        (function.name.clone(), summary)
     });
     let functions: serde_json::Map<String, serde_json::Value> = functions.collect();
     let code = rust::file(&model, file);

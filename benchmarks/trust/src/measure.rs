@@ -94,9 +94,12 @@ fn identified(
     for projection in 0..projections.len() {
         let truth = Some(&subject.truth);
         let outcome = estimate_projection(&prepared, projection, &settings, truth)?;
-        let told = &outcome.errors_in_regressor;
-        let spoils = told.parameters.iter().any(|one| one.spoiled);
-        let flagged = told.agreement.as_ref().map(|own| own.differs && spoils);
+        let comparison = &outcome.errors_in_regressor;
+        let spoils = comparison.parameters.iter().any(|one| one.spoiled);
+        let flagged = comparison
+            .agreement
+            .as_ref()
+            .map(|own| own.differs && spoils);
         let least_squares = [&outcome.base, &outcome.recommended, &outcome.essential];
         for estimate in least_squares.into_iter().chain(&outcome.instrumental) {
             counted.push(DrawIntervals {

@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = format!("the file is {is}: write `{key}`");
         return Err(Failure::Usage(message));
     }
-    let others = beside(file, output, &exported)?;
+    let others = included_files(file, output, &exported)?;
     let all: Vec<&Path> = outputs
         .iter()
         .copied()
@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Changed included files, with paths relative to the output as theirs to the main file.
-fn beside(
+fn included_files(
     file: &Path,
     output: Option<&Path>,
     exported: &Exported,

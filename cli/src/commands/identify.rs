@@ -144,8 +144,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         identifier
     };
     let mut result = identified(identifier, scope, as_json)?;
-    let beside = reports.published().filter(|_| arguments.runs.are_virtual());
-    if arguments.tracking || beside.is_some() {
+    let published = reports.published().filter(|_| arguments.runs.are_virtual());
+    if arguments.tracking || published.is_some() {
         let bar = Progress::new("simulating", as_json);
         result.tracking = tracking(&robot, &result, &|part, run| bar.at(part, run))?;
     }
@@ -164,7 +164,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let mut text = overact_report::summary(&result, page.as_deref(), extent);
         if arguments.tables {
             text.push_str(&overact_report::tables(&result));
-            text.push_str(&overact_report::beside(&result, reports.published()));
+            text.push_str(&overact_report::compare_with_published(
+                &result,
+                reports.published(),
+            ));
         }
         text
     };
@@ -194,7 +197,7 @@ fn warnings(result: &Identification) -> Vec<String> {
     });
     let mut all: Vec<String> = reasons.collect();
     for warning in &result.warnings {
-        if !all.iter().any(|told| told.ends_with(warning.as_str())) {
+        if !all.iter().any(|shown| shown.ends_with(warning.as_str())) {
             all.push(warning.clone());
         }
     }

@@ -14,7 +14,7 @@ pub(crate) struct Payloads<'a> {
 
 /// Log as given on the command line.
 #[derive(Debug, Clone)]
-pub(crate) struct Given {
+pub(crate) struct GivenLog {
     pub(crate) path: PathBuf,
     pub(crate) loaded: bool,
     /// Name before the equals sign, if payloads have names.
@@ -23,7 +23,7 @@ pub(crate) struct Given {
     pub(crate) streamed: bool,
 }
 
-impl Given {
+impl GivenLog {
     /// Adds the name of the payload to the log.
     pub(crate) fn label(&self, log: Log) -> Log {
         let log = if self.streamed {
@@ -46,8 +46,8 @@ impl<'a> Payloads<'a> {
     }
 
     /// Logs of runs without payload.
-    pub(crate) fn without(&self, paths: &[PathBuf]) -> Vec<Given> {
-        let given = |path: &PathBuf| Given {
+    pub(crate) fn without(&self, paths: &[PathBuf]) -> Vec<GivenLog> {
+        let given = |path: &PathBuf| GivenLog {
             path: path.clone(),
             loaded: false,
             name: None,
@@ -57,10 +57,10 @@ impl<'a> Payloads<'a> {
     }
 
     /// Logs of runs with a payload.
-    pub(crate) fn with(&self, paths: &[PathBuf]) -> Vec<Given> {
+    pub(crate) fn with(&self, paths: &[PathBuf]) -> Vec<GivenLog> {
         let given = |path: &PathBuf| {
             let name = split(path).map(|(name, _)| name.to_owned());
-            Given {
+            GivenLog {
                 path: file(path).to_path_buf(),
                 loaded: true,
                 name,
@@ -74,8 +74,11 @@ impl<'a> Payloads<'a> {
     ///
     /// # Errors
     /// Logs without a name although payloads have names, and unknown names.
-    pub(crate) fn check<'g>(&self, given: impl Iterator<Item = &'g Given>) -> Result<(), Failure> {
-        let problem = |one: &Given| {
+    pub(crate) fn check<'g>(
+        &self,
+        given: impl Iterator<Item = &'g GivenLog>,
+    ) -> Result<(), Failure> {
+        let problem = |one: &GivenLog| {
             let file = one.path.display().to_string();
             let list = self.names.join(", ");
             match &one.name {

@@ -178,11 +178,16 @@ mod tests {
     #[test]
     fn all_unknown_names_are_told_with_what_was_meant() {
         let unknown = Choice::new(["inverse_dynamic", "joints", "nonsense", ""]).expect_err("two");
-        let told: Vec<(usize, &str)> = unknown.iter().map(|u| (u.index, u.help.as_str())).collect();
-        assert_eq!(told.len(), 3);
-        assert_eq!(told[0], (0, "did you mean `inverse_dynamics`?"));
-        assert_eq!(told[1].0, 2);
-        assert!(told[1].1.contains("`control`"), "{}", told[1].1);
+        let suggestions: Vec<(usize, &str)> =
+            unknown.iter().map(|u| (u.index, u.help.as_str())).collect();
+        assert_eq!(suggestions.len(), 3);
+        assert_eq!(suggestions[0], (0, "did you mean `inverse_dynamics`?"));
+        assert_eq!(suggestions[1].0, 2);
+        assert!(
+            suggestions[1].1.contains("`control`"),
+            "{}",
+            suggestions[1].1
+        );
         assert_eq!(Choice::new([]).expect_err("nothing").len(), 1);
     }
 

@@ -1,10 +1,10 @@
 //! Context in which a function is derived: the robot, the inputs used, and the guards that arise.
 
+use super::derivation_error::DerivationError;
 use super::guard::{Guard, GuardKind};
 use super::motion_input::MotionInput;
 use super::parameter::BodyParameter;
 use super::selection::{JointsBy, Selection};
-use super::underivable::Underivable;
 use crate::cas::{Arena, Expr};
 use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::robot::Robot;
@@ -60,7 +60,7 @@ impl<'a, 's> DerivationContext<'a, 's> {
         selection: &'s Selection,
         from: MotionInput,
         still: &[usize],
-    ) -> Result<Self, Underivable> {
+    ) -> Result<Self, DerivationError> {
         let configuration = match (from, selection.joints) {
             (MotionInput::Pose | MotionInput::Actuators, JointsBy::Rule) => MotionInput::Pose,
             _ => MotionInput::Joints,

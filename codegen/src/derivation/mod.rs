@@ -22,6 +22,7 @@
 mod bodies;
 mod closure;
 mod context;
+mod derivation_error;
 mod dynamics;
 mod forward;
 mod function_form;
@@ -35,8 +36,8 @@ mod parameter;
 mod regressor;
 mod robot;
 mod selection;
-mod underivable;
 
+pub use derivation_error::DerivationError;
 pub use function_form::FunctionForm;
 pub(crate) use functions::inventory::sources;
 pub use functions::inventory::{function_name, inventory};
@@ -51,4 +52,3 @@ pub use motion_input::MotionInput;
 pub use parameter::BodyParameter;
 pub(crate) use robot::derivable::derivable;
 pub use selection::{Combination, DynamicsBy, Formulation, JointsBy, Selection};
-pub use underivable::Underivable;

@@ -15,7 +15,7 @@ pub(super) enum Arithmetic {
 
 /// The computation of a pass on its operands a, b, c, d.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Kind {
+pub(super) enum PassKind {
     /// a ∘ b
     One(Arithmetic),
     /// (a ∘ b) ∘ c
@@ -46,7 +46,7 @@ pub(super) enum Kind {
     Angle,
 }
 
-impl Kind {
+impl PassKind {
     /// A unique number for each kind.
     pub(super) const fn code(self) -> u8 {
         match self {
@@ -94,14 +94,14 @@ pub(super) const RESULTS: usize = 3;
 /// A pass over a block whose operands have no slots yet.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
-    pub(super) kind: Kind,
+    pub(super) kind: PassKind,
     pub(super) operands: Vec<Value>,
     /// The computed values; for an angle the sine and the cosine, one of which may be unused.
     pub(super) results: [Option<Value>; RESULTS],
 }
 
 impl Draft {
-    fn new(kind: Kind, operands: &[Operand], result: Value) -> Self {
+    fn new(kind: PassKind, operands: &[Operand], result: Value) -> Self {
         Self {
             kind,
             operands: operands.iter().map(|&operand| Value::of(operand)).collect(),
@@ -123,7 +123,7 @@ pub(super) fn drafts(program: &Program) -> Vec<Draft> {
             // Both at the position of the first.
             if let Some([sine, cosine]) = angles.remove(&Value::of(angle)) {
                 drafts.push(Draft {
-                    kind: Kind::Angle,
+                    kind: PassKind::Angle,
                     operands: vec![Value::of(angle)],
                     results: [sine.map(Value::Step), cosine.map(Value::Step), None],
                 });
@@ -234,15 +234,15 @@ impl<'p> Fuse<'p> {
     }
 
     fn draft(&self, at: usize, operation: Operation) -> Draft {
-        let of = |kind: Kind, operands: &[Operand]| Draft::new(kind, operands, Value::Step(at));
+        let of = |kind: PassKind, operands: &[Operand]| Draft::new(kind, operands, Value::Step(at));
         match operation {
-            Operation::Div(a, b) => of(Kind::Divide, &[a, b]),
-            Operation::Signed(a, b) => of(Kind::Signed, &[b, a]),
-            Operation::Atan2(y, x) => of(Kind::Direction, &[y, x]),
-            Operation::Neg(a) => of(Kind::Negate, &[a]),
-            Operation::Sqrt(a) => of(Kind::Root, &[a]),
-            Operation::Sign(a) => of(Kind::Sign, &[a]),
-            Operation::Sine(a) | Operation::Cosine(a) => of(Kind::Angle, &[a]),
+            Operation::Div(a, b) => of(PassKind::Divide, &[a, b]),
+            Operation::Signed(a, b) => of(PassKind::Signed, &[b, a]),
+            Operation::Atan2(y, x) => of(PassKind::Direction, &[y, x]),
+            Operation::Neg(a) => of(PassKind::Negate, &[a]),
+            Operation::Sqrt(a) => of(PassKind::Root, &[a]),
+            Operation::Sign(a) => of(PassKind::Sign, &[a]),
+            Operation::Sine(a) | Operation::Cosine(a) => of(PassKind::Angle, &[a]),
             Operation::Add(a, b) => self.arithmetic(at, Arithmetic::Add, a, b),
             Operation::Sub(a, b) => self.arithmetic(at, Arithmetic::Sub, a, b),
             Operation::Mul(a, b) => self.arithmetic(at, Arithmetic::Mul, a, b),
@@ -250,17 +250,17 @@ impl<'p> Fuse<'p> {
     }
 
     fn arithmetic(&self, at: usize, middle: Arithmetic, left: Operand, right: Operand) -> Draft {
-        let of = |kind: Kind, operands: &[Operand]| Draft::new(kind, operands, Value::Step(at));
+        let of = |kind: PassKind, operands: &[Operand]| Draft::new(kind, operands, Value::Step(at));
         match (self.inner(left), self.inner(right)) {
-            (None, None) => of(Kind::One(middle), &[left, right]),
-            (Some((first, a, b)), None) => of(Kind::Then(first, middle), &[a, b, right]),
+            (None, None) => of(PassKind::One(middle), &[left, right]),
+            (Some((first, a, b)), None) => of(PassKind::Then(first, middle), &[a, b, right]),
             (None, Some((last, a, b))) if middle == Arithmetic::Sub => {
-                of(Kind::From(last), &[a, b, left])
+                of(PassKind::From(last), &[a, b, left])
             }
             // Addition and multiplication are commutative.
-            (None, Some((last, a, b))) => of(Kind::Then(last, middle), &[a, b, left]),
+            (None, Some((last, a, b))) => of(PassKind::Then(last, middle), &[a, b, left]),
             (Some((first, a, b)), Some((last, c, d))) => {
-                of(Kind::Both(first, middle, last), &[a, b, c, d])
+                of(PassKind::Both(first, middle, last), &[a, b, c, d])
             }
         }
     }
@@ -269,7 +269,7 @@ impl<'p> Fuse<'p> {
 /// Merges products with a common factor, and numbers with a common sign.
 fn sharing(drafts: Vec<Draft>) -> Vec<Draft> {
     let mut made: HashMap<Value, usize> = HashMap::new();
-    let mut users: HashMap<(Kind, Value), Vec<usize>> = HashMap::new();
+    let mut users: HashMap<(PassKind, Value), Vec<usize>> = HashMap::new();
     for (number, draft) in drafts.iter().enumerate() {
         made.extend(draft.results.into_iter().flatten().map(|v| (v, number)));
         for common in draft.common() {
@@ -314,12 +314,12 @@ impl Draft {
     /// This pass merged with the single-step pass of its operand at `place`, if there is a pass for
     /// the three steps.
     fn after(&self, first: &Self, place: usize) -> Option<Self> {
-        let Kind::One(f) = first.kind else {
+        let PassKind::One(f) = first.kind else {
             return None;
         };
         let (kind, g) = match self.kind {
-            Kind::Then(g, h) => (Kind::Chain(f, g, h), g),
-            Kind::From(g) => (Kind::FromChain(f, g), g),
+            PassKind::Then(g, h) => (PassKind::Chain(f, g, h), g),
+            PassKind::From(g) => (PassKind::FromChain(f, g), g),
             _ => return None,
         };
         let other = match (place, g) {
@@ -339,9 +339,9 @@ impl Draft {
     /// The operands that it may share with passes of its kind.
     fn common(&self) -> impl Iterator<Item = Value> {
         let count = match self.kind {
-            Kind::One(Arithmetic::Mul) if self.operands[0] == self.operands[1] => 1,
-            Kind::One(Arithmetic::Mul) => 2,
-            Kind::Signed => 1,
+            PassKind::One(Arithmetic::Mul) if self.operands[0] == self.operands[1] => 1,
+            PassKind::One(Arithmetic::Mul) => 2,
+            PassKind::Signed => 1,
             _ => 0,
         };
         self.operands.clone().into_iter().take(count)
@@ -350,9 +350,9 @@ impl Draft {
     /// Several passes of this kind as one, if there is a pass for that number.
     fn with_common(&self, common: Value, members: Vec<&Self>) -> Option<Self> {
         let kind = match (self.kind, members.len()) {
-            (Kind::One(_), 2) => Kind::TwoProducts,
-            (Kind::One(_), 3) => Kind::ThreeProducts,
-            (Kind::Signed, 3) => Kind::ThreeSigned,
+            (PassKind::One(_), 2) => PassKind::TwoProducts,
+            (PassKind::One(_), 3) => PassKind::ThreeProducts,
+            (PassKind::Signed, 3) => PassKind::ThreeSigned,
             _ => return None,
         };
         let mut draft = Self {

@@ -1,6 +1,6 @@
 //! The computations of passes, for a block of samples or a single sample.
 
-use super::fuse::{Arithmetic, Kind};
+use super::fuse::{Arithmetic, PassKind};
 use super::plan::Pass;
 use super::signed;
 
@@ -57,41 +57,49 @@ macro_rules! when {
 #[inline(always)]
 pub(super) fn work(at: &Pass, worker: &impl Worker) {
     for_each!(F, f, {
-        when!(at, Kind::One(F), worker.each(at, |[a, b]| f(a, b)));
-        when!(at, Kind::From(F), worker.each(at, |[a, b, c]| c - f(a, b)));
+        when!(at, PassKind::One(F), worker.each(at, |[a, b]| f(a, b)));
+        when!(
+            at,
+            PassKind::From(F),
+            worker.each(at, |[a, b, c]| c - f(a, b))
+        );
         for_each!(G, g, {
             when!(
                 at,
-                Kind::Then(F, G),
+                PassKind::Then(F, G),
                 worker.each(at, |[a, b, c]| g(f(a, b), c))
             );
             when!(
                 at,
-                Kind::FromChain(F, G),
+                PassKind::FromChain(F, G),
                 worker.each(at, |[a, b, c, d]| d - g(f(a, b), c))
             );
             for_each!(H, h, {
                 when!(
                     at,
-                    Kind::Chain(F, G, H),
+                    PassKind::Chain(F, G, H),
                     worker.each(at, |[a, b, c, d]| h(g(f(a, b), c), d))
                 );
                 when!(
                     at,
-                    Kind::Both(F, G, H),
+                    PassKind::Both(F, G, H),
                     worker.each(at, |[a, b, c, d]| g(f(a, b), h(c, d)))
                 );
             });
         });
     });
-    when!(at, Kind::Divide, worker.each(at, |[a, b]| a / b));
-    when!(at, Kind::Negate, worker.each(at, |[a]| -a));
-    when!(at, Kind::Root, worker.each(at, |[a]| a.sqrt()));
-    when!(at, Kind::Sign, worker.each(at, |[a]| signed(1.0, a)));
-    when!(at, Kind::Signed, worker.each(at, |[a, b]| signed(b, a)));
-    when!(at, Kind::ThreeSigned, worker.three(at, |a, b| signed(b, a)));
-    when!(at, Kind::TwoProducts, worker.two(at, |a, b| a * b));
-    when!(at, Kind::ThreeProducts, worker.three(at, |a, b| a * b));
-    when!(at, Kind::Direction, worker.directions(at));
-    when!(at, Kind::Angle, worker.angles(at));
+    when!(at, PassKind::Divide, worker.each(at, |[a, b]| a / b));
+    when!(at, PassKind::Negate, worker.each(at, |[a]| -a));
+    when!(at, PassKind::Root, worker.each(at, |[a]| a.sqrt()));
+    when!(at, PassKind::Sign, worker.each(at, |[a]| signed(1.0, a)));
+    when!(at, PassKind::Signed, worker.each(at, |[a, b]| signed(b, a)));
+    when!(
+        at,
+        PassKind::ThreeSigned,
+        worker.three(at, |a, b| signed(b, a))
+    );
+    when!(at, PassKind::TwoProducts, worker.two(at, |a, b| a * b));
+    when!(at, PassKind::ThreeProducts, worker.three(at, |a, b| a * b));
+    when!(at, PassKind::Direction, worker.directions(at));
+    when!(at, PassKind::Angle, worker.angles(at));
 }

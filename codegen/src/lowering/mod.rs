@@ -64,7 +64,7 @@ pub struct Expressions<'a> {
     pub guards: Vec<GuardedExpr<'a>>,
     /// Conditions on all divisors of the entries.
     ///
-    /// They hold no node in the search; only divisors that remain in the program are guarded.
+    /// They keep no node alive in the search; only divisors that remain in the program are guarded.
     pub divisors: Vec<GuardedExpr<'a>>,
 }
 

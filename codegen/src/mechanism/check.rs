@@ -197,7 +197,7 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
 /// robot has more degrees of freedom than described. Legs that block nothing at all are accepted:
 /// they are rods that replace parallelograms, whose constraints are not described.
 fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Diagnostics> {
-    let beside = random_states(mechanism, 3, 5).into_iter().map(|state| {
+    let displaced_states = random_states(mechanism, 3, 5).into_iter().map(|state| {
         let home = Home::new(mechanism, state.pose, state.joints);
         Mechanism {
             home,
@@ -214,7 +214,7 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
     let Some(mobility) = loose(mechanism) else {
         return Ok(());
     };
-    if beside.into_iter().all(|at| loose(&at).is_some()) {
+    if displaced_states.into_iter().all(|at| loose(&at).is_some()) {
         Err(Diagnostics::from(explain::not_held(description, &mobility)))
     } else {
         Ok(())

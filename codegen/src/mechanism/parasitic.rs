@@ -27,9 +27,9 @@ pub(super) struct Parasitic {
 }
 
 /// Distance of the nearby poses from home, rad and in units of the robot's length.
-const BESIDE: f64 = 0.1;
+const DISPLACEMENT: f64 = 0.1;
 /// Smallest singular value at which directions at home and near it differ, and smallest component
-/// that counts. Directions rotate by a fraction of [`BESIDE`].
+/// that counts. Directions rotate by a fraction of [`DISPLACEMENT`].
 const TURNED: f64 = 1e-4;
 /// Largest gap of a leg that counts as closed, m and rad.
 const CLOSED: f64 = 1e-10;
@@ -51,9 +51,9 @@ impl Parasitic {
         let count = own.ncols();
         let mut all = own.transpose();
         for direction in own.column_iter() {
-            for side in [-BESIDE, BESIDE] {
-                let beside = beside(mechanism, &(direction * side))?;
-                let allowed = Mobility::at_home(&beside)?.allowed;
+            for side in [-DISPLACEMENT, DISPLACEMENT] {
+                let displaced = displaced(mechanism, &(direction * side))?;
+                let allowed = Mobility::at_home(&displaced)?.allowed;
                 if allowed.ncols() != count {
                     return None;
                 }
@@ -98,7 +98,7 @@ fn choices(of: usize, count: usize) -> Vec<Vec<usize>> {
 /// The mechanism with its home displaced by a twist and projected onto the closures.
 ///
 /// Lengths are in units of the robot's.
-fn beside(mechanism: &Mechanism, twist: &DVector<f64>) -> Option<Mechanism> {
+fn displaced(mechanism: &Mechanism, twist: &DVector<f64>) -> Option<Mechanism> {
     let mut start = mechanism.home.clone();
     let mut step = twist.clone();
     step.rows_mut(0, 3).scale_mut(mechanism.length_scale());

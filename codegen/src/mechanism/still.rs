@@ -6,7 +6,7 @@ use super::states::random_states;
 /// Number of states at which a coordinate has to be zero.
 const STATES: usize = 6;
 /// Difference from home, m or of a quaternion, below which a coordinate counts as that of home.
-const BESIDE: f64 = 1e-4;
+const HOME_TOLERANCE: f64 = 1e-4;
 /// Largest coordinate that counts as zero, m or of a quaternion: rounding and closure errors.
 const ROUNDED: f64 = 1e-9;
 
@@ -21,7 +21,11 @@ pub(super) fn still_coordinates(mechanism: &Mechanism) -> Vec<usize> {
     let home = &mechanism.home.pose;
     let states = random_states(mechanism, STATES, 11).into_iter();
     let poses: Vec<Vec<f64>> = states.map(|state| state.pose).collect();
-    let is_home = |pose: &Vec<f64>| pose.iter().zip(home).all(|(a, b)| (a - b).abs() < BESIDE);
+    let is_home = |pose: &Vec<f64>| {
+        pose.iter()
+            .zip(home)
+            .all(|(a, b)| (a - b).abs() < HOME_TOLERANCE)
+    };
     if poses.iter().any(is_home) {
         return Vec::new();
     }

@@ -2,7 +2,7 @@
 
 use super::search::Search;
 use crate::cas::Arena;
-use crate::derivation::{JointsBy, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{DerivationError, JointsBy, MotionInput, Selection, derive};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 use overact_core::Function;
@@ -22,8 +22,12 @@ impl Assembler<'_> {
     /// Derives and lowers one function.
     ///
     /// # Errors
-    /// See [`Underivable`].
-    pub fn program(&self, function: Function, from: MotionInput) -> Result<Program, Underivable> {
+    /// See [`DerivationError`].
+    pub fn program(
+        &self,
+        function: Function,
+        from: MotionInput,
+    ) -> Result<Program, DerivationError> {
         let arena = Arena::new();
         let derived = derive(&arena, self.mechanism, self.selection, function, from)?;
         let program = self
@@ -36,11 +40,11 @@ impl Assembler<'_> {
 /// How the joints follow from the pose: in closed form if a rule fits every leg.
 ///
 /// # Errors
-/// See [`Underivable`].
+/// See [`DerivationError`].
 pub(super) fn joints(
     mechanism: &Mechanism,
     selection: &Selection,
-) -> Result<JointsBy, Underivable> {
+) -> Result<JointsBy, DerivationError> {
     let from = if mechanism.is_tree() {
         MotionInput::Joints
     } else {
@@ -48,7 +52,7 @@ pub(super) fn joints(
     };
     match derive(&Arena::new(), mechanism, selection, Function::Joints, from) {
         Ok(_) => Ok(JointsBy::Rule),
-        Err(Underivable::InverseKinematics { .. }) => Ok(JointsBy::Newton),
+        Err(DerivationError::InverseKinematics { .. }) => Ok(JointsBy::Newton),
         Err(error) => Err(error),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::assemble::Assembler;
 use super::search::Search;
-use crate::derivation::{MotionInput, Selection, Underivable};
+use crate::derivation::{DerivationError, MotionInput, Selection};
 use crate::lowering::Program;
 use overact_core::Function;
 use std::cell::RefCell;
@@ -51,12 +51,12 @@ pub(super) struct Counts<'m> {
     assembler: Assembler<'m>,
     function: Function,
     from: MotionInput,
-    before: Known,
-    after: Known,
+    before: CachedCounts,
+    after: CachedCounts,
 }
 
 /// Cached counts by form.
-type Known = RefCell<Vec<(Selection, Result<usize, Underivable>)>>;
+type CachedCounts = RefCell<Vec<(Selection, Result<usize, DerivationError>)>>;
 
 impl<'m> Counts<'m> {
     /// Counts of a function, initially empty.
@@ -71,21 +71,21 @@ impl<'m> Counts<'m> {
     }
 
     /// Operations of the function as derived.
-    pub(super) fn before(&self, selection: &Selection) -> Result<usize, Underivable> {
+    pub(super) fn before(&self, selection: &Selection) -> Result<usize, DerivationError> {
         known(&self.before, selection, || {
             self.searched(selection, &Search::none())
         })
     }
 
     /// Operations after a short search.
-    pub(super) fn after(&self, selection: &Selection) -> Result<usize, Underivable> {
+    pub(super) fn after(&self, selection: &Selection) -> Result<usize, DerivationError> {
         known(&self.after, selection, || {
             self.searched(selection, &Search::short())
         })
     }
 
     /// The function after the requested search.
-    pub(super) fn program(&self, selection: &Selection) -> Result<Program, Underivable> {
+    pub(super) fn program(&self, selection: &Selection) -> Result<Program, DerivationError> {
         let own = Assembler {
             selection,
             ..self.assembler
@@ -94,7 +94,7 @@ impl<'m> Counts<'m> {
     }
 
     /// Operations after a search.
-    fn searched(&self, selection: &Selection, search: &Search) -> Result<usize, Underivable> {
+    fn searched(&self, selection: &Selection, search: &Search) -> Result<usize, DerivationError> {
         let own = Assembler {
             selection,
             search,
@@ -106,15 +106,15 @@ impl<'m> Counts<'m> {
 
 /// The cached count of a form, computed on the first request.
 fn known(
-    all: &Known,
+    all: &CachedCounts,
     selection: &Selection,
-    tell: impl FnOnce() -> Result<usize, Underivable>,
-) -> Result<usize, Underivable> {
+    tell: impl FnOnce() -> Result<usize, DerivationError>,
+) -> Result<usize, DerivationError> {
     let is_it = |(known, _): &&(Selection, _)| is_written_as(known, selection);
-    if let Some((_, told)) = all.borrow().iter().find(is_it) {
-        return told.clone();
+    if let Some((_, outcome)) = all.borrow().iter().find(is_it) {
+        return outcome.clone();
     }
-    let told = tell();
-    all.borrow_mut().push((selection.clone(), told.clone()));
-    told
+    let outcome = tell();
+    all.borrow_mut().push((selection.clone(), outcome.clone()));
+    outcome
 }

@@ -4,7 +4,7 @@ use super::assemble::Assembler;
 use super::candidate::{Counts, Form, distinct};
 use super::formulation::{self, Change};
 use super::search::is_cheaper;
-use crate::derivation::{DynamicsBy, MotionInput, Selection, Underivable};
+use crate::derivation::{DerivationError, DynamicsBy, MotionInput, Selection};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 use overact_core::{Columns, Function};
@@ -49,8 +49,8 @@ impl Forms<'_> {
     /// All are counted as derived. Those that a search could still make the cheapest are searched.
     ///
     /// # Errors
-    /// See [`Underivable`].
-    pub(crate) fn cheapest(&self) -> Result<Program, Underivable> {
+    /// See [`DerivationError`].
+    pub(crate) fn cheapest(&self) -> Result<Program, DerivationError> {
         let forms = self.forms()?;
         let least = forms.iter().map(|form| form.operations).min();
         let most = least.unwrap_or_default() * worth_a_search(self.function) / 100;
@@ -89,7 +89,7 @@ impl Forms<'_> {
     /// Applies the closing change to the form that it makes the cheapest.
     ///
     /// The change has to save operations before a search and after a short one.
-    fn closing(&self, forms: &[Form]) -> Result<Option<Program>, Underivable> {
+    fn closing(&self, forms: &[Form]) -> Result<Option<Program>, DerivationError> {
         let change = formulation::closing_choice(self.mechanism, self.function);
         let Some(change) = change.filter(|_| self.is_thorough) else {
             return Ok(None);
@@ -117,7 +117,7 @@ impl Forms<'_> {
     ///
     /// They are those of the robot's formulation and, if the search is thorough, the best of them
     /// in the formulation that is cheapest for this function.
-    fn forms(&self) -> Result<Vec<Form>, Underivable> {
+    fn forms(&self) -> Result<Vec<Form>, DerivationError> {
         let mut forms = vec![self.form(self.selection.clone())?];
         if let Some(other) = self.other_form() {
             forms.push(self.form(other)?);
@@ -142,7 +142,7 @@ impl Forms<'_> {
     }
 
     /// A form with its operations before a search.
-    fn form(&self, selection: Selection) -> Result<Form, Underivable> {
+    fn form(&self, selection: Selection) -> Result<Form, DerivationError> {
         Ok(Form {
             operations: self.counts.before(&selection)?,
             selection,
@@ -156,7 +156,11 @@ impl Forms<'_> {
     /// it.
     ///
     /// Also returns all forms that were examined.
-    fn changed(&self, start: &Form, changes: &[Change]) -> Result<(Form, Vec<Form>), Underivable> {
+    fn changed(
+        &self,
+        start: &Form,
+        changes: &[Change],
+    ) -> Result<(Form, Vec<Form>), DerivationError> {
         let mut best = start.clone();
         let mut trials = vec![best.clone()];
         for change in changes {
@@ -195,7 +199,7 @@ impl Forms<'_> {
         start: &Form,
         best: &Form,
         changes: &[Change],
-    ) -> Result<Option<Form>, Underivable> {
+    ) -> Result<Option<Form>, DerivationError> {
         let plain = Change::Plain.on(&start.selection);
         let Some(plain) = plain.filter(|_| formulation::has_several_shapes(self.mechanism)) else {
             return Ok(None);
@@ -213,7 +217,7 @@ impl Forms<'_> {
     }
 
     /// Applies the last changes that save operations after a short search. `None` if none does.
-    fn refined(&self, form: &Form) -> Result<Option<Refinement>, Underivable> {
+    fn refined(&self, form: &Form) -> Result<Option<Refinement>, DerivationError> {
         let changes = formulation::last_choices(self.mechanism, self.function);
         if changes.is_empty() || !self.is_thorough {
             return Ok(None);
@@ -245,7 +249,7 @@ impl Forms<'_> {
     /// search.
     ///
     /// The refinement may change which axes are best.
-    fn in_other_axes(&self, refinement: &Refinement) -> Result<Option<Form>, Underivable> {
+    fn in_other_axes(&self, refinement: &Refinement) -> Result<Option<Form>, DerivationError> {
         if self.function.columns().is_none() {
             return Ok(None);
         }
@@ -268,7 +272,7 @@ impl Forms<'_> {
     ///
     /// Only forms are considered that a search could make cheaper than the one with the fewest
     /// operations.
-    fn promising(&self, trials: Vec<Form>, best: &Form) -> Result<Vec<Form>, Underivable> {
+    fn promising(&self, trials: Vec<Form>, best: &Form) -> Result<Vec<Form>, DerivationError> {
         let (plain, others): (Vec<Form>, Vec<Form>) =
             trials.into_iter().partition(|form| form.is_tried);
         let mut found = formulation::promising(others, best.operations, |form| form.operations);
@@ -283,7 +287,7 @@ impl Forms<'_> {
         }
         let of_best = after(best)?;
         let found = found.into_iter().map(|form| Ok((after(&form)?, form)));
-        let found: Vec<(usize, Form)> = found.collect::<Result<_, Underivable>>()?;
+        let found: Vec<(usize, Form)> = found.collect::<Result<_, DerivationError>>()?;
         let least = found.iter().map(|(operations, _)| *operations).min();
         let least = least.unwrap_or(of_best).min(of_best);
         let first = found

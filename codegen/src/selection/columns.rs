@@ -5,7 +5,7 @@ use super::base::{BaseParameter, select, symmetric_order};
 use super::combine::exact_combinations;
 use super::regressor::Regressor;
 use super::search::Search;
-use crate::derivation::{Combination, MotionInput, Selection, Underivable};
+use crate::derivation::{Combination, DerivationError, MotionInput, Selection};
 use crate::interpreter::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Operand, Program};
 use crate::mechanism::states::{State, random_states};
@@ -18,12 +18,12 @@ use std::collections::BTreeSet;
 /// are proved to be exact.
 ///
 /// # Errors
-/// See [`Underivable`].
+/// See [`DerivationError`].
 pub(super) fn base_parameters(
     mechanism: &Mechanism,
     selection: &Selection,
     regressor: &Regressor,
-) -> Result<(Vec<BaseParameter>, Vec<Combination>), Underivable> {
+) -> Result<(Vec<BaseParameter>, Vec<Combination>), DerivationError> {
     let columns = selection.standard.len();
     let count = 3 * columns / mechanism.dof().max(1) + 10;
     let states = random_states(mechanism, count, 1);
@@ -48,7 +48,7 @@ fn operations(
     mechanism: &Mechanism,
     selection: &Selection,
     base: &[BaseParameter],
-) -> Result<usize, Underivable> {
+) -> Result<usize, DerivationError> {
     let trial = Assembler {
         mechanism,
         selection: &Selection {

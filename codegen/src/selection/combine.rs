@@ -10,20 +10,20 @@ use super::base::{BaseParameter, nearby_ratio};
 use super::regressor::{FAMILY, Regressor};
 use super::search::Search;
 use crate::cas::Number;
-use crate::derivation::{BodyParameter, Combination, MotionInput, Selection, Underivable};
+use crate::derivation::{BodyParameter, Combination, DerivationError, MotionInput, Selection};
 use crate::mechanism::Mechanism;
 
 /// Chooses combinations that save operations in the standard regressor from joint angles.
 ///
 /// # Errors
-/// See [`Underivable`].
+/// See [`DerivationError`].
 pub(super) fn cheaper_columns(
     mechanism: &Mechanism,
     selection: &Selection,
     regressor: &Regressor,
     exact: &[Combination],
-) -> Result<Vec<Combination>, Underivable> {
-    let operations = |combined: &[Combination]| -> Result<usize, Underivable> {
+) -> Result<Vec<Combination>, DerivationError> {
+    let operations = |combined: &[Combination]| -> Result<usize, DerivationError> {
         let trial = Assembler {
             mechanism,
             selection: &Selection {

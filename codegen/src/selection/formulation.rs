@@ -3,7 +3,7 @@
 
 use super::regressor::Regressor;
 use crate::derivation::{
-    Formulation, Selection, Underivable, closure_frame_choices, may_use_any_axes,
+    DerivationError, Formulation, Selection, closure_frame_choices, may_use_any_axes,
     observer_frame_choices,
 };
 use crate::mechanism::{End, Leg, Mechanism};
@@ -23,11 +23,11 @@ const TRIED: usize = 4;
 /// moment. The plain form is kept if nothing is better.
 ///
 /// # Errors
-/// See [`Underivable`].
+/// See [`DerivationError`].
 pub(super) fn cheapest_formulation(
     mechanism: &Mechanism,
     selection: &Selection,
-) -> Result<(Formulation, Regressor), Underivable> {
+) -> Result<(Formulation, Regressor), DerivationError> {
     let plain = Formulation {
         closure_frames: vec![0; mechanism.legs.len()],
         observer_frames: vec![0; mechanism.legs.len()],
@@ -380,7 +380,7 @@ fn regressor(
     mechanism: &Mechanism,
     selection: &Selection,
     formulation: &Formulation,
-) -> Result<Regressor, Underivable> {
+) -> Result<Regressor, DerivationError> {
     let trial = Selection {
         formulation: formulation.clone(),
         ..selection.clone()

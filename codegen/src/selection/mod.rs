@@ -29,21 +29,21 @@ pub(crate) use candidates::Forms;
 pub use columns::sample;
 pub use formulation::formulations;
 pub use search::Search;
-pub(crate) use simd::beside;
+pub(crate) use simd::lane_program;
 pub(crate) use values::regrouped;
 
 use crate::cas::Arena;
-use crate::derivation::{BodyParameter, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{BodyParameter, DerivationError, MotionInput, Selection, derive};
 use crate::mechanism::Mechanism;
 use overact_core::Function;
 
 /// Chooses form and columns of a robot's model.
 ///
 /// # Errors
-/// See [`Underivable`].
+/// See [`DerivationError`].
 pub(crate) fn select(
     mechanism: &Mechanism,
-) -> Result<(Selection, Vec<BaseParameter>), Underivable> {
+) -> Result<(Selection, Vec<BaseParameter>), DerivationError> {
     let mut selection = Selection {
         standard: BodyParameter::all(mechanism),
         payload: payload_columns(mechanism)?,
@@ -61,7 +61,7 @@ pub(crate) fn select(
 }
 
 /// The payload's parameters whose columns are not identically zero.
-fn payload_columns(mechanism: &Mechanism) -> Result<Vec<BodyParameter>, Underivable> {
+fn payload_columns(mechanism: &Mechanism) -> Result<Vec<BodyParameter>, DerivationError> {
     let selection = Selection {
         payload: BodyParameter::of_payload(mechanism),
         ..Selection::default()

@@ -4,7 +4,7 @@
 use super::search::Search;
 use crate::cas::arena::Handle;
 use crate::cas::{Arena, Expr, Number};
-use crate::derivation::{BodyParameter, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{BodyParameter, DerivationError, MotionInput, Selection, derive};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 use overact_core::{Columns, Function};
@@ -29,8 +29,11 @@ impl Regressor {
     /// selection.
     ///
     /// # Errors
-    /// See [`Underivable`].
-    pub(super) fn new(mechanism: &Mechanism, selection: &Selection) -> Result<Self, Underivable> {
+    /// See [`DerivationError`].
+    pub(super) fn new(
+        mechanism: &Mechanism,
+        selection: &Selection,
+    ) -> Result<Self, DerivationError> {
         let arena = Arena::new();
         let mut derived = derive(&arena, mechanism, selection, FAMILY, MotionInput::Joints)?;
         let present = derived.present_columns();

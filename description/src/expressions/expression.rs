@@ -15,7 +15,7 @@ use crate::diagnostic::{Span, did_you_mean};
 use crate::expressions::dimension::{Dimension, UNITS, unit};
 use crate::expressions::function::{FUNCTIONS, apply, arity};
 use crate::expressions::scalar::Scalar;
-use crate::expressions::token::{Kind, Token, tokens};
+use crate::expressions::token::{Token, TokenKind, tokens};
 use crate::expressions::value::{Fault, Value};
 use overact_exact::{Angle, Number, Ratio};
 use std::marker::PhantomData;
@@ -152,7 +152,7 @@ fn fault_at(message: impl Into<String>, span: Span) -> Failure {
 }
 
 fn unit_hint(token: &Token<'_>) -> Option<String> {
-    let name = token.kind == Kind::Name;
+    let name = token.kind == TokenKind::Name;
     name.then(|| did_you_mean(token.text, UNITS)).flatten()
 }
 
@@ -273,15 +273,15 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
             ));
         };
         match token.kind {
-            Kind::Number => self.quantity(token),
-            Kind::Name if self.peek().is_some_and(|t| t.is('(')) => self.function(token),
-            Kind::Name => self.name(token),
-            Kind::Symbol('(') => {
+            TokenKind::Number => self.quantity(token),
+            TokenKind::Name if self.peek().is_some_and(|t| t.is('(')) => self.function(token),
+            TokenKind::Name => self.name(token),
+            TokenKind::Symbol('(') => {
                 let value = self.nested(Self::sum)?;
                 self.close(token)?;
                 Ok(value)
             }
-            Kind::Symbol(_) => Err(fault_at(
+            TokenKind::Symbol(_) => Err(fault_at(
                 format!("expected a value, found `{}`", token.text),
                 token.span.clone(),
             )),
@@ -333,7 +333,7 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         let start = self.start();
         let found = self
             .peek()
-            .filter(|t| t.kind == Kind::Name)
+            .filter(|t| t.kind == TokenKind::Name)
             .and_then(|t| unit(t.text));
         let Some((scalar, dimension)) = found else {
             self.at = before;

@@ -4,7 +4,7 @@ use crate::diagnostic::Span;
 use crate::expressions::value::Fault;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum TokenKind {
     Number,
     Name,
     /// One of + - * / ^ ( ) and the comma.
@@ -14,14 +14,14 @@ pub(crate) enum Kind {
 /// A token and its bytes in the expression.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Token<'t> {
-    pub(crate) kind: Kind,
+    pub(crate) kind: TokenKind,
     pub(crate) text: &'t str,
     pub(crate) span: Span,
 }
 
 impl Token<'_> {
     pub(crate) fn is(&self, symbol: char) -> bool {
-        self.kind == Kind::Symbol(symbol)
+        self.kind == TokenKind::Symbol(symbol)
     }
 }
 
@@ -36,9 +36,9 @@ pub(crate) fn tokens(text: &str) -> Result<Vec<Token<'_>>, (Fault, Span)> {
                 at += c.len_utf8();
                 continue;
             }
-            '0'..='9' | '.' => (Kind::Number, number_length(rest)),
-            c if c.is_ascii_alphabetic() || c == '_' => (Kind::Name, name_length(rest)),
-            '+' | '-' | '*' | '/' | '^' | '(' | ')' | ',' => (Kind::Symbol(first), 1),
+            '0'..='9' | '.' => (TokenKind::Number, number_length(rest)),
+            c if c.is_ascii_alphabetic() || c == '_' => (TokenKind::Name, name_length(rest)),
+            '+' | '-' | '*' | '/' | '^' | '(' | ')' | ',' => (TokenKind::Symbol(first), 1),
             c => {
                 let fault = Fault::new(format!("unexpected character `{c}` in an expression"));
                 return Err((fault.help(substitute(c)), at..at + c.len_utf8()));

@@ -51,7 +51,7 @@ pub(crate) fn attach(
         );
         return;
     }
-    let mut told = Vec::new();
+    let mut seen_shapes = Vec::new();
     for index in 1..legs.len() {
         let (before, rest) = legs.split_at_mut(index);
         let Some((leg, after)) = rest.split_first_mut() else {
@@ -65,8 +65,8 @@ pub(crate) fn attach(
         let Some(shape) = shapes.get(leg.shape) else {
             continue;
         };
-        let is_new = !told.contains(&leg.shape);
-        told.push(leg.shape);
+        let is_new = !seen_shapes.contains(&leg.shape);
+        seen_shapes.push(leg.shape);
         let report = |error: Diagnostic| {
             // Legs of one shape share its errors.
             if is_new {

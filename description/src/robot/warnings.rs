@@ -19,7 +19,7 @@ pub(crate) fn angle(item: &Item<'_, '_>, angle: Angle) {
             "`{}`: a number without a unit is in rad, and {bare} rad are more than a turn: {bare} deg?",
             item.key.value
         );
-        item.context.doubt(what, &item.span);
+        item.context.warn(what, &item.span);
     }
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn length(item: &Item<'_, '_>, length: Number) {
             String::from("mm?")
         };
         let what = format!("`{}` is {metres} m long, and {unit}", item.key.value);
-        item.context.doubt(what, &item.span);
+        item.context.warn(what, &item.span);
     }
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn payload(context: &Context<'_>, name: &Spanned<String>) {
         let what = format!(
             "the fixed joint `{name}` is a permanent body: did you mean `payload`, which only some runs carry?"
         );
-        context.doubt(what, span);
+        context.warn(what, span);
     }
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn column(item: &Item<'_, '_>, text: &str) {
             "`{}`: \"{text}\" is not an expression of columns, {why}; it is used as the name of a column",
             item.key.value
         );
-        item.context.doubt(what, &item.span);
+        item.context.warn(what, &item.span);
     }
 }
 

@@ -187,18 +187,18 @@ fn a_fixed_axis_is_slid_along_or_turned_about() {
 
 #[test]
 fn numbers_of_another_unit_are_doubted() {
-    let doubts = |joint: &str| -> Vec<String> {
-        let doubts = good(&single("", joint)).doubts.into_iter();
-        doubts.map(|doubt| doubt.value).collect()
+    let warnings = |joint: &str| -> Vec<String> {
+        let warnings = good(&single("", joint)).warnings.into_iter();
+        warnings.map(|warning| warning.value).collect()
     };
     for fine in [
         "alpha = \"-90 deg\"\nr = \"0.32 m\"",
         "alpha = 1.5707\ntheta = \"q + 0.3\"",
         "theta = \"q - 7 rad\"\nd = 49.9",
     ] {
-        assert_eq!(doubts(fine), Vec::<String>::new(), "{fine}");
+        assert_eq!(warnings(fine), Vec::<String>::new(), "{fine}");
     }
-    let found = doubts("alpha = -90\nr = 320\ntheta = \"q + 90\"");
+    let found = warnings("alpha = -90\nr = 320\ntheta = \"q + 90\"");
     assert_eq!(
         found,
         [
@@ -213,7 +213,7 @@ fn numbers_of_another_unit_are_doubted() {
 fn a_payload_with_a_capital_is_doubted() {
     let with = |name: &str| {
         let joint = format!("\n[[leg.arm.joint]]\ntype = \"fixed\"\nname = \"{name}\"");
-        good(&single("", &joint)).doubts
+        good(&single("", &joint)).warnings
     };
     assert_eq!(with("payload"), []);
     assert_eq!(with("tool"), []);
@@ -228,7 +228,7 @@ fn a_payload_with_a_capital_is_doubted() {
 fn columns_that_are_no_expressions_are_doubted_at_their_line() {
     let data = "[data]\ntime = \"t\"\npositions = [\"q\"]\ntorques = [\n  \"i *\"\n]\n";
     let text = single(data, "");
-    let found = good(&text).doubts;
+    let found = good(&text).warnings;
     assert_eq!(found.len(), 1);
     assert_eq!(&text[found[0].span.clone()], "\"i *\"");
     assert!(

@@ -4,7 +4,7 @@ use crate::diagnostic::{Source, Span};
 use toml::de::{DeTable, DeValue};
 
 /// A part of a path: a key, or the index of an element.
-enum Part<'p> {
+enum PathPart<'p> {
     Key(&'p str),
     Element(usize),
 }
@@ -16,14 +16,14 @@ enum Part<'p> {
 pub fn place(source: &Source, path: &str) -> Option<Span> {
     let (document, _) = DeTable::parse_recoverable(&source.text);
     let mut parts = parts(path).into_iter();
-    let Some(Part::Key(first)) = parts.next() else {
+    let Some(PathPart::Key(first)) = parts.next() else {
         return None;
     };
     let mut at = document.get_ref().get(first)?;
     for part in parts {
         let within = match (part, at.get_ref()) {
-            (Part::Key(key), DeValue::Table(table)) => table.get(key),
-            (Part::Element(index), DeValue::Array(array)) => array.get(index),
+            (PathPart::Key(key), DeValue::Table(table)) => table.get(key),
+            (PathPart::Element(index), DeValue::Array(array)) => array.get(index),
             _ => None,
         };
         let Some(within) = within else { break };
@@ -32,11 +32,11 @@ pub fn place(source: &Source, path: &str) -> Option<Span> {
     Some(at.span())
 }
 
-fn parts(path: &str) -> Vec<Part<'_>> {
+fn parts(path: &str) -> Vec<PathPart<'_>> {
     path.split(['.', '['])
         .map(|part| match part.strip_suffix(']').map(str::parse) {
-            Some(Ok(index)) => Part::Element(index),
-            _ => Part::Key(part),
+            Some(Ok(index)) => PathPart::Element(index),
+            _ => PathPart::Key(part),
         })
         .collect()
 }

@@ -13,7 +13,7 @@ pub(crate) struct Context<'t> {
     source: &'t Source,
     errors: RefCell<Diagnostics>,
     /// Warnings about text that is probably not intended.
-    doubts: RefCell<Vec<Spanned<String>>>,
+    warnings: RefCell<Vec<Spanned<String>>>,
 }
 
 impl<'t> Context<'t> {
@@ -21,7 +21,7 @@ impl<'t> Context<'t> {
         Self {
             source,
             errors: RefCell::default(),
-            doubts: RefCell::default(),
+            warnings: RefCell::default(),
         }
     }
 
@@ -43,18 +43,18 @@ impl<'t> Context<'t> {
     }
 
     /// Records a warning, once per location.
-    pub(crate) fn doubt(&self, what: String, span: &Span) {
-        let mut doubts = self.doubts.borrow_mut();
-        if !doubts.iter().any(|known| known.span == *span) {
-            doubts.push(Spanned::new(what, span.clone()));
+    pub(crate) fn warn(&self, what: String, span: &Span) {
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.iter().any(|known| known.span == *span) {
+            warnings.push(Spanned::new(what, span.clone()));
         }
     }
 
     /// The warnings, in order of the text.
-    pub(crate) fn doubts(&self) -> Vec<Spanned<String>> {
-        let mut doubts = self.doubts.borrow().clone();
-        doubts.sort_by_key(|doubt| doubt.span.start);
-        doubts
+    pub(crate) fn warnings(&self) -> Vec<Spanned<String>> {
+        let mut warnings = self.warnings.borrow().clone();
+        warnings.sort_by_key(|warning| warning.span.start);
+        warnings
     }
 
     /// Whether there is no error.

@@ -86,7 +86,7 @@ pub(crate) fn name_problem(name: &str) -> Option<&'static str> {
     let starts_well = name.starts_with(|c: char| c.is_ascii_alphabetic());
     if !starts_well || !is_word(name) {
         return Some(
-            "a constant's name is made of letters, digits and underscores and starts with a letter",
+            "a constant's name has letters, digits and underscores and starts with a letter",
         );
     }
     if unit(name).is_some() || UNITS.contains(&name) {

@@ -99,15 +99,15 @@ pub(crate) fn rests_on(model: &dyn Model, before: PreviouslyIdentified) -> Optio
 /// A kind of fault whose detection limit is reported.
 ///
 /// `check` looks for the fault. `is_part` says that its size is relative, with 1 as 100 %.
-struct Kind {
+struct DetectableFault {
     check: CheckKind,
     is_part: bool,
     name: &'static str,
 }
 
 /// Constructs a kind of faults.
-const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
-    Kind {
+const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> DetectableFault {
+    DetectableFault {
         check,
         is_part,
         name,
@@ -115,7 +115,7 @@ const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
 }
 
 /// All kinds of faults whose detection limits are reported.
-const KINDS: [Kind; 8] = [
+const KINDS: [DetectableFault; 8] = [
     kind(CheckKind::EncoderOffset, false, "zero of an encoder"),
     kind(CheckKind::EncoderOffset, true, "scale of an encoder"),
     kind(CheckKind::Length, false, "length"),
@@ -137,7 +137,7 @@ const WHOLE: f64 = 1.0;
 ///
 /// The harm is the parameter shift at the smallest detectable size.
 pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
-    let worst_of = |kind: &Kind| {
+    let worst_of = |kind: &DetectableFault| {
         let own = checks.iter().filter(|one| one.passed);
         // One check tests offsets and lengths; it is filed under the kind that it found.
         let geometry = [CheckKind::EncoderOffset, CheckKind::Length];
@@ -152,7 +152,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             all.filter(|one| one.shift_deviations > HARMFUL && one.shift_deviations.is_finite());
         harmful.max_by(|a, b| a.shift_deviations.total_cmp(&b.shift_deviations))
     };
-    let told = KINDS.iter().filter_map(|kind| {
+    let sentences = KINDS.iter().filter_map(|kind| {
         if let Some(never) = never(checks, kind) {
             return Some(never);
         }
@@ -179,11 +179,11 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             kind.name, worst.parameter, shift_deviations
         ))
     });
-    told.collect()
+    sentences.collect()
 }
 
 /// Names the drives whose gain error these data cannot detect, or only beyond 100 %.
-fn never(checks: &[Check], kind: &Kind) -> Option<String> {
+fn never(checks: &[Check], kind: &DetectableFault) -> Option<String> {
     let own = checks
         .iter()
         .filter(|one| one.kind == kind.check && one.passed);
@@ -216,9 +216,9 @@ mod tests {
     }
 
     #[test]
-    fn of_each_kind_the_worst_is_told_with_its_unit() {
+    fn the_worst_of_each_kind_is_reported_with_its_unit() {
         let gains = [("left", "", 0.03, 7.0), ("right", "", 0.1, 86.0)];
-        let told = unseen(&[
+        let sentences = unseen(&[
             check(CheckKind::Clock, &[("", "", 2.5, 500.0)]),
             check(CheckKind::WrongGain, &gains),
             check(CheckKind::Delay, &[("", "s", 2.8e-4, 5.0)]),
@@ -236,7 +236,7 @@ mod tests {
             "smoothing of the torques: a mean over 12 ms would shift `zz_1` by 8 σ",
             "sampling frequency: 100 % would shift `zz_1` by 200 σ",
         ];
-        assert_eq!(told, expected);
+        assert_eq!(sentences, expected);
     }
 
     #[test]

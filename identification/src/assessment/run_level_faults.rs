@@ -79,7 +79,7 @@ impl RunLevelFault {
     pub(super) fn check(self, model: &dyn Model, so: &str) -> Check {
         let names = model.info().actuators;
         let name = |index: usize| names.get(index).copied().unwrap_or_default();
-        let told = |kind, message: String| {
+        let failed_check = |kind, message: String| {
             Check::new(kind, About::Model, format!("{message}; {so}")).with_grade(Grade::DoNotUse)
         };
         match self {
@@ -93,15 +93,15 @@ impl RunLevelFault {
                     name(i),
                     name(j)
                 );
-                told(CheckKind::SwappedColumns, message).of_actuator(name(i))
+                failed_check(CheckKind::SwappedColumns, message).of_actuator(name(i))
             }
-            Self::Weightless => told(
+            Self::Weightless => failed_check(
                 CheckKind::WrongSign,
                 String::from(
                     "the torques look as if gravity did not act: log them including the gravity compensation of the drive, or correct `gravity` in the description (zero for motion in a horizontal plane)",
                 ),
             ),
-            Self::Gravity => told(
+            Self::Gravity => failed_check(
                 CheckKind::WrongSign,
                 String::from(
                     "gravity looks reversed: check the sign of `gravity` in the description and the mounting of the base",

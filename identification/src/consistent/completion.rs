@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{
     pseudo_inertia::{Inertia, divergence},
     solve::solve,
-    unknowns::{Group, Kind, Unknowns},
+    unknowns::{UnknownGroup, UnknownKind, Unknowns},
 };
 
 /// Relative tolerance of given parameters; beyond it no body has them.
@@ -73,9 +73,9 @@ fn steiner(body: &Inertia) -> [f64; 6] {
 /// The body nearest to a prior that has the given parameters and its mass.
 fn nearest(prior: &Inertia, given: &[Option<f64>; 10]) -> Option<Inertia> {
     let unknowns = Unknowns {
-        groups: vec![Group {
+        groups: vec![UnknownGroup {
             first: 0,
-            kind: Kind::Body { prior: *prior },
+            kind: UnknownKind::Body { prior: *prior },
             bounds: Vec::new(),
         }],
         of_column: (0..10).collect(),

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    unknowns::{Kind, Unknowns},
+    unknowns::{UnknownKind, Unknowns},
     values::Values,
 };
 
@@ -18,7 +18,7 @@ impl Values {
         let (mut known, mut uniform) = (DVector::zeros(a.ncols()), DVector::zeros(a.ncols()));
         for group in &unknowns.groups {
             match &group.kind {
-                Kind::Body { prior } => {
+                UnknownKind::Body { prior } => {
                     let suffix = unknowns.names[group.first].trim_start_matches("xx");
                     let to = if self.given.contains_key(suffix) {
                         &mut known
@@ -27,8 +27,8 @@ impl Values {
                     };
                     to.rows_mut(group.first, 10).copy_from(prior);
                 }
-                Kind::Positive { prior } => known[group.first] = *prior,
-                Kind::Free { .. } => {}
+                UnknownKind::Positive { prior } => known[group.first] = *prior,
+                UnknownKind::Free { .. } => {}
             }
         }
         let (rest, column) = (b - a * known, a * uniform);

@@ -46,8 +46,8 @@ impl Equations {
     /// Variances of the unknowns for rows of unit variance: diagonal of S (1 + Mᵀ M)^-1 Sᵀ.
     pub(super) fn variances(&self) -> DVector<f64> {
         let count = self.matrix.ncols();
-        let told = self.matrix.tr_mul(&self.gram.solve(&self.matrix));
-        let covariance = DMatrix::identity(count, count) - told;
+        let determined = self.matrix.tr_mul(&self.gram.solve(&self.matrix));
+        let covariance = DMatrix::identity(count, count) - determined;
         let mut variances = DVector::zeros(count);
         for (first, len, scaling) in &self.scalings {
             let scaling = scaling.view((0, 0), (*len, *len));

@@ -33,7 +33,7 @@ use serde::Serialize;
 use self::{
     pseudo_inertia::{Inertia, definiteness},
     solve::{Solution, solve},
-    unknowns::{Kind, Unknowns},
+    unknowns::{UnknownKind, Unknowns},
     values::Values,
 };
 use crate::{
@@ -212,10 +212,10 @@ fn regroupings(base: &BaseParameters, unknowns: &Unknowns) -> DMatrix<f64> {
 }
 
 fn priors(unknowns: &Unknowns) -> Vec<f64> {
-    let own = |kind: &Kind| match kind {
-        Kind::Body { prior } => prior.iter().copied().collect(),
-        Kind::Positive { prior } => vec![*prior],
-        Kind::Free { .. } => vec![0.0],
+    let own = |kind: &UnknownKind| match kind {
+        UnknownKind::Body { prior } => prior.iter().copied().collect(),
+        UnknownKind::Positive { prior } => vec![*prior],
+        UnknownKind::Free { .. } => vec![0.0],
     };
     unknowns
         .groups
@@ -228,7 +228,7 @@ fn bodies(unknowns: &Unknowns, solution: &Solution) -> Vec<ConsistentBody> {
     let own = unknowns
         .groups
         .iter()
-        .filter(|group| matches!(group.kind, Kind::Body { .. }));
+        .filter(|group| matches!(group.kind, UnknownKind::Body { .. }));
     own.map(|group| {
         let inertia = solution.values.rows(group.first, group.len());
         let inertia = Inertia::from_iterator(inertia.iter().copied());

@@ -7,7 +7,7 @@ use super::{
     cones::{BodyCone, Cone, FreeCone, PositiveCone},
     equations::Equations,
     pseudo_inertia::{Inertia, Metric},
-    unknowns::{Group, Kind, Unknowns},
+    unknowns::{UnknownGroup, UnknownKind, Unknowns},
 };
 
 /// Largest fraction of the distance to the boundary in one step.
@@ -22,15 +22,15 @@ struct Block {
 }
 
 impl Block {
-    fn new(group: &Group, values: &DVector<f64>, weight: f64, cost: f64) -> Option<Self> {
+    fn new(group: &UnknownGroup, values: &DVector<f64>, weight: f64, cost: f64) -> Option<Self> {
         let own = values.rows(group.first, group.len());
         let cone: Box<dyn Cone> = match &group.kind {
-            Kind::Body { prior } => {
+            UnknownKind::Body { prior } => {
                 let own = own.fixed_rows::<10>(0).into_owned();
                 Box::new(BodyCone::new(prior, &own, weight)?)
             }
-            Kind::Positive { prior } => Box::new(PositiveCone::new(*prior, own[0], weight)?),
-            Kind::Free { scale } => Box::new(FreeCone::new(*scale, own[0], cost)),
+            UnknownKind::Positive { prior } => Box::new(PositiveCone::new(*prior, own[0], weight)?),
+            UnknownKind::Free { scale } => Box::new(FreeCone::new(*scale, own[0], cost)),
         };
         let bounds = group.bounds.iter();
         let bounds = bounds.flat_map(|(k, [low, high])| [(*k, 1.0, *low), (*k, -1.0, *high)]);

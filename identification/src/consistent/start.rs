@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::unknowns::{Kind, Unknowns};
+use super::unknowns::{UnknownKind, Unknowns};
 
 /// Smallest distance of a bounded unknown from its bounds, by their distance.
 const INSIDE: f64 = 0.1;
@@ -13,17 +13,17 @@ pub(super) fn start(unknowns: &Unknowns) -> DVector<f64> {
     for group in &unknowns.groups {
         let mut own = values.rows_mut(group.first, group.len());
         match &group.kind {
-            Kind::Body { prior } => own.copy_from(prior),
-            Kind::Positive { prior } => own[0] = *prior,
-            Kind::Free { .. } => {}
+            UnknownKind::Body { prior } => own.copy_from(prior),
+            UnknownKind::Positive { prior } => own[0] = *prior,
+            UnknownKind::Free { .. } => {}
         }
         for (k, [low, high]) in &group.bounds {
-            let is_free = matches!(group.kind, Kind::Free { .. });
+            let is_free = matches!(group.kind, UnknownKind::Free { .. });
             let low = if is_free { *low } else { low.max(0.0) };
             let inside = moved_inside(own[*k], low, *high);
             match &group.kind {
                 // A body of the same shape with another mass.
-                Kind::Body { .. } => own *= inside / own[*k],
+                UnknownKind::Body { .. } => own *= inside / own[*k],
                 _ => own[*k] = inside,
             }
         }

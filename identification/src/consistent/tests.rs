@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 use super::{
     pseudo_inertia::{Inertia, definiteness, divergence},
     solve::solve,
-    unknowns::{Group, Kind, Unknowns},
+    unknowns::{UnknownGroup, UnknownKind, Unknowns},
 };
 
 /// A box of 0.5 kg and 0.2 m × 0.1 m × 0.4 m with one corner at the origin.
@@ -32,16 +32,16 @@ fn body() -> Inertia {
 
 /// A body, a positive coefficient and a free one.
 fn unknowns(prior: Inertia, bounds: Vec<(usize, [f64; 2])>) -> Unknowns {
-    let group = |first, kind, bounds| Group {
+    let group = |first, kind, bounds| UnknownGroup {
         first,
         kind,
         bounds,
     };
     Unknowns {
         groups: vec![
-            group(0, Kind::Body { prior }, bounds),
-            group(10, Kind::Positive { prior: 2.0 }, Vec::new()),
-            group(11, Kind::Free { scale: 1.0 }, Vec::new()),
+            group(0, UnknownKind::Body { prior }, bounds),
+            group(10, UnknownKind::Positive { prior: 2.0 }, Vec::new()),
+            group(11, UnknownKind::Free { scale: 1.0 }, Vec::new()),
         ],
         of_column: (0..12).collect(),
         names: (0..12).map(|k| k.to_string()).collect(),

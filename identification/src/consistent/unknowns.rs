@@ -13,9 +13,9 @@ use crate::{
     regression::columns::{Column, ColumnSet},
 };
 
-/// Kind of unknowns that are constrained together.
+/// Constraint on a group of unknowns.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum UnknownKind {
     /// The ten parameters of a body.
     Body {
         /// Nearest body without data.
@@ -35,20 +35,20 @@ pub(super) enum Kind {
 
 /// Unknowns that are constrained together, with their position among all.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Group {
+pub(super) struct UnknownGroup {
     /// Number of the first unknown.
     pub(super) first: usize,
-    pub(super) kind: Kind,
+    pub(super) kind: UnknownKind,
     /// Bounded unknowns, by number within the group, with their bounds.
     pub(super) bounds: Vec<(usize, [f64; 2])>,
 }
 
-impl Group {
+impl UnknownGroup {
     /// Number of unknowns.
     pub(super) const fn len(&self) -> usize {
         match self.kind {
-            Kind::Body { .. } => 10,
-            Kind::Positive { .. } | Kind::Free { .. } => 1,
+            UnknownKind::Body { .. } => 10,
+            UnknownKind::Positive { .. } | UnknownKind::Free { .. } => 1,
         }
     }
 }
@@ -56,7 +56,7 @@ impl Group {
 /// All unknowns.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Unknowns {
-    pub(super) groups: Vec<Group>,
+    pub(super) groups: Vec<UnknownGroup>,
     /// Unknown of each column of the model.
     pub(super) of_column: Vec<usize>,
     /// Names of the unknowns, including those of bodies without a column of their own.
@@ -84,7 +84,7 @@ impl Unknowns {
         for (index, column) in columns.as_slice().iter().enumerate() {
             if !column.symbol.is_inertial() {
                 all.of_column[index] = all.names.len();
-                all.add(scalar(column, values), vec![column.name.clone()]);
+                all.add(scalar_kind(column, values), vec![column.name.clone()]);
             }
         }
         all.bound(prior);
@@ -96,8 +96,8 @@ impl Unknowns {
         self.names.len()
     }
 
-    fn add(&mut self, kind: Kind, names: Vec<String>) {
-        self.groups.push(Group {
+    fn add(&mut self, kind: UnknownKind, names: Vec<String>) {
+        self.groups.push(UnknownGroup {
             first: self.names.len(),
             kind,
             bounds: Vec::new(),
@@ -118,7 +118,7 @@ impl Unknowns {
             self.of_column[index] = first + place.unwrap_or_default();
         }
         let prior = values.body(suffix);
-        self.add(Kind::Body { prior }, names.to_vec());
+        self.add(UnknownKind::Body { prior }, names.to_vec());
     }
 
     /// Assigns the bounds.
@@ -134,14 +134,14 @@ impl Unknowns {
 }
 
 /// Kind of a column that belongs to no body.
-fn scalar(column: &Column, values: &Values) -> Kind {
+fn scalar_kind(column: &Column, values: &Values) -> UnknownKind {
     use StandardParameter as P;
     let value = values.scalar(column);
     match column.symbol {
         // Friction split by direction contains the offset, and a spring's coefficient has the sign
         // of its expression; both may have either sign.
-        P::Off | P::K | P::FsPos | P::FsNeg => Kind::Free { scale: value },
-        P::Fs if column.direction.is_some() => Kind::Free { scale: value },
-        _ => Kind::Positive { prior: value },
+        P::Off | P::K | P::FsPos | P::FsNeg => UnknownKind::Free { scale: value },
+        P::Fs if column.direction.is_some() => UnknownKind::Free { scale: value },
+        _ => UnknownKind::Positive { prior: value },
     }
 }

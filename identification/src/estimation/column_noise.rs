@@ -20,7 +20,7 @@ use crate::regression::{
     factor::Factor,
     observation::MeasuredRun,
     observer::Observer,
-    system::{Observed, System},
+    system::{RunEquations, System},
 };
 use overact_logs::{Error, Log};
 
@@ -93,7 +93,7 @@ impl ColumnNoise {
     }
 
     /// Adds the equations of a run.
-    fn add(&mut self, observed: &Observed) {
+    fn add(&mut self, observed: &RunEquations) {
         for (own, line) in self.lines.iter_mut().zip(&observed.instruments) {
             let parameters = own.parameters();
             let difference = DMatrix::from_fn(2 * parameters, parameters, |row, column| {

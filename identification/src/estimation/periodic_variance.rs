@@ -14,7 +14,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::fourier::Fourier;
-use crate::regression::fold::Folds;
+use crate::regression::phase_sums::PhaseSums;
 
 /// Neighbouring harmonics on either side that are averaged.
 const NEIGHBOURS: usize = 4;
@@ -52,12 +52,12 @@ impl Mean {
     ///
     /// `split` converts the mean rows of a line to weighted columns and residual.
     pub(crate) fn new(
-        folds: &Folds,
+        phase_sums: &[PhaseSums],
         split: impl Fn(usize, DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>),
     ) -> Option<Self> {
         let (mut lines, mut phases) = (Vec::new(), 0);
-        for (number, fold) in folds.iter().enumerate() {
-            let (columns, residual) = split(number, fold.means()?);
+        for (number, sums) in phase_sums.iter().enumerate() {
+            let (columns, residual) = split(number, sums.means()?);
             phases = columns.nrows();
             let fourier = Fourier::circular(phases);
             let columns = fourier.whole(&columns);
@@ -229,7 +229,7 @@ impl SumVariance {
 #[cfg(test)]
 mod tests {
     use super::{Mean, SumVariance};
-    use crate::regression::fold::{Fold, Phases};
+    use crate::regression::phase_sums::{PhaseSums, Phases};
     use nalgebra::{DMatrix, DVector};
     use overact_logs::periods::PeriodicMotion;
     use rand::{RngExt, SeedableRng};
@@ -253,19 +253,19 @@ mod tests {
             samples: PERIOD,
             motion: 0,
         };
-        let mut fold = Fold::new(Phases::new(motion, 1).expect("long"), 2);
+        let mut sums = PhaseSums::new(Phases::new(motion, 1).expect("long"), 2);
         let mut sum = 0.0;
         for equation in 0..periods * PERIOD {
             let angle = 5.0 * std::f64::consts::TAU * equation as f64 / PERIOD as f64;
             let (z, rest) = (angle.sin(), error[equation % PERIOD] + white());
             sum += z * rest;
-            fold.add(equation, [z, rest].iter());
+            sums.add(equation, [z, rest].iter());
         }
         let split = |_, rows: DMatrix<f64>| {
             let columns = rows.columns(0, 1).clone_owned();
             (columns, DVector::from(rows.column(1)))
         };
-        let mean = Mean::new(&vec![fold], split).expect("every phase");
+        let mean = Mean::new(&[sums], split).expect("every phase");
         let all = vec![1.0; PERIOD / 2 + 1];
         (
             mean.sum_variances(&DMatrix::identity(1, 1), &all, None)[0],
@@ -310,16 +310,16 @@ mod tests {
             samples: PERIOD,
             motion: 0,
         };
-        let mut fold = Fold::new(Phases::new(motion, 1).expect("long"), 2);
+        let mut sums = PhaseSums::new(Phases::new(motion, 1).expect("long"), 2);
         for equation in 0..PERIOD {
             let angle = 5.0 * std::f64::consts::TAU * equation as f64 / PERIOD as f64;
-            fold.add(equation, [angle.sin(), 3.0 * angle.sin()].iter());
+            sums.add(equation, [angle.sin(), 3.0 * angle.sin()].iter());
         }
         let split = |_, rows: DMatrix<f64>| {
             let columns = rows.columns(0, 1).clone_owned();
             (columns, DVector::from(rows.column(1)))
         };
-        let mean = Mean::new(&vec![fold], split).expect("every phase");
+        let mean = Mean::new(&[sums], split).expect("every phase");
         let all = vec![1.0; PERIOD / 2 + 1];
         let sizes = DVector::from_element(1, 3.0);
         let without_fault = mean.sum_variances(&DMatrix::identity(1, 1), &all, Some(&sizes))[0];

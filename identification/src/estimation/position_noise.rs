@@ -132,7 +132,7 @@ mod tests {
     use super::{Noise, deviation};
 
     #[test]
-    fn noise_is_told_from_fast_motion_and_encoders_from_both() {
+    fn noise_is_distinguished_from_motion_and_from_encoders() {
         let mut noise = Noise::default();
         // Thirty samples in a period of the motion.
         let motion = |sample: usize| (0.21 * sample as f64).sin();

@@ -41,7 +41,9 @@ pub fn gather(
     for path in files {
         read_into(path, &mut found, &mut left_out);
     }
-    let settings_hash = settings_hash.map(str::to_owned).or_else(|| most(&found));
+    let settings_hash = settings_hash
+        .map(str::to_owned)
+        .or_else(|| most_frequent_hash(&found));
     let alike =
         |(_, run): &&(String, RunFactors)| Some(&run.settings_hash) == settings_hash.as_ref();
     let model = found.iter().find(alike).map(|(_, run)| run.clone());
@@ -53,7 +55,7 @@ pub fn gather(
             .as_ref()
             .is_some_and(|settings_hash| *settings_hash != run.settings_hash)
         {
-            let (reason, message) = (Reason::Unlike, unlike(&run, model.as_ref()));
+            let (reason, message) = (Reason::Unlike, difference(&run, model.as_ref()));
             left_out.push(ExcludedRun {
                 file,
                 run: name,
@@ -109,7 +111,7 @@ fn read_into(path: &Path, found: &mut Vec<(String, RunFactors)>, left_out: &mut 
 }
 
 /// Describes how a run differs from a compatible one, as far as the files show.
-fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
+fn difference(run: &RunFactors, other: Option<&RunFactors>) -> String {
     let made = "it was made with another description, or with other settings of filters and model";
     let rate = run.summary.sampling_frequency;
     let why = match other {
@@ -132,7 +134,7 @@ fn unlike(run: &RunFactors, other: Option<&RunFactors>) -> String {
 }
 
 /// The most frequent hash of description and settings; the first of equally frequent ones.
-fn most(found: &[(String, RunFactors)]) -> Option<String> {
+fn most_frequent_hash(found: &[(String, RunFactors)]) -> Option<String> {
     let count = |settings_hash: &str| {
         found
             .iter()
@@ -142,7 +144,7 @@ fn most(found: &[(String, RunFactors)]) -> Option<String> {
     let mut best: Option<(usize, &str)> = None;
     for (_, run) in found {
         let own = count(&run.settings_hash);
-        if best.is_none_or(|(most, _)| own > most) {
+        if best.is_none_or(|(largest, _)| own > largest) {
             best = Some((own, &run.settings_hash));
         }
     }

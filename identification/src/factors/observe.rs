@@ -20,7 +20,7 @@ use crate::{
         observer::Observer,
         projection::Projection,
         sink::LARGEST_STRETCHES,
-        system::Observed,
+        system::RunEquations,
     },
     result::RunSummary,
     settings::{Instruments, Normalisation, Settings},
@@ -226,10 +226,10 @@ impl Columns {
         };
         // With loaded runs, permanent bodies may have other columns.
         if load.is_none() && crate::regression::columns::has_payload(&model.info()) {
-            let beside = new(true)?;
-            let base = base_parameters(model, &beside, PayloadUse::Separate, seed)?;
+            let with_payload = new(true)?;
+            let base = base_parameters(model, &with_payload, PayloadUse::Separate, seed)?;
             for column in base.columns {
-                let own = beside
+                let own = with_payload
                     .as_slice()
                     .get(column)
                     .filter(|own| !own.is_of_payload());
@@ -247,7 +247,7 @@ impl Columns {
 fn kept(
     projection: &Projection,
     lines: Vec<String>,
-    observed: Result<Observed, Error>,
+    observed: Result<RunEquations, Error>,
     equations: bool,
 ) -> ModelFactors {
     let model = projection.model();

@@ -43,7 +43,7 @@ pub struct Pool {
     /// Largest number of groups; `None` for the default.
     pub(super) limit: Option<usize>,
     /// Kinds, by [`Record::kind`].
-    pub(super) kinds: BTreeMap<u128, Kind>,
+    pub(super) kinds: BTreeMap<u128, PoolGroup>,
     /// Number of duplicate records.
     pub(super) twice: u64,
     /// Number of records that were damaged or not finite.
@@ -54,7 +54,7 @@ pub struct Pool {
 
 /// Factors of one kind.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Kind {
+pub(super) struct PoolGroup {
     pub(super) settings_hash: u128,
     pub(super) model: ModelKind,
     pub(super) load: Option<String>,
@@ -70,7 +70,7 @@ pub(super) struct Kind {
     pub(super) groups: BTreeMap<u64, BTreeMap<u16, Factor>>,
 }
 
-impl Kind {
+impl PoolGroup {
     fn of(record: &Record) -> Self {
         Self {
             settings_hash: record.settings_hash,
@@ -238,7 +238,10 @@ impl Pool {
             self.others += 1;
             return;
         }
-        let kind = self.kinds.entry(key).or_insert_with(|| Kind::of(&record));
+        let kind = self
+            .kinds
+            .entry(key)
+            .or_insert_with(|| PoolGroup::of(&record));
         if !kind.add(self.limit.unwrap_or(GROUPS), record) {
             self.twice += 1;
         }

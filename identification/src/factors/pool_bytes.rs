@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     packed::{from_triangle, numbers, triangle, values},
-    pool::{Kind, Pool, PoolError},
+    pool::{Pool, PoolError, PoolGroup},
     record::Rest,
 };
 use crate::regression::{factor::Factor, projection::ModelKind};
@@ -98,14 +98,14 @@ fn read(rest: &mut Rest<'_>) -> Option<Pool> {
     Some(own)
 }
 
-fn kind(rest: &mut Rest<'_>) -> Option<Kind> {
+fn kind(rest: &mut Rest<'_>) -> Option<PoolGroup> {
     let settings_hash = u128::from_le_bytes(rest.array()?);
     let name = words(rest)?;
     let models = [ModelKind::Platform, ModelKind::Actuators, ModelKind::Joints];
     let model = models.into_iter().find(|own| own.name() == name)?;
     let loaded = count(rest)? != 0;
     let load = words(rest)?;
-    let mut own = Kind {
+    let mut own = PoolGroup {
         settings_hash,
         model,
         load: loaded.then_some(load),

@@ -13,7 +13,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::pool::{Kind, Pool};
+use super::pool::{Pool, PoolGroup};
 use crate::{
     estimation::{
         estimate::{Estimation, fit_with},
@@ -23,7 +23,7 @@ use crate::{
         elimination::eliminate,
         factor::{DATA_RANK_TOLERANCE, Factor},
         projection::Projection,
-        system::{Part, System},
+        system::{RunPart, System},
     },
     settings::Normalisation,
 };
@@ -91,34 +91,34 @@ impl Pool {
     /// Estimate from the kind with the most runs.
     #[must_use]
     pub fn estimate(&self) -> Pooled {
-        let mut told = Pooled {
+        let mut estimate_of_all = Pooled {
             twice: self.twice,
             damaged: self.damaged,
             unlike: self.others,
             ..Pooled::default()
         };
         // The first of equally frequent kinds; the order is that of a hash and thus reproducible.
-        let most = self.kinds.values().map(Kind::runs).max();
+        let most = self.kinds.values().map(PoolGroup::runs).max();
         let Some(kind) = self.kinds.values().find(|kind| Some(kind.runs()) == most) else {
-            told.problem = "no run is left".to_owned();
-            return told;
+            estimate_of_all.problem = "no run is left".to_owned();
+            return estimate_of_all;
         };
         let others = self.kinds.values().filter(|other| *other != kind);
         let mixed = others
             .clone()
             .any(|other| other.settings_hash == kind.settings_hash);
-        told.unlike += others.map(|other| other.runs() as u64).sum::<u64>();
+        estimate_of_all.unlike += others.map(|other| other.runs() as u64).sum::<u64>();
         if mixed {
-            told.problem =
+            estimate_of_all.problem =
                 "runs of several models, or with and without payload: group by `model`, `loaded` and `payload`"
                     .to_owned();
-            return told;
+            return estimate_of_all;
         }
-        if let Err(error) = kind.estimate(&mut told) {
+        if let Err(error) = kind.estimate(&mut estimate_of_all) {
             let messages = error.problems.into_iter().map(|one| one.message);
-            told.problem = messages.collect::<Vec<_>>().join("; ");
+            estimate_of_all.problem = messages.collect::<Vec<_>>().join("; ");
         }
-        told
+        estimate_of_all
     }
 
     /// Number of runs of all kinds.
@@ -128,14 +128,14 @@ impl Pool {
     }
 }
 
-impl Kind {
+impl PoolGroup {
     /// The equations as a system; a line that a group lacks is empty.
     fn system(&self) -> System {
         let size = self.parameters();
         let empty = Factor::new(size);
         let names = &self.line_names;
-        let parts: Vec<Part> = { self.groups.values() }
-            .map(|lines| Part {
+        let parts: Vec<RunPart> = { self.groups.values() }
+            .map(|lines| RunPart {
                 run: 0,
                 lines: { names.keys() }
                     .map(|line| lines.get(line).unwrap_or(&empty).clone())
@@ -154,17 +154,17 @@ impl Kind {
             lines,
             parts,
             stretches: Vec::new(),
-            folds: Vec::new(),
+            phase_sums: Vec::new(),
             partition: None,
             instruments: Vec::new(),
         }
     }
 
-    fn estimate(&self, told: &mut Pooled) -> Result<(), Error> {
+    fn estimate(&self, estimate_of_all: &mut Pooled) -> Result<(), Error> {
         let system = self.system();
-        told.runs = self.runs() as u64;
-        told.groups = system.parts.len() as u64;
-        told.equations = system
+        estimate_of_all.runs = self.runs() as u64;
+        estimate_of_all.groups = system.parts.len() as u64;
+        estimate_of_all.equations = system
             .lines
             .iter()
             .map(|line| line.equations() as u64)
@@ -176,11 +176,11 @@ impl Kind {
         let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
         let dependent = found.dependent.iter().map(|(place, _)| *place);
         let missing = found.zero.iter().copied().chain(dependent);
-        told.not_determined = missing.map(name).collect();
+        estimate_of_all.not_determined = missing.map(name).collect();
         let estimation = fit_with(&system, &found.kept, true, Normalisation::Unbiased, 1)?;
         let intervals = Intervals::new(&system, &found.kept, &estimation);
-        told.relative_error_percent = estimation.relative_error_percent;
-        told.parameters = parameters(
+        estimate_of_all.relative_error_percent = estimation.relative_error_percent;
+        estimate_of_all.parameters = parameters(
             &estimation,
             &intervals,
             found.kept.iter().map(|at| name(*at)),
@@ -188,7 +188,7 @@ impl Kind {
         let matrix = intervals.covariance();
         let size = matrix.nrows();
         let places = (0..size).flat_map(|row| (row..size).map(move |column| (row, column)));
-        told.covariance = places.map(|place| matrix[place]).collect();
+        estimate_of_all.covariance = places.map(|place| matrix[place]).collect();
         Ok(())
     }
 }

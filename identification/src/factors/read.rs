@@ -19,7 +19,7 @@ use crate::{
     regression::{
         factor::Factor,
         projection::ModelKind,
-        system::{Part, PartitionCondition, Stretch},
+        system::{PartitionCondition, RunPart, Stretch},
     },
     result::RunSummary,
 };
@@ -204,7 +204,7 @@ fn of_model(rows: &[Row], columns: usize) -> Result<ModelFactors, Damaged> {
                 let lines = own.iter().map(|row| of_factor(row, columns));
                 let lines = lines.collect::<Option<Vec<Factor>>>();
                 let lines = lines.ok_or_else(|| damaged(NOT_NUMBERS))?;
-                parts.push(Part { run: 0, lines });
+                parts.push(RunPart { run: 0, lines });
             }
             "equations" => {
                 let lines = own.iter().map(|row| {

@@ -10,11 +10,11 @@ use super::{
 };
 use crate::{
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
-    identify::Prepared,
+    identify::PreparedSystem,
     regression::{
         columns::{ColumnSet, has_payload},
         projection::Projection,
-        system::{Observed, Part, Stretch, System},
+        system::{RunEquations, RunPart, Stretch, System},
     },
     settings::Settings,
 };
@@ -29,7 +29,7 @@ pub(super) fn restored(
     runs: &[RunFactors],
     settings: &Settings,
     skip_bad: bool,
-) -> Result<(Prepared, Vec<ExcludedRun>), Error> {
+) -> Result<(PreparedSystem, Vec<ExcludedRun>), Error> {
     let info = model.info();
     let payload = payload_use(runs)?;
     if payload != PayloadUse::Absent && !has_payload(&info) {
@@ -80,7 +80,7 @@ pub(super) fn restored(
         }
         systems.push(system);
     }
-    let mut prepared = Prepared::new(columns, base, payload, projections, systems);
+    let mut prepared = PreparedSystem::new(columns, base, payload, projections, systems);
     prepared.runs = runs.iter().map(|run| run.summary.clone()).collect();
     Ok((prepared, left_out))
 }
@@ -171,7 +171,12 @@ fn places(
 
 impl Places {
     /// Equations of a run for the common columns.
-    fn observed(&self, number: usize, parts: &[Part], own: &super::run::ModelFactors) -> Observed {
+    fn observed(
+        &self,
+        number: usize,
+        parts: &[RunPart],
+        own: &super::run::ModelFactors,
+    ) -> RunEquations {
         let same = self.columns.len() == self.own;
         let same = same
             && self
@@ -182,7 +187,7 @@ impl Places {
         let pick = DMatrix::from_fn(self.own, self.columns.len(), |row, column| {
             f64::from(u8::from(self.columns[column] == Some(row)))
         });
-        let part = |part: &Part| Part {
+        let part = |part: &RunPart| RunPart {
             run: number,
             lines: if same {
                 part.lines.clone()
@@ -195,11 +200,11 @@ impl Places {
             lines: stretch.lines.iter().map(|rows| self.rows(rows)).collect(),
             instruments: Vec::new(),
         };
-        Observed {
+        RunEquations {
             parts: parts.iter().map(part).collect(),
             stretches: own.stretches.iter().map(stretch).collect(),
             partition: own.partition.clone(),
-            ..Observed::default()
+            ..RunEquations::default()
         }
     }
 

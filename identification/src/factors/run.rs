@@ -5,7 +5,7 @@ use crate::{
     regression::{
         factor::Factor,
         projection::ModelKind,
-        system::{Part, PartitionCondition, Stretch},
+        system::{PartitionCondition, RunPart, Stretch},
     },
     result::RunSummary,
 };
@@ -43,7 +43,7 @@ pub struct ModelFactors {
     /// Names of the lines of Γ.
     pub lines: Vec<String>,
     /// Factors of the parts, or the reason why they are missing: a singular partition.
-    pub parts: Result<Vec<Part>, String>,
+    pub parts: Result<Vec<RunPart>, String>,
     /// Successive equations, if they were requested.
     pub stretches: Vec<Stretch>,
     /// Condition of the kept actuators.

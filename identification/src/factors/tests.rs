@@ -128,13 +128,13 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
     let few = pooled(&all, 8).estimate();
     assert!(few.groups <= 8);
     // An empty pool with limit 8, merged with one of limit 64.
-    let mut told = Pool::new(8);
-    told.merge(pooled(&all, 64)).expect("other runs");
-    same(&few, &told.estimate());
-    let mut told = Pool::default();
-    told.limit(8);
-    told.merge(pooled(&all, 64)).expect("other runs");
-    same(&few, &told.estimate());
+    let mut output = Pool::new(8);
+    output.merge(pooled(&all, 64)).expect("other runs");
+    same(&few, &output.estimate());
+    let mut output = Pool::default();
+    output.limit(8);
+    output.merge(pooled(&all, 64)).expect("other runs");
+    same(&few, &output.estimate());
     // The reverse, or limit 8 set afterwards.
     let mut late = pooled(&all, 64);
     late.merge(Pool::new(8)).expect("other runs");
@@ -157,7 +157,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
 #[test]
 fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
     let all = records(2, 3);
-    let told = pooled(&all, 100).estimate();
+    let output = pooled(&all, 100).estimate();
     // Weights from each line alone; then the normal equations of both.
     let line = |number: u16| {
         let mut sum = DMatrix::zeros(4, 4);
@@ -183,7 +183,7 @@ fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
         .lu()
         .solve(&both.view((0, 3), (3, 1)).clone_owned())
         .expect("regular");
-    for (own, value) in told.parameters.iter().zip(values.iter()) {
+    for (own, value) in output.parameters.iter().zip(values.iter()) {
         assert!(
             (own.value - value).abs() < 1e-12 * value.abs(),
             "{} and {value}",
@@ -231,8 +231,11 @@ fn only_like_with_like() {
     for record in &mut all[..10] {
         record.settings_hash = 2;
     }
-    let told = pooled(&all, 16).estimate();
-    assert_eq!((told.runs, told.unlike, told.problem.as_str()), (2, 1, ""));
+    let output = pooled(&all, 16).estimate();
+    assert_eq!(
+        (output.runs, output.unlike, output.problem.as_str()),
+        (2, 1, "")
+    );
     all[10..20]
         .iter_mut()
         .for_each(|record| record.load = Some(String::new()));
@@ -244,9 +247,9 @@ fn only_like_with_like() {
         r.column_mut(1).fill(0.0);
         record.factor = Factor::of(r, record.factor.equations(), vec![0.0; 4]);
     }
-    let told = pooled(&singular, 16).estimate();
-    assert_eq!(told.not_determined, ["b"]);
-    assert_eq!(told.parameters.len(), 2);
+    let output = pooled(&singular, 16).estimate();
+    assert_eq!(output.not_determined, ["b"]);
+    assert_eq!(output.parameters.len(), 2);
     assert_eq!(pooled(&[], 16).estimate().problem, "no run is left");
 }
 
@@ -256,17 +259,17 @@ fn intervals_cover_and_equal_parameters_are_told_apart_as_often_as_said() {
     let (mut covered, mut white, mut apart) = (0, 0, 0);
     let mut last = None;
     for seed in 0..draws {
-        let told = pooled(&records(100 + seed, 3), 16).estimate();
-        for (own, truth) in told.parameters.iter().zip(TRUE) {
+        let output = pooled(&records(100 + seed, 3), 16).estimate();
+        for (own, truth) in output.parameters.iter().zip(TRUE) {
             let off = (own.value - truth).abs();
             covered += u64::from(off < student_quantile(0.05, own.freedom) * own.deviation);
             white += u64::from(off < 1.96 * own.white_deviation);
         }
-        if let Some(last) = last.replace(told.clone()) {
-            let compared = compare(&last, &told, &["a", "c"]).expect("both have them");
+        if let Some(last) = last.replace(output.clone()) {
+            let compared = compare(&last, &output, &["a", "c"]).expect("both have them");
             apart += u64::from(compared.probability < 0.05);
         }
-        assert!(compare(&told, &told, &["d"]).is_none());
+        assert!(compare(&output, &output, &["d"]).is_none());
     }
     let part = covered as f64 / (3 * draws) as f64;
     assert!((0.92..0.98).contains(&part), "{part}; white {white}");

@@ -306,9 +306,9 @@ impl Grouped {
             if self.waiting == full {
                 self.pass_backwards(self.hop, None, kept);
             }
-            let told = &mut self.pending[self.waiting * size..][..size];
+            let group_output = &mut self.pending[self.waiting * size..][..size];
             self.waiting += 1;
-            filter.groups.pass(group, &before, &mut after, told);
+            filter.groups.pass(group, &before, &mut after, group_output);
             std::mem::swap(&mut before, &mut after);
         }
         self.before = Some(before);

@@ -8,7 +8,7 @@
 
 use nalgebra::DMatrix;
 
-use super::solve::Solution;
+use super::solve::GravitySolution;
 use crate::regression::{
     factor::Factor,
     score_batches::{FEWEST_BATCHES, batch_sums, samples},
@@ -16,7 +16,7 @@ use crate::regression::{
 };
 
 /// Covariance of the angles of a solution, rad²; `None` if the data do not determine it.
-pub(super) fn covariance(system: &System, solution: &Solution) -> Option<DMatrix<f64>> {
+pub(super) fn covariance(system: &System, solution: &GravitySolution) -> Option<DMatrix<f64>> {
     let inverse = solution.normal.clone().try_inverse()?;
     let white = &inverse * solution.deviation.powi(2);
     let kept = samples(&system.stretches);
@@ -39,7 +39,7 @@ pub(super) fn covariance(system: &System, solution: &Solution) -> Option<DMatrix
 }
 
 /// Scores of successive samples, one row each.
-fn scores(stretch: &Stretch, solution: &Solution) -> DMatrix<f64> {
+fn scores(stretch: &Stretch, solution: &GravitySolution) -> DMatrix<f64> {
     let samples = stretch.lines.first().map_or(0, DMatrix::nrows);
     let explained = &solution.columns * &solution.values;
     let mut scores = DMatrix::zeros(samples, solution.free.ncols());

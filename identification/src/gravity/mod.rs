@@ -41,7 +41,7 @@ use crate::settings::Settings;
 use columns::Extended;
 use determined::free_turns;
 use deviations::covariance;
-use direction::Frame;
+use direction::GravityFrame;
 use observation::Observer;
 use overact_logs::{Error, Log, Problem};
 use solve::solve;
@@ -75,7 +75,7 @@ pub fn gravity_direction(
 ) -> Result<GravityDirection, Error> {
     settings.check(&model.info())?;
     let described = Vector3::from(fields.described);
-    let Some(frame) = Frame::new(described) else {
+    let Some(frame) = GravityFrame::new(described) else {
         let message = "the direction of gravity is not determined: there is no gravity";
         let help =
             "give the acceleration of gravity and its approximate direction in the description";
@@ -84,15 +84,15 @@ pub fn gravity_direction(
             .into());
     };
     let extended = Extended::new(model, fields, runs, settings)?;
-    let turns = free_turns(&extended, &frame, settings.seed);
-    if turns.is_empty() {
+    let tilts = free_turns(&extended, &frame, settings.seed);
+    if tilts.is_empty() {
         return Err(Problem::new(Code::GRAVITY_DIRECTION,
             "the direction of gravity is not determined: for any direction, some parameters of the robot explain the torques",
         )
         .help("leave out `gravity_direction`; offsets and moments absorb a tilt")
         .into());
     }
-    let frame = frame.confined(&turns);
+    let frame = frame.restricted_to(&tilts);
     let observer = Observer {
         model,
         fields,
@@ -126,11 +126,11 @@ pub fn gravity_direction(
             .help(help)
             .into());
     };
-    let turned = Turned::new(&extended, &systems, &solution);
+    let rotated = Turned::new(&extended, &systems, &solution);
     Ok(GravityDirection::new(
         described,
         &solution.frame,
         angles,
-        turned,
+        rotated,
     ))
 }

@@ -211,7 +211,7 @@ pub(super) fn combined(system: &System, coefficients: &DMatrix<f64>) -> System {
             .collect(),
         parts: Vec::new(),
         stretches: Vec::new(),
-        folds: Vec::new(),
+        phase_sums: Vec::new(),
         instruments: Vec::new(),
         ..system.clone()
     }

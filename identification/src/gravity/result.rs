@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Vector3};
 use serde::Serialize;
 
-use super::{direction::Frame, uncertainty_propagation::Turned};
+use super::{direction::GravityFrame, uncertainty_propagation::Turned};
 use crate::regression::uncertainty_propagation::PropagatedUncertainty;
 
 /// 95 % quantiles of chi-squared with one and with two degrees of freedom.
@@ -38,15 +38,15 @@ pub struct GravityDirection {
     #[serde(skip)]
     covariance: DMatrix<f64>,
     #[serde(skip)]
-    turned: Turned,
+    rotated: Turned,
 }
 
 impl GravityDirection {
     pub(super) fn new(
         described: Vector3<f64>,
-        frame: &Frame,
+        frame: &GravityFrame,
         covariance: DMatrix<f64>,
-        turned: Turned,
+        rotated: Turned,
     ) -> Self {
         let gravity = frame.gravity();
         let slopes = frame.derivative();
@@ -59,8 +59,8 @@ impl GravityDirection {
             .atan2(from.dot(&frame.direction));
         // Direction back to the described gravity, in the frame's angles.
         let back = from - frame.direction * from.dot(&frame.direction);
-        let each = frame.turns.iter().map(|turn| turn.dot(&back));
-        let back = nalgebra::DVector::from_iterator(frame.turns.len(), each);
+        let each = frame.tilts.iter().map(|turn| turn.dot(&back));
+        let back = nalgebra::DVector::from_iterator(frame.tilts.len(), each);
         let unit = match back.norm() {
             0.0 => nalgebra::DVector::from_element(back.len(), (back.len() as f64).sqrt().recip()),
             norm => &back / norm,
@@ -73,17 +73,17 @@ impl GravityDirection {
                 tilt * tilt * (inverse * &unit).dot(&unit)
             });
         let rounded = gravity.map(|one| (one * DECIMALS).round() / DECIMALS);
-        let about = (frame.turns.len() == 1).then(|| frame.turns[0].into());
+        let about = (frame.tilts.len() == 1).then(|| frame.tilts[0].into());
         Self {
             described: described.into(),
             estimated: rounded.into(),
             deviations: [0, 1, 2].map(deviation),
             tilt,
             tilt_deviation,
-            significant: square > SIGNIFICANT[frame.turns.len() - 1],
+            significant: square > SIGNIFICANT[frame.tilts.len() - 1],
             undetermined_about: about,
             covariance,
-            turned,
+            rotated,
         }
     }
 
@@ -99,7 +99,7 @@ impl GravityDirection {
 
     /// Effect of its uncertainty on base parameters that keep the standard parameters `names`.
     pub(crate) fn propagated_uncertainty(&self, names: &[&str]) -> PropagatedUncertainty {
-        self.turned.propagated_uncertainty(names, &self.covariance)
+        self.rotated.propagated_uncertainty(names, &self.covariance)
     }
 
     /// Warnings to the user.

@@ -3,12 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 use overact::Code;
 
-use super::{columns::Extended, direction::Frame, observation::combined};
+use super::{columns::Extended, direction::GravityFrame, observation::combined};
 use crate::{
     estimation::estimate::{Estimation, fit},
     regression::{
         elimination::eliminate,
-        factor::{DATA_RANK_TOLERANCE, Factor, Reduced},
+        factor::{DATA_RANK_TOLERANCE, Factor, ReducedFactor},
         system::System,
     },
     settings::Settings,
@@ -35,15 +35,15 @@ const LARGEST_DAMPING: f64 = 1e9;
 
 /// A direction with its estimate.
 #[derive(Debug, Clone)]
-pub(super) struct Solution {
-    pub(super) frame: Frame,
+pub(super) struct GravitySolution {
+    pub(super) frame: GravityFrame,
     /// Columns of the estimated parameters, as combinations of the independent ones.
     pub(super) columns: DMatrix<f64>,
     /// Estimates.
     pub(super) values: DVector<f64>,
     /// Derivatives of the inputs with respect to the angles, as combinations of columns.
     pub(super) slopes: DMatrix<f64>,
-    /// The part of these derivatives that parameters cannot explain.
+    /// These derivatives minus their projection onto the columns of the parameters.
     pub(super) free: DMatrix<f64>,
     /// JᵀJ of the projected derivatives.
     pub(super) normal: DMatrix<f64>,
@@ -54,7 +54,7 @@ pub(super) struct Solution {
 }
 
 /// A direction with its best parameters.
-struct Fit {
+struct GravityFit {
     values: DVector<f64>,
     columns: DMatrix<f64>,
     slopes: DMatrix<f64>,
@@ -73,9 +73,9 @@ struct Fit {
 pub(super) fn solve(
     extended: &Extended,
     system: &System,
-    start: &Frame,
+    start: &GravityFrame,
     settings: &Settings,
-) -> Result<Solution, Error> {
+) -> Result<GravitySolution, Error> {
     let all: Vec<usize> = (0..extended.len()).collect();
     let base = base(extended, start);
     let mut frame = start.clone();
@@ -101,60 +101,65 @@ pub(super) fn solve(
     }
     let estimation = weighted(extended, system, &frame, &base, settings)?;
     let reduced = Factor::reduced_together(&system.lines, &estimation.weights, &all);
-    let own = fitted(extended, &reduced, &base, &frame);
-    Ok(Solution {
+    let best = best_fit(extended, &reduced, &base, &frame);
+    Ok(GravitySolution {
         frame,
-        columns: own.columns,
-        values: own.values,
-        slopes: own.slopes,
-        free: own.free,
-        normal: own.normal,
+        columns: best.columns,
+        values: best.values,
+        slopes: best.slopes,
+        free: best.free,
+        normal: best.normal,
         weights: estimation.weights,
         deviation: estimation.residual_deviation,
     })
 }
 
 /// Parameters that are independent if gravity is slightly rotated.
-fn base(extended: &Extended, frame: &Frame) -> Vec<usize> {
-    let angles = DVector::from_fn(frame.turns.len(), |turn, _| 0.1 + 0.05 * turn as f64);
-    let turned = extended.at(&frame.turned(&angles).gravity());
+fn base(extended: &Extended, frame: &GravityFrame) -> Vec<usize> {
+    let angles = DVector::from_fn(frame.tilts.len(), |tilt, _| 0.1 + 0.05 * tilt as f64);
+    let columns = extended.at(&frame.rotated(&angles).gravity());
     let all: Vec<usize> = (0..extended.names.len()).collect();
-    eliminate(&(&extended.random * turned), &all, 1e-9).kept
+    eliminate(&(&extended.random * columns), &all, 1e-9).kept
 }
 
 /// Estimate of the parameters for a direction, with the weights of the lines.
 fn weighted(
     extended: &Extended,
     system: &System,
-    frame: &Frame,
+    frame: &GravityFrame,
     base: &[usize],
     settings: &Settings,
 ) -> Result<Estimation, Error> {
     let columns = extended.at(&frame.gravity()).select_columns(base);
-    let own = combined(system, &columns);
-    let ones = vec![1.0; own.lines.len()];
-    let merged = Factor::merged(&own.lines, &ones);
+    let rotated_system = combined(system, &columns);
+    let ones = vec![1.0; rotated_system.lines.len()];
+    let merged = Factor::merged(&rotated_system.lines, &ones);
     let all: Vec<usize> = (0..base.len()).collect();
     let kept = eliminate(merged.matrix(), &all, DATA_RANK_TOLERANCE).kept;
-    fit(&own, &kept, settings)
+    fit(&rotated_system, &kept, settings)
 }
 
 /// Best direction for given weights.
-fn with_weights(extended: &Extended, reduced: &Reduced, base: &[usize], mut frame: Frame) -> Frame {
-    let mut here = fitted(extended, reduced, base, &frame);
+fn with_weights(
+    extended: &Extended,
+    reduced: &ReducedFactor,
+    base: &[usize],
+    mut frame: GravityFrame,
+) -> GravityFrame {
+    let mut current = best_fit(extended, reduced, base, &frame);
     let mut damping = 0.0;
     for _ in 0..INNER {
-        let diagonal = here.normal.diagonal();
-        let damped = &here.normal + DMatrix::from_diagonal(&diagonal) * damping;
-        let Some(step) = damped.lu().solve(&here.right) else {
+        let diagonal = current.normal.diagonal();
+        let damped = &current.normal + DMatrix::from_diagonal(&diagonal) * damping;
+        let Some(step) = damped.lu().solve(&current.right) else {
             break;
         };
         let length = step.norm();
         let step = step * (LARGEST_STEP / length).min(1.0);
-        let turned = frame.turned(&step);
-        let there = fitted(extended, reduced, base, &turned);
-        if there.square <= here.square {
-            (frame, here) = (turned, there);
+        let candidate_frame = frame.rotated(&step);
+        let candidate = best_fit(extended, reduced, base, &candidate_frame);
+        if candidate.square <= current.square {
+            (frame, current) = (candidate_frame, candidate);
             damping = if damping < 1e-6 { 0.0 } else { damping / 10.0 };
             if length < TOLERANCE {
                 break;
@@ -170,8 +175,13 @@ fn with_weights(extended: &Extended, reduced: &Reduced, base: &[usize], mut fram
 }
 
 /// Best parameters for a direction, from the weighted R factor and right-hand side.
-fn fitted(extended: &Extended, reduced: &Reduced, base: &[usize], frame: &Frame) -> Fit {
-    let Reduced { triangle, rhs, .. } = reduced;
+fn best_fit(
+    extended: &Extended,
+    reduced: &ReducedFactor,
+    base: &[usize],
+    frame: &GravityFrame,
+) -> GravityFit {
+    let ReducedFactor { triangle, rhs, .. } = reduced;
     let columns = extended.at(&frame.gravity()).select_columns(base);
     let mut matrix = triangle * &columns;
     let all: Vec<usize> = (0..base.len()).collect();
@@ -189,28 +199,30 @@ fn fitted(extended: &Extended, reduced: &Reduced, base: &[usize], frame: &Frame)
     let scaled = scaled.unwrap_or_else(|| DVector::zeros(norms.len()));
     let values = DVector::from_fn(norms.len(), |at, _| scaled[at] / norms[at]);
     let rest = rhs - &q * along;
-    let own: Vec<usize> = kept.iter().map(|at| base[*at]).collect();
-    let slope = |turn: &nalgebra::Vector3<f64>| {
-        let field = extended.in_field(&(turn * frame.size));
-        field.select_columns(&own) * &values
+    let parameters: Vec<usize> = kept.iter().map(|at| base[*at]).collect();
+    let slope = |tilt: &nalgebra::Vector3<f64>| {
+        let field = extended.in_field(&(tilt * frame.size));
+        field.select_columns(&parameters) * &values
     };
-    let slopes = DMatrix::from_columns(&frame.turns.iter().map(slope).collect::<Vec<_>>());
+    let slopes = DMatrix::from_columns(&frame.tilts.iter().map(slope).collect::<Vec<_>>());
     let mut outside = triangle * &slopes;
-    let mut made_up = DMatrix::zeros(norms.len(), slopes.ncols());
+    let mut compensation = DMatrix::zeros(norms.len(), slopes.ncols());
     for _ in 0..2 {
         let inside = q.tr_mul(&outside);
         outside -= &q * &inside;
-        made_up += inside;
+        compensation += inside;
     }
-    let mut made_up = r.solve_upper_triangular(&made_up).unwrap_or(made_up);
-    for (mut row, norm) in made_up.row_iter_mut().zip(&norms) {
+    let mut compensation = r
+        .solve_upper_triangular(&compensation)
+        .unwrap_or(compensation);
+    for (mut row, norm) in compensation.row_iter_mut().zip(&norms) {
         row /= *norm;
     }
-    Fit {
+    GravityFit {
         square: rest.norm_squared(),
         normal: outside.tr_mul(&outside),
         right: outside.tr_mul(&rest),
-        free: &slopes - &columns * made_up,
+        free: &slopes - &columns * compensation,
         values,
         columns,
         slopes,

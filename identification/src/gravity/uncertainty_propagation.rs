@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{columns::Extended, solve::Solution};
+use super::{columns::Extended, solve::GravitySolution};
 use crate::regression::{
     factor::Factor, system::System, uncertainty_propagation::PropagatedUncertainty,
 };
@@ -32,7 +32,7 @@ impl Turned {
     pub(super) fn new(
         extended: &Extended,
         systems: &[Result<System, Error>],
-        solution: &Solution,
+        solution: &GravitySolution,
     ) -> Self {
         let lines = |system: &Result<System, Error>| {
             let own = system.as_ref().map(|own| own.lines.clone());

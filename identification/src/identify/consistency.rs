@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::prepare::Prepared;
+use super::prepare::PreparedSystem;
 use crate::{
     consistent::Consistent,
     prior::Prior,
@@ -12,7 +12,7 @@ use crate::{
 
 /// Consistent estimate of each projection, with its number, and models without one.
 pub(super) fn consistent_all(
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     estimates: &[(usize, Estimate)],
     prior: &Prior,
 ) -> (Vec<(usize, Consistent)>, Vec<ModelKind>) {

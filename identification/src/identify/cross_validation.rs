@@ -2,7 +2,7 @@
 
 use overact::Model;
 
-use super::{prepare::Prepared, progress::Progress};
+use super::{prepare::PreparedSystem, progress::Progress};
 use crate::{
     assessment::{self, RunMonitor},
     consistent::Consistent,
@@ -71,7 +71,7 @@ impl Predictor {
 /// Compares the validation runs with all predictions.
 pub(super) fn cross_validate(
     model: &dyn Model,
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     runs: &[Log],
     predictors: &[Predictor],
     settings: &Settings,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::{prepare::Prepared, progress::Progress};
+use super::{prepare::PreparedSystem, progress::Progress};
 use crate::{
     estimation::{
         correlation::Noise,
@@ -60,7 +60,7 @@ pub struct ProjectionEstimates {
 /// # Errors
 /// A projection that is singular on a run, or data that determine no parameter.
 pub fn estimate_projection(
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     projection: usize,
     settings: &Settings,
     true_values: Option<&BTreeMap<String, f64>>,
@@ -144,7 +144,7 @@ pub fn estimate_projection(
 
 /// Estimates all prepared projections, in parallel.
 pub(super) fn estimate_all(
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     settings: &Settings,
     true_values: Option<&BTreeMap<String, f64>>,
     progress: &dyn Fn(Progress<'_>),
@@ -160,7 +160,10 @@ pub(super) fn estimate_all(
 }
 
 /// Known true values of the base parameters, by index.
-fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BTreeMap<usize, f64> {
+fn truth(
+    prepared: &PreparedSystem,
+    true_values: Option<&BTreeMap<String, f64>>,
+) -> BTreeMap<usize, f64> {
     let Some(values) = true_values else {
         return BTreeMap::new();
     };
@@ -180,7 +183,7 @@ struct Selection {
 
 /// Data that all estimates of a projection share.
 struct Context<'a> {
-    prepared: &'a Prepared,
+    prepared: &'a PreparedSystem,
     projection: usize,
     system: &'a System,
     truth: BTreeMap<usize, f64>,
@@ -265,19 +268,25 @@ impl Context<'_> {
         let instrument_runs = &self.prepared.instrument_runs;
         let why = instrument_runs.missing.as_ref().map(ToString::to_string);
         let model = self.system.projection.model();
-        let told = ErrorsInRegressor {
+        let comparison = ErrorsInRegressor {
             runs: instrument_runs.runs.clone(),
             simulated: instrument_runs.simulated.clone(),
             ..ErrorsInRegressor::without(model, settings.instruments, why)
         };
         if self.system.instruments.is_empty() {
-            return (None, told);
+            return (None, comparison);
         }
         let found = match Instrumental::new(self.system, selected, base) {
             Ok(found) => found,
             Err(error) => {
                 let missing = Some(error.to_string());
-                return (None, ErrorsInRegressor { missing, ..told });
+                return (
+                    None,
+                    ErrorsInRegressor {
+                        missing,
+                        ..comparison
+                    },
+                );
             }
         };
         let units: Vec<&str> = selected.iter().map(|column| self.unit(*column)).collect();
@@ -288,7 +297,7 @@ impl Context<'_> {
             deviations: &self.intervals.deviations(),
             instrumental: &found,
         };
-        let told = told.compared(&estimates, &selection.names, &units);
+        let comparison = comparison.compared(&estimates, &selection.names, &units);
         let estimation = found.estimation.clone();
         // Both estimates are close, so the effect of gains is that on least squares.
         let more = self
@@ -305,7 +314,7 @@ impl Context<'_> {
             parameters: self.parameters(&estimation, intervals, &correlated, selection),
             ..self.estimate(Stage::Base, estimation, None, selection)
         };
-        (Some(estimate), told)
+        (Some(estimate), comparison)
     }
 
     /// Standard deviations for correlated residuals, or white ones if unknown.
@@ -402,7 +411,7 @@ impl Context<'_> {
 
 /// Base parameters that the data separate, with their names; warns of the others.
 fn on_data(
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     system: &System,
     warnings: &mut Vec<String>,
 ) -> Result<Selection, Error> {
@@ -445,7 +454,7 @@ fn on_data(
 }
 
 /// The problem of data without motion, or with all motion excluded.
-fn nothing_moves(prepared: &Prepared, system: &System) -> Problem {
+fn nothing_moves(prepared: &PreparedSystem, system: &System) -> Problem {
     let still = prepared.left_out();
     let left: usize = system.lines.iter().map(Factor::equations).sum();
     let problem = |message: String| Problem::new(Code::NOTHING_DETERMINED, message);

@@ -64,8 +64,8 @@ impl InstrumentRuns {
         for log in runs {
             let periods = periods::periods(log, period)?;
             let frequency = log.sampling_frequency();
-            let told = RepeatedRun::new(log.name(), frequency, period.is_none(), &periods);
-            found.runs.push(told);
+            let repeated_run = RepeatedRun::new(log.name(), frequency, period.is_none(), &periods);
+            found.runs.push(repeated_run);
             found.logs.push(log.others(periods));
         }
         Ok(found)

@@ -21,7 +21,7 @@ use overact::Model;
 
 pub use estimates::{ProjectionEstimates, estimate_projection};
 pub use identification::{BaseParameter, Identification};
-pub use prepare::{Prepared, prepare};
+pub use prepare::{PreparedSystem, prepare};
 pub use progress::Progress;
 pub use study::{RankedProjection, Study, study};
 
@@ -108,7 +108,7 @@ pub fn identify_after(
     let notes = logs.filter_map(|log| Some(format!("{}: {}", log.name(), log.note()?)));
     warnings.extend(notes);
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
-    let (errors_in_regressor, beside) = regressor_errors(&outcomes);
+    let (errors_in_regressor, alternatives) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
     let (consistent, inconsistent) = consistent_all(&prepared, &estimates, &settings.prior);
     let least_squares = estimates
@@ -202,7 +202,7 @@ pub fn identify_after(
         tracking: Vec::new(),
         settings: settings.clone(),
         figures,
-        estimates: estimates.into_iter().chain(beside).collect(),
+        estimates: estimates.into_iter().chain(alternatives).collect(),
         consistent: consistent.into_iter().map(|(_, own)| own).collect(),
         cross_validation,
         errors_in_regressor,
@@ -211,17 +211,17 @@ pub fn identify_after(
 
 /// Estimates of prepared systems, by weighted, then by ordinary least squares.
 pub(crate) fn estimates_of(
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Estimate>, Error> {
     warnings.extend(prepared_warnings(prepared, &[]));
     let outcomes = estimate_all(prepared, settings, None, progress);
-    let (_, beside) = regressor_errors(&outcomes);
+    let (_, alternatives) = regressor_errors(&outcomes);
     let own = estimates(outcomes, &prepared.projections, warnings)?;
     let own = own.into_iter().map(|(_, one)| one);
-    Ok(own.chain(beside).collect())
+    Ok(own.chain(alternatives).collect())
 }
 
 /// Position ranges and speeds of the actuators in all runs.
@@ -245,9 +245,9 @@ fn regressor_errors(
     outcomes: &[Result<ProjectionEstimates, Error>],
 ) -> (Vec<ErrorsInRegressor>, Vec<Estimate>) {
     let own = || outcomes.iter().filter_map(|outcome| outcome.as_ref().ok());
-    let told = own().map(|outcome| outcome.errors_in_regressor.clone());
+    let comparisons = own().map(|outcome| outcome.errors_in_regressor.clone());
     let others = own().flat_map(|one| one.ordinary.iter().chain(&one.instrumental));
-    (told.collect(), others.cloned().collect())
+    (comparisons.collect(), others.cloned().collect())
 }
 
 /// Estimates, each with the number of its projection.

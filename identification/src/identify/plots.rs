@@ -5,7 +5,7 @@ use overact::{Function, Model};
 
 use super::{
     figures::{Figures, PredictionFigures, ResidualFigures},
-    prepare::Prepared,
+    prepare::PreparedSystem,
 };
 use crate::{
     estimation::correlation::line_residual,
@@ -27,7 +27,7 @@ use overact_logs::Error;
 /// A pose at which the model has no value, although it had one before.
 pub(super) fn figures(
     model: &dyn Model,
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     estimates: &[(usize, Estimate)],
     cross_validation: &[CrossValidation],
     others: Vec<RunFigures>,
@@ -65,7 +65,7 @@ pub(super) fn figures(
 
 /// Residual of an estimate over time, with autocorrelation and spectrum.
 fn residual(
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     projection: usize,
     system: &System,
     estimate: &Estimate,
@@ -112,7 +112,7 @@ fn residual(
 /// Torques are predicted from the decimated Γ, since J_p^inv changes slowly.
 fn prediction(
     model: &dyn Model,
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     run: usize,
     projection: usize,
     estimate: &Estimate,

@@ -22,7 +22,7 @@ use crate::{
         observer::Observer,
         projection::Projection,
         sink::LARGEST_STRETCHES,
-        system::{Observed, System},
+        system::{RunEquations, System},
         uncertainty_propagation::PropagatedUncertainty,
     },
     result::{Estimate, RunSummary},
@@ -36,7 +36,7 @@ use overact_logs::{
 /// Prepared data: systems of the projections, columns and base parameters.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Prepared {
+pub struct PreparedSystem {
     /// Columns of the model.
     pub columns: ColumnSet,
     /// The base parameters.
@@ -61,7 +61,7 @@ pub struct Prepared {
     pub(super) propagated_uncertainty: Option<PropagatedUncertainty>,
 }
 
-impl Prepared {
+impl PreparedSystem {
     /// Systems of the projections, without runs.
     pub(crate) fn new(
         columns: ColumnSet,
@@ -223,7 +223,7 @@ pub fn prepare(
     projections: &[Projection],
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
-) -> Result<Prepared, Error> {
+) -> Result<PreparedSystem, Error> {
     let info = model.info();
     settings.check(&info)?;
     check_projections(projections, model)?;
@@ -270,9 +270,11 @@ pub fn prepare(
             periodic_motion: periodic_motions[number],
         };
         match observer.run(&measured, &report) {
-            Ok((equations, told)) => {
-                instrument_runs.missing = instrument_runs.missing.or_else(|| told.unusable.clone());
-                observations.push(told);
+            Ok((equations, run_observation)) => {
+                instrument_runs.missing = instrument_runs
+                    .missing
+                    .or_else(|| run_observation.unusable.clone());
+                observations.push(run_observation);
                 points.push(add(&mut systems, equations));
             }
             Err(error) => problems.extend(assessment::explained(model, log, error).problems),
@@ -280,7 +282,7 @@ pub fn prepare(
     }
     Error::check(problems)?;
     let runs = runs.iter().zip(&observations);
-    Ok(Prepared {
+    Ok(PreparedSystem {
         runs: runs
             .map(|(log, observation)| RunSummary::new(log, observation))
             .collect(),
@@ -288,12 +290,12 @@ pub fn prepare(
         points,
         instrument_runs,
         periodic_motions,
-        ..Prepared::new(columns, base, payload, projections.to_vec(), systems)
+        ..PreparedSystem::new(columns, base, payload, projections.to_vec(), systems)
     })
 }
 
 /// Equations of a run for each projection, or the error.
-type Equations = Vec<Result<Observed, Error>>;
+type Equations = Vec<Result<RunEquations, Error>>;
 
 /// Adds the equations of a run to the systems, and returns those at the plotted points.
 fn add(systems: &mut [Result<System, Error>], observed: Equations) -> Vec<Vec<DMatrix<f64>>> {
@@ -335,7 +337,7 @@ pub(super) fn check_runs(
 }
 
 /// Warnings before any estimate.
-pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<String> {
+pub(super) fn prepared_warnings(prepared: &PreparedSystem, others: &[Log]) -> Vec<String> {
     let mut warnings = Vec::new();
     if prepared.payload == PayloadUse::Regrouped {
         warnings.push(String::from(
@@ -378,7 +380,7 @@ pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<Stri
 }
 
 /// Warning if standstill excludes most data, as positions in a wrong unit would.
-fn mostly_still(prepared: &Prepared) -> Option<String> {
+fn mostly_still(prepared: &PreparedSystem) -> Option<String> {
     let still = prepared.left_out();
     let system = prepared.systems.iter().find_map(|one| one.as_ref().ok())?;
     let left: usize = system.lines.iter().map(Factor::equations).sum();

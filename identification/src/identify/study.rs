@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::{
     cross_validation::{Predictor, cross_validate},
     estimates::{ProjectionEstimates, estimate_all},
-    prepare::{Prepared, prepare},
+    prepare::{PreparedSystem, prepare},
     progress::Progress,
 };
 use crate::{
@@ -157,7 +157,7 @@ pub fn study(
 
 /// Quality of one projection compared with a reference, without the names of its actuators.
 fn ranked(
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     number: usize,
     outcome: &ProjectionEstimates,
     reference: &ProjectionEstimates,
@@ -218,7 +218,7 @@ fn deviation_ratio(own: &Estimate, reference: &Estimate) -> Option<f64> {
 /// Cross-validated relative error of the platform's equations, percent.
 ///
 /// The parameters are estimated from other folds of this projection.
-fn held_out(prepared: &Prepared, number: usize, base: &Estimate) -> Option<f64> {
+fn held_out(prepared: &PreparedSystem, number: usize, base: &Estimate) -> Option<f64> {
     let selected = base.columns();
     let system = |number: usize| prepared.systems.get(number)?.as_ref().ok();
     let (system, platform) = (system(number)?, system(0)?);

@@ -194,7 +194,7 @@ impl Factor {
     /// Factor of the columns `selected` and Y.
     ///
     /// R_1 (upper triangular), the right-hand side Q_1ᵀ Y and the smallest residual norm.
-    pub(crate) fn reduced(&self, selected: &[usize]) -> Reduced {
+    pub(crate) fn reduced(&self, selected: &[usize]) -> ReducedFactor {
         Self::reduced_together(std::slice::from_ref(self), &[1.0], selected)
     }
 
@@ -203,7 +203,7 @@ impl Factor {
         factors: &[Self],
         weights: &[f64],
         selected: &[usize],
-    ) -> Reduced {
+    ) -> ReducedFactor {
         let p = selected.len();
         let size = factors.first().map_or(0, |factor| factor.r.nrows());
         let mut stacked = DMatrix::zeros(size * factors.len(), p + 1);
@@ -223,7 +223,7 @@ impl Factor {
             0.0
         };
         let rhs = r.view((0, p), (p, 1)).column(0).clone_owned();
-        Reduced {
+        ReducedFactor {
             triangle: r.view((0, 0), (p, p)).clone_owned(),
             rhs,
             residual_norm,
@@ -233,7 +233,7 @@ impl Factor {
 
 /// See [`Factor::reduced`].
 #[derive(Debug, Clone)]
-pub(crate) struct Reduced {
+pub(crate) struct ReducedFactor {
     pub(crate) triangle: DMatrix<f64>,
     pub(crate) rhs: DVector<f64>,
     pub(crate) residual_norm: f64,

@@ -10,14 +10,14 @@ use rayon::prelude::*;
 
 use super::{
     chunk::{Chunk, projected},
-    fold::Phases,
     instruments::InstrumentRun,
     observer::{Conditioning, Observer},
+    phase_sums::Phases,
     points::Points,
     projection::Projection,
     sink::{LineSink, Plan, observed},
     states::SampledStates,
-    system::{Observed, singular},
+    system::{RunEquations, singular},
 };
 use crate::{
     blocks::{BLOCK, slice},
@@ -72,7 +72,7 @@ impl Observer<'_> {
         &self,
         run: &MeasuredRun<'_>,
         progress: &dyn Fn(usize, usize),
-    ) -> Result<(Vec<Result<Observed, Error>>, RunObservation), Error> {
+    ) -> Result<(Vec<Result<RunEquations, Error>>, RunObservation), Error> {
         let (info, log) = (self.model.info(), run.log);
         let instrument_run =
             |own| InstrumentRun::new(self.model, own, log.samples(), self.settings);

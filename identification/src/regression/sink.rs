@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::{
     factor::Factor,
-    fold::{Fold, Phases},
-    system::{Observed, Part, PartitionCondition, Stretch},
+    phase_sums::{PhaseSums, Phases},
+    system::{PartitionCondition, RunEquations, RunPart, Stretch},
     transpose::transpose,
 };
 use crate::{filters::Decimation, series::LARGEST_SERIES};
@@ -110,7 +110,7 @@ pub(crate) struct LineSink {
     factor: Factor,
     parts: Vec<Factor>,
     stretches: Vec<Vec<f64>>,
-    fold: Option<Fold>,
+    phase_sums: Option<PhaseSums>,
     points: Vec<f64>,
     standstill: Option<Standstill>,
 }
@@ -205,7 +205,7 @@ impl LineSink {
             factor: Factor::new(parameters),
             parts: Vec::new(),
             stretches: plan.room(width),
-            fold: plan.phases.map(|phases| Fold::new(phases, width)),
+            phase_sums: plan.phases.map(|phases| PhaseSums::new(phases, width)),
             points: Vec::new(),
             standstill,
         })
@@ -228,12 +228,14 @@ impl LineSink {
     ) {
         let (width, mut kept) = (self.width, Vec::new());
         self.decimation.push(rows, &mut kept);
-        let (mut beside, mut speeds) = (Vec::new(), Vec::new());
+        let (mut decimated_instruments, mut speeds) = (Vec::new(), Vec::new());
         if let Some(sink) = &mut self.instruments {
             match instruments.filter(|own| own.len() == rows.len()) {
-                Some(own) => sink.decimation.push(own, &mut beside),
+                Some(own) => sink.decimation.push(own, &mut decimated_instruments),
                 // Zeros replace instruments that are unusable.
-                None => sink.decimation.push(&vec![0.0; rows.len()], &mut beside),
+                None => sink
+                    .decimation
+                    .push(&vec![0.0; rows.len()], &mut decimated_instruments),
             }
         }
         if let Some(own) = &mut self.standstill {
@@ -246,7 +248,7 @@ impl LineSink {
                 continue;
             }
             if let Some(sink) = &mut self.instruments {
-                let own = beside.get(place * width..(place + 1) * width - 1);
+                let own = decimated_instruments.get(place * width..(place + 1) * width - 1);
                 sink.push(plan, self.taken, row, own.unwrap_or_default());
             }
             if self.taken.is_multiple_of(plan.stride) {
@@ -257,8 +259,8 @@ impl LineSink {
                     stretch.extend_from_slice(row);
                 }
             }
-            if let Some(fold) = &mut self.fold {
-                fold.add(self.taken, row.iter());
+            if let Some(phase_sums) = &mut self.phase_sums {
+                phase_sums.add(self.taken, row.iter());
             }
             self.rows.extend_from_slice(row);
             self.advance(plan);
@@ -316,14 +318,14 @@ pub(crate) fn observed(
     plan: &Plan,
     mut sinks: Vec<LineSink>,
     partition: Option<PartitionCondition>,
-) -> Observed {
+) -> RunEquations {
     let mut instruments: Vec<InstrumentSink> = sinks
         .iter_mut()
         .filter_map(|sink| sink.instruments.take())
         .collect();
     instruments.iter_mut().for_each(InstrumentSink::finish);
     let width = sinks.first().map_or(1, |sink| sink.width);
-    let part = |part: usize| Part {
+    let part = |part: usize| RunPart {
         run,
         lines: sinks
             .iter()
@@ -341,10 +343,13 @@ pub(crate) fn observed(
             .map(|sink| transpose(&sink.stretches[stretch], width - 1))
             .collect(),
     };
-    Observed {
+    RunEquations {
         parts: (0..plan.ends.len()).map(part).collect(),
         stretches: (0..plan.stretches.len()).map(stretch).collect(),
-        folds: sinks.iter().filter_map(|sink| sink.fold.clone()).collect(),
+        phase_sums: sinks
+            .iter()
+            .filter_map(|sink| sink.phase_sums.clone())
+            .collect(),
         partition,
         points: sinks
             .iter()

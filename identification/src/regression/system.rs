@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::{
     factor::Factor,
-    fold::{self, Folds},
+    phase_sums::{self, PhaseSums},
     projection::Projection,
 };
 use crate::kinematics::Motion;
@@ -67,11 +67,11 @@ pub struct System {
     /// R factor of each line.
     pub lines: Vec<Factor>,
     /// Parts of the runs, for cross-validation.
-    pub parts: Vec<Part>,
+    pub parts: Vec<RunPart>,
     /// Successive equations, for the correlation of the residual.
     pub stretches: Vec<Stretch>,
     /// For each periodic motion, the mean equations of its phases.
-    pub(crate) folds: Vec<Folds>,
+    pub(crate) phase_sums: Vec<Vec<PhaseSums>>,
     /// Condition of the kept actuators, if there is a partition.
     pub partition: Option<PartitionCondition>,
     /// R factor of columns, instruments and Y of each line; empty without instruments.
@@ -81,7 +81,7 @@ pub struct System {
 /// Equations of a part of a run.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Part {
+pub struct RunPart {
     /// Number of the run.
     pub run: usize,
     /// R factor of each line.
@@ -110,7 +110,7 @@ impl System {
             projection,
             parts: Vec::new(),
             stretches: Vec::new(),
-            folds: Vec::new(),
+            phase_sums: Vec::new(),
             partition: None,
             instruments: Vec::new(),
         }
@@ -124,7 +124,7 @@ impl System {
     }
 
     /// Adds the equations of a run.
-    pub(crate) fn extend(&mut self, observed: Observed) {
+    pub(crate) fn extend(&mut self, observed: RunEquations) {
         for (line, factor) in self.lines.iter_mut().enumerate() {
             let of_line = observed
                 .parts
@@ -140,8 +140,8 @@ impl System {
         lines.for_each(|(line, factor)| line.add(factor));
         self.parts.extend(observed.parts);
         self.stretches.extend(observed.stretches);
-        if !observed.folds.is_empty() {
-            fold::add(&mut self.folds, observed.folds);
+        if !observed.phase_sums.is_empty() {
+            phase_sums::add(&mut self.phase_sums, observed.phase_sums);
         }
         let own = self.partition.take();
         self.partition = PartitionCondition::joined(own, observed.partition);
@@ -150,11 +150,11 @@ impl System {
 
 /// Equations of one run for a system.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Observed {
-    pub(crate) parts: Vec<Part>,
+pub(crate) struct RunEquations {
+    pub(crate) parts: Vec<RunPart>,
     pub(crate) stretches: Vec<Stretch>,
     /// Mean equations of the phases of each line; empty without periodic motion.
-    pub(crate) folds: Folds,
+    pub(crate) phase_sums: Vec<PhaseSums>,
     pub(crate) partition: Option<PartitionCondition>,
     /// As in the system.
     pub(crate) instruments: Vec<Factor>,

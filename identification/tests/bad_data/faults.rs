@@ -164,9 +164,9 @@ fn late_torques_are_named_with_their_delay() {
     let result = result.expect("an identification");
     let delay = check(&result, CheckKind::Delay);
     assert!(!delay.passed && delay.grade != Grade::Use, "{delay:?}");
-    let told = delay.words.strip_prefix("the torques are ");
-    let told = told.and_then(|text| text.split_once(" ms behind the motion"));
-    let size: f64 = told.expect("a size").0.parse().expect("a number");
+    let output = delay.words.strip_prefix("the torques are ");
+    let output = output.and_then(|text| text.split_once(" ms behind the motion"));
+    let size: f64 = output.expect("a size").0.parse().expect("a number");
     assert!((size - 1.0).abs() < 0.05, "{size}");
     assert!(!trusted(&result, "platform projection"));
 }

@@ -18,9 +18,9 @@ pub(crate) fn child(element: &str, name: &str) {
 }
 
 /// Pairs of an element and its attribute or child.
-type Asked = BTreeSet<(String, String)>;
+type RequestedNames = BTreeSet<(String, String)>;
 
 /// Returns and clears the requests for attributes and children on this thread.
-pub(crate) fn take() -> (Asked, Asked) {
+pub(crate) fn take() -> (RequestedNames, RequestedNames) {
     (ATTRIBUTES.take(), CHILDREN.take())
 }

@@ -127,7 +127,7 @@ fn are_in(table: &Table, source: &str) {
 #[test]
 fn keys_of_par_and_yaml_are_read() {
     are_in(&PAR, include_str!("../par/mod.rs"));
-    are_in(&YAML, include_str!("../urdf/beside.rs"));
+    are_in(&YAML, include_str!("../urdf/yaml.rs"));
 }
 
 #[test]

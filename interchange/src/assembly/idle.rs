@@ -3,7 +3,7 @@
 //! By convention such a body does not rotate.
 
 use super::network::{Network, Origin};
-use crate::model::{Kind, Model, Pose};
+use crate::model::{JointType, Model, Pose};
 use nalgebra::Rotation3;
 
 /// Model without idle spins of this kind; `None` if there are none.
@@ -18,7 +18,7 @@ pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
         let pins = [a, b].map(|edge| &network.edges[edge]);
         let are_free = pins
             .iter()
-            .all(|edge| edge.kind == Kind::Revolute && edge.is_free);
+            .all(|edge| edge.kind == JointType::Revolute && edge.is_free);
         if !are_free || locked[a] || locked[b] || !are_coaxial(network, a, b) {
             continue;
         }

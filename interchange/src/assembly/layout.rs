@@ -12,15 +12,15 @@ use super::{
     network::{Network, Origin},
     solvable_chains::{SolvableChain, cheapest, follows, freedoms},
 };
-use crate::{files::Files, model::Kind, options::Options};
+use crate::{files::Files, model::JointType, options::Options};
 use nalgebra::{DMatrix, Vector3};
 
 /// Edges of a tree in order, each with the group that it starts from.
 pub(crate) type Tree = Vec<(usize, usize)>;
 
-/// Part of the layout besides the skeleton.
+/// Parts of the layout that do not belong to the skeleton.
 #[derive(Debug, Clone)]
-pub(crate) enum Piece {
+pub(crate) enum LayoutPiece {
     /// A chain, determined by the bodies that it connects.
     Chain(SolvableChain),
     /// A tree on a body of a chain.
@@ -33,7 +33,7 @@ pub(crate) struct Layout {
     /// Tree on the ground.
     pub(crate) skeleton: Tree,
     /// Chains in the order of their solution; each branch follows the chain that carries it.
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<LayoutPiece>,
     /// Redundant edges: the others imply their constraints.
     pub(crate) redundant: Vec<usize>,
 }
@@ -42,8 +42,8 @@ impl Layout {
     /// Edges whose joints are coordinates, in the order of the description.
     pub(crate) fn coordinates(&self) -> Tree {
         let branches = self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Branch(tree) => Some(tree),
-            Piece::Chain(_) => None,
+            LayoutPiece::Branch(tree) => Some(tree),
+            LayoutPiece::Chain(_) => None,
         });
         let trees = std::iter::once(&self.skeleton).chain(branches);
         trees.flatten().copied().collect()
@@ -76,13 +76,13 @@ pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> O
         tries: 0,
         paths: 0,
     };
-    search.grow(Partial::start(network));
+    search.grow(PartialLayout::start(network));
     if search.best.is_none() {
         search.kept.fill(false);
         search.may_branch = true;
         search.tries = 0;
         search.paths = 0;
-        search.grow(Partial::start(network));
+        search.grow(PartialLayout::start(network));
     }
     let is_exhausted = search.is_exhausted();
     let Search { best, furthest, .. } = search;
@@ -124,7 +124,7 @@ fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<
 
 /// Tree that a group belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Part {
+enum LayoutPart {
     /// Tree on the ground.
     Skeleton,
     /// Index of the branch in `pieces`.
@@ -132,17 +132,17 @@ enum Part {
 }
 
 #[derive(Debug, Clone)]
-struct Partial {
+struct PartialLayout {
     solved: Vec<bool>,
     /// Tree of each group, if it has one.
-    part: Vec<Option<Part>>,
+    part: Vec<Option<LayoutPart>>,
     used: Vec<bool>,
     skeleton: Tree,
-    pieces: Vec<Piece>,
+    pieces: Vec<LayoutPiece>,
     cost: usize,
 }
 
-impl Partial {
+impl PartialLayout {
     /// Partial layout with the ground only.
     fn start(network: &Network<'_>) -> Self {
         let count = network.groups.len();
@@ -155,20 +155,20 @@ impl Partial {
             cost: 0,
         };
         own.solved[0] = true;
-        own.part[0] = Some(Part::Skeleton);
+        own.part[0] = Some(LayoutPart::Skeleton);
         own
     }
 
     /// Adds an edge to the tree of its start group, or to a new branch.
     fn push(&mut self, edge: usize, from: usize, to: usize) {
         let part = self.part[from].unwrap_or_else(|| {
-            self.pieces.push(Piece::Branch(Tree::new()));
-            Part::Branch(self.pieces.len() - 1)
+            self.pieces.push(LayoutPiece::Branch(Tree::new()));
+            LayoutPart::Branch(self.pieces.len() - 1)
         });
         match part {
-            Part::Skeleton => self.skeleton.push((edge, from)),
-            Part::Branch(at) => {
-                if let Piece::Branch(tree) = &mut self.pieces[at] {
+            LayoutPart::Skeleton => self.skeleton.push((edge, from)),
+            LayoutPart::Branch(at) => {
+                if let LayoutPiece::Branch(tree) = &mut self.pieces[at] {
                     tree.push((edge, from));
                 }
             }
@@ -209,7 +209,7 @@ impl Search<'_, '_> {
         self.tries > TRIES || self.paths > PATHS
     }
 
-    fn grow(&mut self, mut partial: Partial) {
+    fn grow(&mut self, mut partial: PartialLayout) {
         self.tries += 1;
         while !self.is_exhausted() {
             let (ear, paths) = cheapest(self.network, &partial.solved, &self.kept, &partial.used);
@@ -222,7 +222,7 @@ impl Search<'_, '_> {
                 partial.used[edge] = true;
             }
             partial.cost += ear.cost();
-            partial.pieces.push(Piece::Chain(ear));
+            partial.pieces.push(LayoutPiece::Chain(ear));
         }
         let is_dear = self
             .best
@@ -252,7 +252,7 @@ impl Search<'_, '_> {
     }
 
     /// Candidate edges for the skeleton; a single one if that edge is required.
-    fn candidates(&self, partial: &Partial) -> Vec<(usize, usize, usize)> {
+    fn candidates(&self, partial: &PartialLayout) -> Vec<(usize, usize, usize)> {
         let mut all = Vec::new();
         for (index, edge) in self.network.edges.iter().enumerate() {
             let wanted = self.wanted.as_ref().is_none_or(|wanted| {
@@ -285,7 +285,7 @@ impl Search<'_, '_> {
             .collect()
     }
 
-    fn finish(&mut self, partial: Partial) {
+    fn finish(&mut self, partial: PartialLayout) {
         let layout = partial.layout();
         let coordinates: usize = skeleton_freedoms(self.network, &layout.coordinates())
             .iter()
@@ -347,12 +347,12 @@ pub(crate) fn skeleton_rates(
                 .collect()
         };
         match edge.kind {
-            Kind::Revolute => rows.push(turning(&(axis.direction * sign))),
-            Kind::Prismatic => {
+            JointType::Revolute => rows.push(turning(&(axis.direction * sign))),
+            JointType::Prismatic => {
                 let velocity = relative.rows(0, 3).transpose() * axis.direction * sign;
                 rows.push(velocity.iter().copied().collect());
             }
-            Kind::Ball if network.groups[to].spins => {
+            JointType::Ball if network.groups[to].spins => {
                 let line = network.line(to, state);
                 let across = if line.x.abs() < 0.7 {
                     Vector3::x()
@@ -362,7 +362,7 @@ pub(crate) fn skeleton_rates(
                 let first = line.cross(&across).normalize();
                 rows.extend([first, line.cross(&first)].iter().map(turning));
             }
-            Kind::Ball => rows.extend((0..3).map(|i| turning(&Vector3::ith(i, 1.0)))),
+            JointType::Ball => rows.extend((0..3).map(|i| turning(&Vector3::ith(i, 1.0)))),
         }
     }
     let columns = twists.first().map_or(0, DMatrix::ncols);

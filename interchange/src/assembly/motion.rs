@@ -2,7 +2,7 @@
 
 use crate::{
     geometry::exact,
-    model::{ClosureKind, Kind, Model, Pose},
+    model::{ClosureKind, JointType, Model, Pose},
 };
 use nalgebra::{DMatrix, DVector, Point3, Rotation3, Vector3};
 use std::rc::Rc;
@@ -51,8 +51,8 @@ impl<'m> Motion<'m> {
             let count = match own.kind {
                 // Joints merged into a ball joint carry nothing.
                 _ if own.follow.is_some() || carried[joint] == 0 => 0,
-                Kind::Ball => 3,
-                Kind::Revolute | Kind::Prismatic => 1,
+                JointType::Ball => 3,
+                JointType::Revolute | JointType::Prismatic => 1,
             };
             coordinates.extend((0..count).map(|component| Coordinate { joint, component }));
         }
@@ -96,11 +96,11 @@ impl<'m> Motion<'m> {
         let joint = &self.model.joints[at];
         let by = state.positions[at] - joint.reference;
         let rotation = match joint.kind {
-            Kind::Prismatic => {
+            JointType::Prismatic => {
                 return Pose::from_parts((joint.axis * by).into(), Rotation3::identity());
             }
-            Kind::Revolute => exact::turn(&joint.axis, by),
-            Kind::Ball => state.turns[at],
+            JointType::Revolute => exact::turn(&joint.axis, by),
+            JointType::Ball => state.turns[at],
         };
         let centre = joint.at.coords;
         Pose::from_parts((centre - rotation * centre).into(), rotation)
@@ -136,9 +136,9 @@ impl<'m> Motion<'m> {
         let twist = |component: usize| {
             let (centre, axis) = (pose * own.at, pose.rotation * own.axis);
             match own.kind {
-                Kind::Prismatic => screw(&axis, &Vector3::zeros()),
-                Kind::Revolute => screw(&centre.coords.cross(&axis), &axis),
-                Kind::Ball => {
+                JointType::Prismatic => screw(&axis, &Vector3::zeros()),
+                JointType::Revolute => screw(&centre.coords.cross(&axis), &axis),
+                JointType::Ball => {
                     let axis = placed.rotation * Vector3::ith(component, 1.0);
                     screw(&centre.coords.cross(&axis), &axis)
                 }
@@ -180,7 +180,7 @@ impl<'m> Motion<'m> {
         let mut turns = vec![Vector3::zeros(); self.model.joints.len()];
         for (coordinate, by) in self.coordinates.iter().zip(step.iter()) {
             match self.model.joints[coordinate.joint].kind {
-                Kind::Ball => turns[coordinate.joint][coordinate.component] = *by,
+                JointType::Ball => turns[coordinate.joint][coordinate.component] = *by,
                 _ => moved.positions[coordinate.joint] += by,
             }
         }

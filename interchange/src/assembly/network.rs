@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     files::Files,
-    model::{ClosureKind, Inertia, Kind, Model, Pose},
+    model::{ClosureKind, Inertia, JointType, Model, Pose},
 };
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 use std::collections::BTreeMap;
@@ -36,7 +36,7 @@ pub(crate) enum Origin {
 #[derive(Debug, Clone)]
 pub(crate) struct Edge {
     pub(crate) groups: [usize; 2],
-    pub(crate) kind: Kind,
+    pub(crate) kind: JointType,
     pub(crate) origin: Origin,
     /// Whether it moves without friction, spring or motor torque.
     pub(crate) is_free: bool,
@@ -68,7 +68,7 @@ pub(crate) struct Network<'m> {
     pub(crate) mobility: usize,
 }
 
-/// Number of sampled configurations besides home.
+/// Number of sampled configurations in addition to home.
 const SAMPLES: usize = 3;
 
 impl<'m> Network<'m> {
@@ -107,7 +107,9 @@ impl<'m> Network<'m> {
     fn find_spins(&mut self) {
         for at in 1..self.groups.len() {
             let own = &self.edges_at[at];
-            let all_balls = own.iter().all(|&edge| self.edges[edge].kind == Kind::Ball);
+            let all_balls = own
+                .iter()
+                .all(|&edge| self.edges[edge].kind == JointType::Ball);
             self.groups[at].spins = all_balls && own.len() == 2;
         }
     }
@@ -310,8 +312,8 @@ fn edges(model: &Model, of_body: &[usize]) -> Vec<Edge> {
         .enumerate()
         .filter_map(|(at, closure)| {
             let kind = match closure.kind {
-                ClosureKind::Point { .. } => Kind::Ball,
-                ClosureKind::Pin { .. } => Kind::Revolute,
+                ClosureKind::Point { .. } => JointType::Ball,
+                ClosureKind::Pin { .. } => JointType::Revolute,
                 ClosureKind::Weld { .. } => return None,
             };
             let groups = closure.bodies().map(|body| of_body[body]);

@@ -3,7 +3,7 @@
 //! Three passive revolute joints with intersecting axes and massless bodies between them are a ball
 //! joint. Two revolute joints on one axis are one.
 
-use crate::model::{ClosureKind, Inertia, Joint, Kind, Model};
+use crate::model::{ClosureKind, Inertia, Joint, JointType, Model};
 use nalgebra::Matrix3;
 
 /// Merges successive revolute joints with intersecting axes into ball joints.
@@ -24,7 +24,7 @@ pub(crate) fn join_balls(model: &mut Model) {
         let place = model.joints[own].place.clone();
         model.joints[own] = Joint {
             at: centre,
-            ..Joint::new(&name, Kind::Ball, place)
+            ..Joint::new(&name, JointType::Ball, place)
         };
         let (placement, parent) = (
             model.bodies[first].placement * between,
@@ -107,7 +107,7 @@ pub(crate) fn is_massless(inertia: Option<&Inertia>) -> bool {
 
 /// Whether a revolute joint has neither motor nor coupling nor torques.
 pub(crate) fn is_free(joint: &Joint) -> bool {
-    joint.kind == Kind::Revolute
+    joint.kind == JointType::Revolute
         && !joint.actuated
         && joint.follow.is_none()
         && [joint.damping, joint.friction, joint.armature]

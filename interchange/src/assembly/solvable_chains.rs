@@ -4,7 +4,7 @@ use super::{
     motion::rank,
     network::{Network, Origin},
 };
-use crate::model::Kind;
+use crate::model::JointType;
 use nalgebra::{DMatrix, Vector3};
 
 /// Kind of closure at a chain's end.
@@ -48,9 +48,9 @@ const WAYS: usize = 20_000;
 pub(crate) fn freedoms(network: &Network<'_>, edge: usize, to: usize, is_first: bool) -> usize {
     match network.edges[edge].kind {
         _ if follows(network, edge) => 0,
-        Kind::Revolute | Kind::Prismatic => 1,
-        Kind::Ball if network.groups[to].spins && is_first => 2,
-        Kind::Ball => 3,
+        JointType::Revolute | JointType::Prismatic => 1,
+        JointType::Ball if network.groups[to].spins && is_first => 2,
+        JointType::Ball => 3,
     }
 }
 
@@ -145,10 +145,10 @@ impl Search<'_, '_> {
             let edge = &self.network.edges[last];
             let ends = match ending {
                 Ending::Point => {
-                    edge.kind == Kind::Ball && edge.is_free_ball(self.network)
-                        || edge.kind == Kind::Revolute && edge.is_free
+                    edge.kind == JointType::Ball && edge.is_free_ball(self.network)
+                        || edge.kind == JointType::Revolute && edge.is_free
                 }
-                Ending::Rigid => edge.kind != Kind::Ball,
+                Ending::Rigid => edge.kind != JointType::Ball,
             };
             let limit = if ending == Ending::Point { 3 } else { UNKNOWNS };
             if !ends || unknowns == 0 || unknowns > limit {
@@ -219,7 +219,7 @@ fn jacobian(network: &Network<'_>, ear: &SolvableChain, state: usize) -> DMatrix
         let edge = &network.edges[index];
         let axis = network.axis(edge, state);
         match edge.kind {
-            Kind::Ball => {
+            JointType::Ball => {
                 let to = ear.groups[at + 1];
                 let spins = network.groups[to].spins;
                 let line = network.line(to, state);
@@ -234,7 +234,7 @@ fn jacobian(network: &Network<'_>, ear: &SolvableChain, state: usize) -> DMatrix
                 lines.extend(
                     axes[..count]
                         .iter()
-                        .map(|&e| (axis.point, e, Kind::Revolute)),
+                        .map(|&e| (axis.point, e, JointType::Revolute)),
                 );
             }
             kind => lines.push((axis.point, axis.direction, kind)),
@@ -249,12 +249,12 @@ fn jacobian(network: &Network<'_>, ear: &SolvableChain, state: usize) -> DMatrix
     DMatrix::from_fn(rows, lines.len(), |i, j| {
         let (point, axis, kind) = &lines[j];
         let velocity = match kind {
-            Kind::Prismatic => *axis,
+            JointType::Prismatic => *axis,
             _ => axis.cross(&(end - point)) / reach,
         };
         match (i < 3, kind) {
             (true, _) => velocity[i],
-            (false, Kind::Prismatic) => 0.0,
+            (false, JointType::Prismatic) => 0.0,
             (false, _) => axis[i - 3],
         }
     })

@@ -1,11 +1,11 @@
 //! Traces a run in small steps and checks closures, singularities and joint limits.
 
 use super::{guide::Guide, harmonics::Shape};
-use crate::{assembly::motion::State, model::Kind};
+use crate::{assembly::motion::State, model::JointType};
 use nalgebra::{DMatrix, DVector};
 
 /// Reason why a run is not feasible.
-pub(super) enum Trouble {
+pub(super) enum InfeasibleRun {
     /// A joint exceeds its limits; `share` is the contribution of each coordinate.
     Limit { joint: usize, share: Vec<f64> },
     /// The configuration is nearly singular, or the loops do not close.
@@ -42,7 +42,7 @@ impl Course {
         guide: &Guide<'_, '_>,
         shapes: &[Shape],
         sizes: &[f64],
-    ) -> Result<Self, Trouble> {
+    ) -> Result<Self, InfeasibleRun> {
         let wanted = |part: f64| {
             let all = shapes
                 .iter()
@@ -54,7 +54,7 @@ impl Course {
         let mut state = guide.network.states[0].clone();
         let mut now = DVector::zeros(sizes.len());
         let mut stops = Vec::new();
-        let mut rates = guide.rates(&state).ok_or(Trouble::Singular)?;
+        let mut rates = guide.rates(&state).ok_or(InfeasibleRun::Singular)?;
         for step in 1..=APPROACH + STEPS {
             let next = if step <= APPROACH {
                 &begin * (f64::from(step) / f64::from(APPROACH))
@@ -63,15 +63,15 @@ impl Course {
             };
             state = guide
                 .step(&state, &rates, &(&next - &now))
-                .ok_or(Trouble::Singular)?;
+                .ok_or(InfeasibleRun::Singular)?;
             // Read positions back from the joints, so that small errors do not accumulate.
             let positions = guide.positions(&state).into_iter().enumerate();
             now =
                 DVector::from_iterator(sizes.len(), positions.map(|(at, p)| p.unwrap_or(next[at])));
-            rates = guide.rates(&state).ok_or(Trouble::Singular)?;
+            rates = guide.rates(&state).ok_or(InfeasibleRun::Singular)?;
             if let Some(joint) = guide.beyond(&state) {
                 let share = share(guide, &rates.tree, joint, sizes);
-                return Err(Trouble::Limit { joint, share });
+                return Err(InfeasibleRun::Limit { joint, share });
             }
             if step >= APPROACH {
                 let part = f64::from(step - APPROACH) / f64::from(STEPS);
@@ -103,8 +103,8 @@ impl Course {
             let parts = speeds.iter().zip(coordinates).map(|(speed, c)| {
                 let joint = &joints[c.joint];
                 let usual = match joint.kind {
-                    Kind::Prismatic => USUAL[1],
-                    Kind::Revolute | Kind::Ball => USUAL[0],
+                    JointType::Prismatic => USUAL[1],
+                    JointType::Revolute | JointType::Ball => USUAL[0],
                 };
                 speed.abs() / joint.speed.map_or(usual, |own| 0.8 * own)
             });

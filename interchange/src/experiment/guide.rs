@@ -8,7 +8,7 @@ use crate::{
         network::{Network, Origin},
         solvable_chains::freedoms,
     },
-    model::Kind,
+    model::JointType,
     plan::Plan,
 };
 use nalgebra::{DMatrix, DVector};
@@ -60,7 +60,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             Some([low, high])
         });
         let actuators = (0..model.joints.len())
-            .filter(|&at| model.joints[at].actuated && model.joints[at].kind != Kind::Ball);
+            .filter(|&at| model.joints[at].actuated && model.joints[at].kind != JointType::Ball);
         let mut own = Self {
             network,
             layout,
@@ -213,13 +213,13 @@ fn balls(network: &Network<'_>, layout: &Layout, plan: &Plan) -> Option<Vec<(usi
     for (index, from) in layout.coordinates() {
         let edge = &network.edges[index];
         let to = edge.groups[usize::from(edge.groups[0] == from)];
-        let count = if edge.kind == Kind::Ball {
+        let count = if edge.kind == JointType::Ball {
             freedoms(network, index, to, true)
         } else {
             1
         };
         let own: Vec<_> = axes.by_ref().take(count).copied().collect();
-        if edge.kind == Kind::Ball {
+        if edge.kind == JointType::Ball {
             let ball = Ball::new(network, from, to, &own, &balls)?;
             balls.push((index, ball));
         }

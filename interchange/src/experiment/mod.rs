@@ -11,10 +11,10 @@ mod torques;
 
 use crate::{
     assembly::{layout::Layout, network::Network},
-    model::Kind,
+    model::JointType,
     plan::{Leg, Plan},
 };
-use course::{Course, Trouble};
+use course::{Course, InfeasibleRun};
 use guide::Guide;
 use harmonics::{PERIODS, Shape, ready};
 
@@ -103,11 +103,11 @@ pub(crate) fn design(
                 sizes.iter_mut().for_each(|size| *size *= 0.8);
                 "its inertia varies strongly".to_owned()
             }
-            Err(Trouble::Limit { joint, share }) => {
+            Err(InfeasibleRun::Limit { joint, share }) => {
                 shorten(&mut sizes, &share);
                 format!("`{}` meets its limit", network.model.joints[joint].name)
             }
-            Err(Trouble::Singular) => {
+            Err(InfeasibleRun::Singular) => {
                 sizes.iter_mut().for_each(|size| *size *= 0.8);
                 "a singular configuration is near".to_owned()
             }
@@ -136,8 +136,8 @@ pub(crate) fn design(
     let encoders = order
         .iter()
         .map(|&at| match network.model.joints[guide.actuators[at]].kind {
-            Kind::Prismatic => 1e-6,
-            Kind::Revolute | Kind::Ball => 1e-5,
+            JointType::Prismatic => 1e-6,
+            JointType::Revolute | JointType::Ball => 1e-5,
         });
     let terms = |shapes: &[Shape]| {
         let named = coordinates.iter().zip(shapes).zip(&sizes);

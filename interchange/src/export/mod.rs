@@ -81,8 +81,8 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
         network: &robot.network,
         format,
         values,
-        told: BTreeSet::new(),
-        wanted: Wanted::default(),
+        expressed: BTreeSet::new(),
+        wanted: ExportChanges::default(),
         notes: Vec::new(),
     };
     own.gather(&robot.plan);
@@ -133,7 +133,7 @@ fn values(files: &Files, parameters: &Path, toml: &str) -> Option<BTreeMap<Strin
 
 /// Changes to make, by the location of the element.
 #[derive(Debug, Default)]
-struct Wanted {
+struct ExportChanges {
     inertias: BTreeMap<(usize, usize), crate::model::Inertia>,
     joints: BTreeMap<(usize, usize), Vec<(&'static str, f64)>>,
     names: Vec<String>,
@@ -145,8 +145,8 @@ struct Export<'e, 'm> {
     format: Format,
     values: BTreeMap<String, f64>,
     /// Names of parameters that are exported or unchanged.
-    told: BTreeSet<String>,
-    wanted: Wanted,
+    expressed: BTreeSet<String>,
+    wanted: ExportChanges,
     notes: Vec<String>,
 }
 
@@ -190,7 +190,7 @@ impl Export<'_, '_> {
             let name = format!("{symbol}_{of}");
             if let Some(value) = self.values.get(&name) {
                 (after[at], is_given[at]) = (*value, true);
-                self.told.insert(name);
+                self.expressed.insert(name);
             }
         }
         if is_same(&before, &after) {
@@ -259,7 +259,7 @@ impl Export<'_, '_> {
             if (value - before).abs() > SAME * before.abs() {
                 changes.push((attribute, *value));
             }
-            self.told.insert(name);
+            self.expressed.insert(name);
         }
         if !changes.is_empty() {
             let place = &file_joint.place;
@@ -275,7 +275,7 @@ impl Export<'_, '_> {
         let left = self
             .values
             .iter()
-            .filter(|(name, value)| **value != 0.0 && !self.told.contains(*name));
+            .filter(|(name, value)| **value != 0.0 && !self.expressed.contains(*name));
         let left: Vec<String> = left
             .map(|(name, value)| format!("{name} = {value}"))
             .collect();

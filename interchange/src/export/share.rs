@@ -7,7 +7,7 @@ use crate::{
 use nalgebra::{Matrix3, Point3, Vector3};
 
 /// New inertia of a body, in the body's own frame.
-pub(super) struct Share {
+pub(super) struct NewInertia {
     pub(super) body: usize,
     pub(super) inertia: Inertia,
 }
@@ -44,7 +44,11 @@ pub(super) fn inertia(parameters: [f64; 10], frame: &Pose) -> Option<Inertia> {
 /// 3. If that fails too, the heaviest body takes the whole inertia.
 ///
 /// The flag reports case 3.
-pub(super) fn among(network: &Network<'_>, group: usize, whole: &Inertia) -> (Vec<Share>, bool) {
+pub(super) fn among(
+    network: &Network<'_>,
+    group: usize,
+    whole: &Inertia,
+) -> (Vec<NewInertia>, bool) {
     let model = network.model;
     let own: Vec<(usize, Inertia)> = network.groups[group]
         .bodies
@@ -75,7 +79,9 @@ pub(super) fn among(network: &Network<'_>, group: usize, whole: &Inertia) -> (Ve
         if factor == 0.0 || is_body(&rest) {
             let heaviest = (main, rest.transformed(&pose(main).inverse()));
             let all = std::iter::once(heaviest).chain(others.into_iter().filter(|_| factor != 1.0));
-            let shares = all.map(|(body, inertia)| Share { body, inertia }).collect();
+            let shares = all
+                .map(|(body, inertia)| NewInertia { body, inertia })
+                .collect();
             return (shares, factor == 0.0 && own.len() > 1);
         }
     }

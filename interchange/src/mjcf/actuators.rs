@@ -7,7 +7,7 @@ use super::{
     tendons::Tendons,
 };
 use crate::{
-    model::{Kind, Model, Motor},
+    model::{JointType, Model, Motor},
     xml::Element,
 };
 
@@ -69,7 +69,7 @@ fn actuator(reader: &Reader<'_>, element: &Element, tendons: &mut Tendons, model
         return;
     };
     let own = &mut model.joints[at];
-    if own.kind == Kind::Ball {
+    if own.kind == JointType::Ball {
         let message = format!(
             "the actuator `{name}` drives the ball joint `{joint}`, which is not supported"
         );

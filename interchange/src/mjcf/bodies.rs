@@ -7,7 +7,7 @@ use super::{
 use crate::{
     files::Files,
     geometry::exact,
-    model::{Body, Joint, Kind, Model, Pose},
+    model::{Body, Joint, JointType, Model, Pose},
     xml::Element,
 };
 use nalgebra::{Point3, Vector3};
@@ -200,9 +200,9 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
             }
             return None;
         }
-        None | Some("hinge") => Kind::Revolute,
-        Some("slide") => Kind::Prismatic,
-        Some("ball") => Kind::Ball,
+        None | Some("hinge") => JointType::Revolute,
+        Some("slide") => JointType::Prismatic,
+        Some("ball") => JointType::Ball,
         Some(other) => {
             let message = format!("the joint `{name}` is `{other}`, which is not supported");
             files.report(
@@ -219,7 +219,7 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
     }
     let mut joint = Joint::new(&name, kind, element.place.clone());
     joint.at = Point3::from(element.numbers(files, "pos").unwrap_or_default());
-    if kind != Kind::Ball {
+    if kind != JointType::Ball {
         let [x, y, z] = element.numbers(files, "axis").unwrap_or([0.0, 0.0, 1.0]);
         let Some(axis) = exact::unit(&Vector3::new(x, y, z), exact::SHORTEST) else {
             files.report(
@@ -233,7 +233,7 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
     }
     let position = |key: &str| {
         let value = element.number(files, key, 0.0);
-        if kind == Kind::Revolute {
+        if kind == JointType::Revolute {
             reader.compiler.angle(value)
         } else {
             value
@@ -264,7 +264,7 @@ fn spring_damper(
         return None;
     }
     let kind = model.joints[joint].kind;
-    if kind == Kind::Ball {
+    if kind == JointType::Ball {
         let reason = "LEFT OUT: torques of ball joints are not supported";
         files.demote(&element.place, "joint", Some("springdamper"), reason);
         return None;
@@ -280,7 +280,7 @@ fn spring_damper(
         joint,
         time_constant,
         damping_ratio,
-        rest: if kind == Kind::Revolute {
+        rest: if kind == JointType::Revolute {
             reader.compiler.angle(rest)
         } else {
             rest
@@ -289,7 +289,7 @@ fn spring_damper(
 }
 
 /// Limits of a joint, if it is limited.
-fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]> {
+fn range(reader: &Reader<'_>, element: &Element, kind: JointType) -> Option<[f64; 2]> {
     let limits: [f64; 2] = element.numbers(reader.files, "range")?;
     let is_limited = match element.keyword(reader.files, "limited", BOOLEAN_OR_AUTO) {
         Some("true") => true,
@@ -297,9 +297,9 @@ fn range(reader: &Reader<'_>, element: &Element, kind: Kind) -> Option<[f64; 2]>
         _ => reader.compiler.limits_ranges,
     };
     let limits = match kind {
-        Kind::Revolute => limits.map(|limit| reader.compiler.angle(limit)),
-        Kind::Prismatic => limits,
-        Kind::Ball => return None,
+        JointType::Revolute => limits.map(|limit| reader.compiler.angle(limit)),
+        JointType::Prismatic => limits,
+        JointType::Ball => return None,
     };
     (is_limited && limits[0] < limits[1]).then_some(limits)
 }

@@ -6,7 +6,7 @@
 use super::{Reader, bodies::first, defaults::MAIN};
 use crate::{
     files::{Files, Place},
-    model::{Kind, Model, Motor},
+    model::{JointType, Model, Motor},
     motors::independent,
     xml::Element,
 };
@@ -144,7 +144,7 @@ fn term(files: &Files, element: &Element, model: &Model) -> Option<(usize, f64)>
         files.report(&element.place, format!("there is no joint `{name}`"), help);
         return None;
     };
-    if model.joints[joint].kind == Kind::Ball {
+    if model.joints[joint].kind == JointType::Ball {
         let message = format!("`{name}` is a ball joint, of which no tendon can consist");
         files.report(&element.place, message, "name hinges and slides");
         return None;

@@ -262,7 +262,7 @@ fn defaults_of_one_actuator_are_those_of_all_and_equalities_share_theirs() {
 }
 
 #[test]
-fn joints_and_inertias_stand_in_the_frames_of_their_body() {
+fn joints_and_inertias_are_in_the_frame_of_their_body() {
     let model = read(
         "<mujoco><worldbody><body><frame pos='0.1 0 0' euler='90 0 0'><joint name='j' axis='0 1 0'/>\
          <inertial pos='0 0 0.2' mass='1' diaginertia='1 2 3'/></frame></body></worldbody></mujoco>",

@@ -11,7 +11,7 @@ use crate::{
     files::{Files, Place},
     frames::step::Step,
     geometry::exact,
-    model::{Body, Closure, ClosureKind, Follow, Inertia, Joint, Kind, Model, Pose},
+    model::{Body, Closure, ClosureKind, Follow, Inertia, Joint, JointType, Model, Pose},
     options::Options,
     prune::record_key,
 };
@@ -219,9 +219,9 @@ impl Reader<'_> {
             _ => return Some((self.step(at, &BTreeMap::new())?.frame(), None)),
         };
         let kind = if frame.sigma == 0 {
-            Kind::Revolute
+            JointType::Revolute
         } else {
-            Kind::Prismatic
+            JointType::Prismatic
         };
         let (text, place) = self.entry(key, at)?;
         let mut free = symbols(text);

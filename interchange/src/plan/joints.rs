@@ -11,7 +11,7 @@ use crate::{
         leg::{Framed, Node, any_across},
         step::Step,
     },
-    model::{Kind, Motor, Pose},
+    model::{JointType, Motor, Pose},
 };
 use nalgebra::{Point3, Vector3};
 
@@ -55,10 +55,10 @@ impl<'d, 'm> Draft<'d, 'm> {
             Origin::Closure(_) => 0.0,
         };
         let name = self.network.edge_name(edge).to_owned();
-        if edge.kind != Kind::Ball {
+        if edge.kind != JointType::Ball {
             self.nodes.push(Node {
                 antecedent,
-                is_prismatic: edge.kind == Kind::Prismatic,
+                is_prismatic: edge.kind == JointType::Prismatic,
                 is_screw: self.is_screw(edge),
                 point: axis.point,
                 direction: axis.direction * sign,
@@ -100,7 +100,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         };
         let joints = &self.network.model.joints;
         let leader = joints[joint].follow.map(|follow| joints[follow.joint].kind);
-        edge.kind == Kind::Prismatic && leader == Some(Kind::Revolute)
+        edge.kind == JointType::Prismatic && leader == Some(JointType::Revolute)
     }
 
     /// Whether every motor of a joint turns other joints as well.
@@ -212,7 +212,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         };
         if axis == 0 {
             joint.comment.push(self.described(edge));
-            if edge.kind == Kind::Ball {
+            if edge.kind == JointType::Ball {
                 joint.comment.extend(at_home(self.network, edge));
             }
         }
@@ -232,8 +232,8 @@ impl<'d, 'm> Draft<'d, 'm> {
             }
         };
         let kind = match edge.kind {
-            Kind::Ball => "ball ",
-            Kind::Revolute | Kind::Prismatic => "",
+            JointType::Ball => "ball ",
+            JointType::Revolute | JointType::Prismatic => "",
         };
         format!("{kind}`{name}` of line {line}, {bodies}")
     }
@@ -244,7 +244,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             return;
         };
         let own = &self.network.model.joints[at];
-        if edge.kind == Kind::Ball {
+        if edge.kind == JointType::Ball {
             return;
         }
         joint.of = Some(at);
@@ -288,8 +288,8 @@ impl<'d, 'm> Draft<'d, 'm> {
             let leader = leader.map_or("", |at| self.names[at].as_str());
             let factor = crate::geometry::digits::fine(follow.factor, follow.factor);
             let unit = match (own.kind, self.network.model.joints[follow.joint].kind) {
-                (Kind::Prismatic, Kind::Revolute) => " m/rad",
-                (Kind::Revolute, Kind::Prismatic) => " rad/m",
+                (JointType::Prismatic, JointType::Revolute) => " m/rad",
+                (JointType::Revolute, JointType::Prismatic) => " rad/m",
                 _ => "",
             };
             joint.follows = Some(format!("{factor}{unit} * q_{leader}"));
@@ -395,7 +395,7 @@ pub(super) fn chain_comment(network: &Network<'_>, ear: &SolvableChain) -> Vec<S
         let edge = &network.edges[last];
         let name = network.edge_name(edge);
         lines.push(match edge.kind {
-            Kind::Ball => format!("It ends in the ball `{name}`."),
+            JointType::Ball => format!("It ends in the ball `{name}`."),
             _ => format!("It ends on the pin `{name}`, whose angle is dependent and not listed."),
         });
         lines.extend(at_home(network, edge));
@@ -420,14 +420,14 @@ pub(super) fn at_home(network: &Network<'_>, edge: &Edge) -> Option<String> {
     };
     let (own, home) = (&network.model.joints[joint], &network.states[0]);
     let shown = match own.kind {
-        Kind::Ball => {
+        JointType::Ball => {
             let turn = home.turns[joint].scaled_axis();
             if turn.norm() < 1e-14 {
                 return None;
             }
             format!("[{:?}, {:?}, {:?}]", turn.x, turn.y, turn.z)
         }
-        Kind::Revolute | Kind::Prismatic => format!("{:?}", home.positions[joint]),
+        JointType::Revolute | JointType::Prismatic => format!("{:?}", home.positions[joint]),
     };
     Some(format!("Home: `{}` = {shown}", own.name))
 }

@@ -7,7 +7,7 @@ mod screws;
 
 use crate::{
     assembly::{
-        layout::{Layout, Piece, Tree},
+        layout::{Layout, LayoutPiece, Tree},
         network::Network,
         solvable_chains::{Ending, SolvableChain},
     },
@@ -107,8 +107,8 @@ impl Plan {
         legs[0].motors = motors::of_leg(network.model, &legs[0]);
         for piece in &layout.pieces {
             legs.push(match piece {
-                Piece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
-                Piece::Branch(tree) => {
+                LayoutPiece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
+                LayoutPiece::Branch(tree) => {
                     let (leg, own) = branch(files, network, tree, &mut bodies, &mut names)?;
                     axes.extend(own);
                     leg

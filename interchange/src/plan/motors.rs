@@ -3,7 +3,7 @@
 use super::{Joint, Leg, Motor, names::Names};
 use crate::{
     geometry::digits::fine,
-    model::{Kind, Model},
+    model::{JointType, Model},
 };
 
 /// Motors of a leg: expressions of its joint variables.
@@ -39,7 +39,7 @@ pub(super) fn of_leg(model: &Model, leg: &Leg) -> Vec<Motor> {
 
 /// Expression of a combination of joints.
 fn combination(model: &Model, leg: &Leg, turns: &[(usize, f64)]) -> String {
-    let is_angle = |joint: usize| model.joints[joint].kind == Kind::Revolute;
+    let is_angle = |joint: usize| model.joints[joint].kind == JointType::Revolute;
     let has_angles = turns.iter().any(|(joint, _)| is_angle(*joint));
     let mut text = String::new();
     for &(joint, factor) in turns {

@@ -4,7 +4,7 @@ use super::Joint;
 use crate::{
     frames::step::Step,
     geometry::digits::is_zero,
-    model::{Kind, Model},
+    model::{JointType, Model},
 };
 use std::f64::consts::TAU;
 
@@ -34,8 +34,8 @@ pub(super) fn join(model: &Model, joints: &mut Vec<Joint>) {
 fn lead(model: &Model, slide: &Joint, turn: &Joint) -> Option<f64> {
     let (own, other) = (slide.of?, turn.of?);
     let follow = model.joints[own].follow?;
-    let are_kinds = model.joints[own].kind == Kind::Prismatic
-        && model.joints[other].kind == Kind::Revolute
+    let are_kinds = model.joints[own].kind == JointType::Prismatic
+        && model.joints[other].kind == JointType::Revolute
         && turn.kind == "revolute";
     let is_plain = slide.parameters.as_ref().is_some_and(Vec::is_empty)
         && slide.spring.is_none()

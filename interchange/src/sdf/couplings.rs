@@ -2,65 +2,65 @@
 //! angles.
 
 use super::{
+    contents::{JointItem, SdfContents},
     frames::FrameName,
-    gather::{Gathered, JointItem},
     joints,
     tree::{self, Axes, Edge},
     value::number,
 };
 use crate::{
     couplings::{Coupling, Couplings},
-    model::{Kind, Model},
+    model::{JointType, Model},
 };
 
-pub(super) fn read(gathered: &Gathered<'_>, edges: &[Edge], axes: &Axes, model: &mut Model) {
+pub(super) fn read(contents: &SdfContents<'_>, edges: &[Edge], axes: &Axes, model: &mut Model) {
     let mut all = Vec::new();
     for edge in edges {
         for axis in &edge.axes {
             if axis.lead.is_none() {
-                all.extend(mimic(gathered, edge.item, axis.element, axes, model));
+                all.extend(mimic(contents, edge.item, axis.element, axes, model));
             }
         }
     }
-    for item in &gathered.joints {
-        if item.owner == super::gather::Owner::Robot && joints::is_coupling(item) {
-            all.extend(gearbox(gathered, item, edges, axes));
+    for item in &contents.joints {
+        if item.owner == super::contents::Owner::Robot && joints::is_coupling(item) {
+            all.extend(gearbox(contents, item, edges, axes));
         }
     }
     let mut couplings = Couplings::default();
     all.into_iter().for_each(|coupling| couplings.add(coupling));
-    couplings.resolve(gathered.files, model);
+    couplings.resolve(contents.files, model);
 }
 
 /// Reads `<mimic>` of an axis: position = multiplier · (leader − reference) + offset.
 fn mimic(
-    gathered: &Gathered<'_>,
+    contents: &SdfContents<'_>,
     item: usize,
     tag: &'static str,
     axes: &Axes,
     model: &Model,
 ) -> Option<Coupling> {
-    let files = gathered.files;
-    let own = &gathered.joints[item];
+    let files = contents.files;
+    let own = &contents.joints[item];
     let mimic = own.element.child(tag)?.child("mimic")?;
     let name = mimic.required(files, "joint")?;
     let leading = match mimic.keyword(files, "axis", &["axis", "axis2"]) {
         Some("axis2") => "axis2",
         _ => "axis",
     };
-    let prefix = |scope: usize| &gathered.frames.scopes[scope].prefix;
+    let prefix = |scope: usize| &contents.frames.scopes[scope].prefix;
     let is_meant = |other: &JointItem| {
-        let frame = gathered.frames.find(own.scope, name);
+        let frame = contents.frames.find(own.scope, name);
         let is_frame = frame == Some(other.frame);
         // Up to SDFormat 1.6, the frame may belong to a link with the joint's name.
         is_frame
             || prefix(other.scope) == prefix(own.scope) && other.element.get("name") == Some(name)
     };
-    let leader = gathered.joints.iter().position(is_meant);
+    let leader = contents.joints.iter().position(is_meant);
     let leader = leader.and_then(|leader| axes.get(&(leader, leading)).copied());
     let follower = axes.get(&(item, tag)).copied()?;
     let kind = leader.map(|leader| model.joints[leader].kind);
-    let (Some(leader), Some(Kind::Revolute | Kind::Prismatic)) = (leader, kind) else {
+    let (Some(leader), Some(JointType::Revolute | JointType::Prismatic)) = (leader, kind) else {
         let message = format!("there is no axis `{leading}` of a joint `{name}` to couple to");
         files.report(&mimic.place, message, "name another joint that moves");
         return None;
@@ -86,17 +86,17 @@ fn mimic(
 ///
 /// Both angles are measured from the reference body.
 fn gearbox(
-    gathered: &Gathered<'_>,
+    contents: &SdfContents<'_>,
     item: &JointItem,
     edges: &[Edge],
     axes: &Axes,
 ) -> Option<Coupling> {
-    let files = gathered.files;
-    let reference = joints::reference_body(gathered, item)?;
-    let base = tree::end(gathered, &reference)?;
+    let files = contents.files;
+    let reference = joints::reference_body(contents, item)?;
+    let base = tree::end(contents, &reference)?;
     let angle = |name: &FrameName, tag: &str| {
-        let link = tree::end(gathered, name)?;
-        let found = turn(gathered, item, edges, [base, link], tag);
+        let link = tree::end(contents, name)?;
+        let found = turn(contents, item, edges, [base, link], tag);
         if found.is_none() {
             let message = format!(
                 "the gearbox `{}` needs a revolute joint between `{}` and `{}` along its <{tag}>",
@@ -126,20 +126,20 @@ fn gearbox(
 /// The sign is positive if the joint and the gearbox count the angle in the same direction, from
 /// the first link to the second.
 fn turn(
-    gathered: &Gathered<'_>,
+    contents: &SdfContents<'_>,
     item: &JointItem,
     edges: &[Edge],
     links: [Option<usize>; 2],
     tag: &str,
 ) -> Option<(usize, f64)> {
-    let wanted = joints::direction(gathered, item, item.element.child(tag)?)?;
+    let wanted = joints::direction(contents, item, item.element.child(tag)?)?;
     let found = edges.iter().position(|edge| {
-        let is_turn = edge.axes.len() == 1 && edge.axes[0].joint.kind == Kind::Revolute;
+        let is_turn = edge.axes.len() == 1 && edge.axes[0].joint.kind == JointType::Revolute;
         is_turn && (edge.ends == links || edge.ends == [links[1], links[0]])
     })?;
     let edge = &edges[found];
-    let frame = gathered.joints[edge.item].frame;
-    let own = gathered.frames.relative_pose(frame, item.frame).rotation * edge.axes[0].joint.axis;
+    let frame = contents.joints[edge.item].frame;
+    let own = contents.frames.relative_pose(frame, item.frame).rotation * edge.axes[0].joint.axis;
     let along = own.dot(&wanted);
     let from = if edge.ends == links { 1.0 } else { -1.0 };
     (along.abs() > 1.0 - 1e-6).then_some((found, from * along.signum()))

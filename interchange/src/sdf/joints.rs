@@ -1,13 +1,13 @@
 //! Splits joints of SDFormat into axes with one degree of freedom each.
 
 use super::{
+    contents::{JointItem, SdfContents},
     frames::FrameName,
-    gather::{Gathered, JointItem},
     value::{flag, limit, number, several, text},
 };
 use crate::{
     geometry::exact,
-    model::{Joint, Kind},
+    model::{Joint, JointType},
     xml::Element,
 };
 use nalgebra::Vector3;
@@ -27,17 +27,17 @@ pub(super) struct Axis {
 /// Axes of a joint from its parent to its child; empty for a fixed joint, `None` after an error.
 ///
 /// Directions are in the frame of the joint.
-pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis>> {
-    report_unused_axes(gathered, item);
-    let one = |kind, tag, name: String| axis(gathered, item, kind, tag, name);
+pub(super) fn axes(contents: &SdfContents<'_>, item: &JointItem) -> Option<Vec<Axis>> {
+    report_unused_axes(contents, item);
+    let one = |kind, tag, name: String| axis(contents, item, kind, tag, name);
     let name = || item.name.clone();
     let numbered = |at: usize| format!("{}_{at}", item.name);
     Some(match item.element.get("type").unwrap_or("no type") {
         "fixed" => Vec::new(),
-        "revolute" | "continuous" => vec![one(Kind::Revolute, "axis", name())?],
-        "prismatic" => vec![one(Kind::Prismatic, "axis", name())?],
+        "revolute" | "continuous" => vec![one(JointType::Revolute, "axis", name())?],
+        "prismatic" => vec![one(JointType::Prismatic, "axis", name())?],
         "ball" => {
-            let joint = Joint::new(&item.name, Kind::Ball, item.element.place.clone());
+            let joint = Joint::new(&item.name, JointType::Ball, item.element.place.clone());
             vec![Axis {
                 joint,
                 element: "axis",
@@ -46,28 +46,28 @@ pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis
         }
         "universal" | "revolute2" => {
             let both = [
-                one(Kind::Revolute, "axis", numbered(1))?,
-                one(Kind::Revolute, "axis2", numbered(2))?,
+                one(JointType::Revolute, "axis", numbered(1))?,
+                one(JointType::Revolute, "axis2", numbered(2))?,
             ];
             let [first, second] = both.each_ref().map(|axis| axis.joint.axis);
             if first.cross(&second).norm() < 1e-6 {
                 let message = format!("the two axes of the joint `{}` are parallel", item.name);
                 let help = "give <axis2> another direction than <axis>";
-                gathered.files.report(&item.element.place, message, help);
+                contents.files.report(&item.element.place, message, help);
                 return None;
             }
             both.into()
         }
         "screw" => {
-            let turn = one(Kind::Revolute, "axis", name())?;
+            let turn = one(JointType::Revolute, "axis", name())?;
             let mut slide = Axis {
-                lead: Some(lead(gathered, item)?),
+                lead: Some(lead(contents, item)?),
                 ..turn.clone()
             };
             let place = item.element.place.clone();
             slide.joint = Joint {
                 axis: turn.joint.axis,
-                ..Joint::new(&format!("{}_slide", item.name), Kind::Prismatic, place)
+                ..Joint::new(&format!("{}_slide", item.name), JointType::Prismatic, place)
             };
             // Both motions have the same axis, so their order does not matter; the last one carries
             // the body.
@@ -79,14 +79,14 @@ pub(super) fn axes(gathered: &Gathered<'_>, item: &JointItem) -> Option<Vec<Axis
                 item.name
             );
             let help = "supported are revolute, continuous, prismatic, fixed, universal, revolute2, ball, screw and gearbox joints";
-            gathered.files.report(&item.element.place, message, help);
+            contents.files.report(&item.element.place, message, help);
             return None;
         }
     })
 }
 
 /// Reports axes that a joint's type does not have.
-fn report_unused_axes(gathered: &Gathered<'_>, item: &JointItem) {
+fn report_unused_axes(contents: &SdfContents<'_>, item: &JointItem) {
     let unused: &[&str] = match item.element.get("type") {
         Some("universal" | "revolute2" | "gearbox" | "fixed") => &[],
         Some("ball") => &["axis", "axis2"],
@@ -95,19 +95,19 @@ fn report_unused_axes(gathered: &Gathered<'_>, item: &JointItem) {
     for tag in unused {
         if let Some(element) = item.element.child(tag) {
             let reason = "not used: joints of this type have no such axis";
-            gathered.files.demote(&element.place, tag, None, reason);
+            contents.files.demote(&element.place, tag, None, reason);
         }
     }
 }
 
 fn axis(
-    gathered: &Gathered<'_>,
+    contents: &SdfContents<'_>,
     item: &JointItem,
-    kind: Kind,
+    kind: JointType,
     tag: &'static str,
     name: String,
 ) -> Option<Axis> {
-    let files = gathered.files;
+    let files = contents.files;
     let Some(element) = item.element.child(tag) else {
         let message = format!("the joint `{}` has no <{tag}>", item.name);
         let help = format!("write <{tag}><xyz>0 0 1</xyz></{tag}>");
@@ -115,7 +115,7 @@ fn axis(
         return None;
     };
     let mut joint = Joint::new(&name, kind, item.element.place.clone());
-    joint.axis = direction(gathered, item, element)?;
+    joint.axis = direction(contents, item, element)?;
     if tag == "axis" {
         // Drake: the inertia of the rotor before its gear.
         let gear = number(files, &item.element, "gear_ratio", 1.0);
@@ -145,11 +145,11 @@ fn axis(
 
 /// Direction of an axis in the frame of its joint.
 pub(super) fn direction(
-    gathered: &Gathered<'_>,
+    contents: &SdfContents<'_>,
     item: &JointItem,
     element: &Element,
 ) -> Option<Vector3<f64>> {
-    let (files, frames) = (gathered.files, &gathered.frames);
+    let (files, frames) = (contents.files, &contents.frames);
     let scope = &frames.scopes[item.scope];
     let given = element.child("xyz");
     let xyz = given.map_or(Some([0.0, 0.0, 1.0]), |xyz| several(files, xyz))?;
@@ -184,8 +184,8 @@ pub(super) fn direction(
 }
 
 /// Lead of a screw, m/rad; positive for a right-handed thread.
-fn lead(gathered: &Gathered<'_>, item: &JointItem) -> Option<f64> {
-    let files = gathered.files;
+fn lead(contents: &SdfContents<'_>, item: &JointItem) -> Option<f64> {
+    let files = contents.files;
     let read = |tag: &str| {
         item.element
             .child(tag)
@@ -218,12 +218,12 @@ pub(super) fn is_coupling(item: &JointItem) -> bool {
 }
 
 /// Reference body of a gearbox.
-pub(super) fn reference_body(gathered: &Gathered<'_>, item: &JointItem) -> Option<FrameName> {
+pub(super) fn reference_body(contents: &SdfContents<'_>, item: &JointItem) -> Option<FrameName> {
     let found = text(&item.element, "gearbox_reference_body");
     if found.is_none() {
         let message = format!("the gearbox `{}` has no reference body", item.name);
         let help = "write <gearbox_reference_body>: the link that carries both of its axes";
-        gathered.files.report(&item.element.place, message, help);
+        contents.files.report(&item.element.place, message, help);
     }
     let (text, place) = found?;
     Some(FrameName {

@@ -1,15 +1,15 @@
 //! Masses and inertias of links.
 
 use super::{
-    gather::{Gathered, Link},
+    contents::{Link, SdfContents},
     value::{attribute_flag, flag, number, pose, reference_frame},
 };
 use crate::model::{Inertia, Model};
 use nalgebra::{Matrix3, Point3};
 
 /// Inertia of a link, and whether the link has inertia whose value the file does not give.
-pub(super) fn inertia(gathered: &Gathered<'_>, link: &Link) -> (Option<Inertia>, bool) {
-    let files = gathered.files;
+pub(super) fn inertia(contents: &SdfContents<'_>, link: &Link) -> (Option<Inertia>, bool) {
+    let files = contents.files;
     let Some(inertial) = link.element.child("inertial") else {
         return (Some(usual()), false);
     };
@@ -56,9 +56,9 @@ fn usual() -> Inertia {
 }
 
 /// Adds notes on links with SDFormat's default inertia and on links of unknown mass.
-pub(super) fn notes(gathered: &Gathered<'_>, links: &[usize], model: &mut Model) {
+pub(super) fn notes(contents: &SdfContents<'_>, links: &[usize], model: &mut Model) {
     let listed = |is: &dyn Fn(&Link) -> bool| {
-        let own = links.iter().map(|&link| &gathered.links[link]);
+        let own = links.iter().map(|&link| &contents.links[link]);
         let names: Vec<String> = own
             .filter(|link| is(link))
             .map(|link| format!("`{}`", link.name))
@@ -75,10 +75,10 @@ pub(super) fn notes(gathered: &Gathered<'_>, links: &[usize], model: &mut Model)
 /// Checks that gravity acts on all links or on none.
 ///
 /// The error lists the links without gravity.
-pub(super) fn gravity(gathered: &Gathered<'_>, links: &[usize], model: &mut Model) {
-    let files = gathered.files;
+pub(super) fn gravity(contents: &SdfContents<'_>, links: &[usize], model: &mut Model) {
+    let files = contents.files;
     let is_light = |link: &&usize| {
-        let element = &gathered.links[**link].element;
+        let element = &contents.links[**link].element;
         element.child("gravity").is_some() && !flag(files, element, "gravity")
     };
     let light: Vec<usize> = links.iter().filter(is_light).copied().collect();
@@ -87,7 +87,7 @@ pub(super) fn gravity(gathered: &Gathered<'_>, links: &[usize], model: &mut Mode
         return;
     }
     for link in light {
-        let own = &gathered.links[link];
+        let own = &contents.links[link];
         let place = own.element.child("gravity").map(|element| &element.place);
         let message = format!(
             "gravity does not act on `{}` only, which is not supported",

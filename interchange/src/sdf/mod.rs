@@ -14,9 +14,9 @@
 //! Axes are expressed in the frame of their joint. All joints are at zero in the file's poses, so
 //! its loops are closed there.
 
+mod contents;
 mod couplings;
 mod frames;
-mod gather;
 mod include;
 mod joints;
 mod links;
@@ -32,7 +32,7 @@ use crate::{
     prune::keep_honoured,
     xml::{self, Element},
 };
-use gather::{Gathered, Owner};
+use contents::{Owner, SdfContents};
 use include::{Included, Source};
 use value::{flag, several};
 
@@ -67,7 +67,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     let name = models[robot].element.get("name").unwrap_or("robot");
     model.name = name.to_owned();
     let shown_without = format!("{name}::");
-    let mut gathered = Gathered::new(files, around.place.clone(), version, path, shown_without);
+    let mut contents = SdfContents::new(files, around.place.clone(), version, path, shown_without);
     for (at, found) in models.into_iter().enumerate() {
         let owner = match (at == robot, found.is_static) {
             (true, _) => Owner::Robot,
@@ -84,15 +84,15 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
                 "another model of the world",
             );
         }
-        gathered.model(&found.element, found.source, 0, owner)?;
+        contents.model(&found.element, found.source, 0, owner)?;
     }
-    gathered.parts(around, 0, Owner::Robot)?;
-    gathered.frames.resolve(files)?;
+    contents.parts(around, 0, Owner::Robot)?;
+    contents.frames.resolve(files)?;
     if !files.is_clean() {
         return None;
     }
-    let (edges, axes) = tree::build(&gathered, options, &mut model)?;
-    couplings::read(&gathered, &edges, &axes, &mut model);
+    let (edges, axes) = tree::build(&contents, options, &mut model)?;
+    couplings::read(&contents, &edges, &axes, &mut model);
     files.is_clean().then_some(model)
 }
 
@@ -138,7 +138,7 @@ fn version(files: &Files, root: &Element) -> Option<(u32, u32)> {
 }
 
 /// A model of the world or of the file.
-struct Found {
+struct FoundModel {
     element: Element,
     source: Source,
     is_static: bool,
@@ -152,7 +152,7 @@ fn models(
     around: &Element,
     version: (u32, u32),
     path: &std::path::Path,
-) -> Option<Vec<Found>> {
+) -> Option<Vec<FoundModel>> {
     let mut all = Vec::new();
     let mut elsewhere = Vec::new();
     for child in &around.children {
@@ -175,7 +175,7 @@ fn models(
             },
             _ => continue,
         };
-        all.push(Found {
+        all.push(FoundModel {
             is_static: flag(files, &element, "static"),
             element,
             source,
@@ -195,7 +195,12 @@ fn models(
 }
 
 /// Chooses the robot: the model given in the options, else the only one that moves.
-fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) -> Option<usize> {
+fn chosen(
+    files: &Files,
+    around: &Element,
+    models: &[FoundModel],
+    options: &Options,
+) -> Option<usize> {
     let name = |at: usize| models[at].element.get("name").unwrap_or_default();
     if let Some(wanted) = &options.model {
         let found = (0..models.len()).find(|&at| name(at) == wanted);
@@ -211,7 +216,7 @@ fn chosen(files: &Files, around: &Element, models: &[Found], options: &Options) 
         .collect();
     match (&moving[..], models.len()) {
         ([only], _) => Some(*only),
-        // `Gathered::model` reports the error for a static robot.
+        // `SdfContents::model` reports the error for a static robot.
         ([], 1) => Some(0),
         ([], _) => {
             let message = "there is no <model> that moves";

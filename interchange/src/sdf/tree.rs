@@ -4,8 +4,8 @@
 //! link. The choice of these joints does not change the model.
 
 use super::{
+    contents::{JointItem, Link, Owner, SdfContents},
     frames::FrameName,
-    gather::{Gathered, JointItem, Link, Owner},
     joints::{self, Axis},
     links,
 };
@@ -28,21 +28,21 @@ pub(super) struct Edge {
 
 /// Builds the bodies and joints of the model; `None` after an error.
 pub(super) fn build(
-    gathered: &Gathered<'_>,
+    contents: &SdfContents<'_>,
     options: &Options,
     model: &mut Model,
 ) -> Option<(Vec<Edge>, Axes)> {
-    let links = gathered.links.iter().enumerate();
+    let links = contents.links.iter().enumerate();
     let own: Vec<usize> = links
         .filter(|(_, link)| link.owner == Owner::Robot)
         .map(|(at, _)| at)
         .collect();
-    let edges = edges(gathered)?;
+    let edges = edges(contents)?;
     let mut tree = Tree {
-        gathered,
+        contents,
         edges: &edges,
-        at: vec![Vec::new(); gathered.links.len() + 1],
-        bodies: vec![None; gathered.links.len()],
+        at: vec![Vec::new(); contents.links.len() + 1],
+        bodies: vec![None; contents.links.len()],
         used: vec![false; edges.len()],
         cuts: Vec::new(),
         axes: Axes::new(),
@@ -64,9 +64,9 @@ pub(super) fn build(
         tree.close(cut, model);
     }
     let axes = tree.axes;
-    links::notes(gathered, &own, model);
-    links::gravity(gathered, &own, model);
-    gathered.files.is_clean().then_some((edges, axes))
+    links::notes(contents, &own, model);
+    links::gravity(contents, &own, model);
+    contents.files.is_clean().then_some((edges, axes))
 }
 
 /// Node number of a link; the ground is 0.
@@ -74,26 +74,26 @@ fn node(link: Option<usize>) -> usize {
     link.map_or(0, |link| link + 1)
 }
 
-fn edges(gathered: &Gathered<'_>) -> Option<Vec<Edge>> {
+fn edges(contents: &SdfContents<'_>) -> Option<Vec<Edge>> {
     let mut edges = Vec::new();
-    for (at, item) in gathered.joints.iter().enumerate() {
+    for (at, item) in contents.joints.iter().enumerate() {
         if item.owner == Owner::Stranger || joints::is_coupling(item) {
             continue;
         }
-        let ends = [end(gathered, &item.parent)?, end(gathered, &item.child)?];
+        let ends = [end(contents, &item.parent)?, end(contents, &item.child)?];
         if item.child.text == "world" {
             let message = format!("the child of the joint `{}` is the world", item.name);
             let help = "the world is fixed: write it as <parent>";
-            gathered.files.report(&item.child.place, message, help);
+            contents.files.report(&item.child.place, message, help);
             continue;
         }
         if ends[0] == ends[1] {
             let message = format!("the joint `{}` connects a body to itself", item.name);
             let help = "name two different links that are not both fixed in the world";
-            gathered.files.report(&item.element.place, message, help);
+            contents.files.report(&item.element.place, message, help);
             continue;
         }
-        let Some(axes) = joints::axes(gathered, item) else {
+        let Some(axes) = joints::axes(contents, item) else {
             continue;
         };
         edges.push(Edge {
@@ -102,24 +102,24 @@ fn edges(gathered: &Gathered<'_>) -> Option<Vec<Edge>> {
             axes,
         });
     }
-    gathered.files.is_clean().then_some(edges)
+    contents.files.is_clean().then_some(edges)
 }
 
 /// Link at a joint's end; `Some(None)` for the ground.
-pub(super) fn end(gathered: &Gathered<'_>, name: &FrameName) -> Option<Option<usize>> {
-    let frame = gathered.frames.find_or_report(gathered.files, name)?;
-    let link = gathered.frames.link(gathered.files, frame, name)?;
-    if link.is_some_and(|link| gathered.links[link].owner == Owner::Stranger) {
+pub(super) fn end(contents: &SdfContents<'_>, name: &FrameName) -> Option<Option<usize>> {
+    let frame = contents.frames.find_or_report(contents.files, name)?;
+    let link = contents.frames.link(contents.files, frame, name)?;
+    if link.is_some_and(|link| contents.links[link].owner == Owner::Stranger) {
         let message = format!("`{}` is of another model of the world", name.text);
         let help = "put both into one model: only one model of a world is read";
-        gathered.files.report(&name.place, message, help);
+        contents.files.report(&name.place, message, help);
         return None;
     }
     Some(link)
 }
 
 struct Tree<'t, 'f> {
-    gathered: &'t Gathered<'f>,
+    contents: &'t SdfContents<'f>,
     edges: &'t [Edge],
     /// Edges of the ground and of each link.
     at: Vec<Vec<usize>>,
@@ -133,7 +133,7 @@ struct Tree<'t, 'f> {
 
 impl Tree<'_, '_> {
     fn link(&self, link: usize) -> &Link {
-        &self.gathered.links[link]
+        &self.contents.links[link]
     }
 
     fn body(&self, link: Option<usize>) -> Option<usize> {
@@ -180,16 +180,16 @@ impl Tree<'_, '_> {
         } else {
             *ends
         };
-        let frames = &self.gathered.frames;
+        let frames = &self.contents.frames;
         let to = self.frame(carried);
         let mut placement = frames.relative_pose(to, self.frame(carrier));
-        let joint_in = frames.relative_pose(self.gathered.joints[*item].frame, to);
+        let joint_in = frames.relative_pose(self.contents.joints[*item].frame, to);
         let mut parent = self.body(carrier).unwrap_or(0);
         let mut order: Vec<&Axis> = axes.iter().collect();
         if is_against && axes.iter().all(|axis| axis.lead.is_none()) {
             order.reverse();
         }
-        let name = carried.map_or("", |link| self.gathered.links[link].name.as_str());
+        let name = carried.map_or("", |link| self.contents.links[link].name.as_str());
         for (at, axis) in order.iter().enumerate() {
             let mut joint = axis.joint.clone();
             let direction = joint_in.rotation * joint.axis;
@@ -233,7 +233,7 @@ impl Tree<'_, '_> {
 
     /// Copies the inertia and location of a link to its body.
     fn fill(&mut self, body: usize, link: usize, model: &mut Model) {
-        let (inertia, is_unknown) = links::inertia(self.gathered, self.link(link));
+        let (inertia, is_unknown) = links::inertia(self.contents, self.link(link));
         let own = &mut model.bodies[body];
         (own.inertia, own.has_unknown_inertia) = (inertia, is_unknown);
         own.place = Some(self.link(link).element.place.clone());
@@ -270,7 +270,7 @@ impl Tree<'_, '_> {
                 link.name
             );
             let help = "a floating base has no motor to identify it with: fix it with `--fix-base`, or with a joint of type fixed whose <parent> is world";
-            self.gathered
+            self.contents
                 .files
                 .report(&link.element.place, message, help);
             return None;
@@ -279,7 +279,7 @@ impl Tree<'_, '_> {
             "No joint leads from the world to `{}`; it is fixed here at its position.",
             link.name
         ));
-        let placement = self.gathered.frames.relative_pose(link.frame, 0);
+        let placement = self.contents.frames.relative_pose(link.frame, 0);
         let body = push(model, link.name.clone(), 0, placement, None);
         self.fill(body, base, model);
         Some(())
@@ -288,13 +288,13 @@ impl Tree<'_, '_> {
     /// Adds a loop-closing joint between two existing bodies.
     fn close(&mut self, edge: usize, model: &mut Model) {
         let [parent, child] = self.edges[edge].ends;
-        let item: &JointItem = &self.gathered.joints[self.edges[edge].item];
+        let item: &JointItem = &self.contents.joints[self.edges[edge].item];
         let (Some(from), Some(to)) = (self.body(parent), self.body(child)) else {
             return;
         };
         let (first, at) = if self.edges[edge].axes.is_empty() {
             let seen = self
-                .gathered
+                .contents
                 .frames
                 .relative_pose(self.frame(child), self.frame(parent));
             (from, seen)

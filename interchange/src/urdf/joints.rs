@@ -6,7 +6,7 @@ use crate::{
     couplings::{Coupling, Couplings},
     files::Files,
     geometry::exact,
-    model::{Joint, Kind, Model, Pose},
+    model::{Joint, JointType, Model, Pose},
     options::Options,
     xml::Element,
 };
@@ -144,9 +144,9 @@ fn base<'e>(
 fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -> Option<usize> {
     let element = edge.element;
     let kind = match element.get("type") {
-        Some("revolute" | "continuous") => Kind::Revolute,
-        Some("prismatic") => Kind::Prismatic,
-        Some("spherical" | "ball") => Kind::Ball,
+        Some("revolute" | "continuous") => JointType::Revolute,
+        Some("prismatic") => JointType::Prismatic,
+        Some("spherical" | "ball") => JointType::Ball,
         Some("fixed") => return None,
         Some("floating") if options.fix_base => {
             model.notes.push(format!(
@@ -172,7 +172,7 @@ fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -
         }
     };
     let mut joint = Joint::new(edge.name, kind, element.place.clone());
-    if kind != Kind::Ball {
+    if kind != JointType::Ball {
         joint.axis = axis(files, element)?;
     }
     if let Some(dynamics) = element.child("dynamics") {
@@ -182,7 +182,7 @@ fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -
     if let Some(limit) = element.child("limit") {
         let ends = ["lower", "upper"].map(|key| limit.number(files, key, 0.0));
         let is_limited = element.get("type") != Some("continuous") && ends[0] < ends[1];
-        joint.range = (is_limited && kind != Kind::Ball).then_some(ends);
+        joint.range = (is_limited && kind != JointType::Ball).then_some(ends);
         let speed = limit.number(files, "velocity", 0.0);
         joint.speed = (speed > 0.0).then_some(speed);
     }

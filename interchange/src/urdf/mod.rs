@@ -1,12 +1,12 @@
 //! Reader of URDF: a tree of links and joints, and loops in several notations.
 
-mod beside;
 mod gazebo;
 mod joints;
 mod loops;
 mod massless;
 mod others;
 mod transmissions;
+mod yaml;
 
 use crate::{
     account::{URDF, Use},
@@ -40,7 +40,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     transmissions::read(files, &root, &tree, &mut model);
     loops::read(files, &root, &tree, &mut model);
     gazebo::read(files, &root, &tree, &mut model);
-    beside::read(files, file, &mut tree, &mut model);
+    yaml::read(files, file, &mut tree, &mut model);
     others::report(files, file, &tree);
     massless::report(files, &shaped, &tree, &model);
     // After the YAML file, which may change joints to ball joints.

@@ -17,7 +17,7 @@ use overact_description::diagnostic::Span;
 use std::fmt::Write as _;
 
 /// A description, and the locations of its joints.
-pub(crate) struct Written {
+pub(crate) struct WrittenDescription {
     pub(crate) text: String,
     /// Byte ranges of the text and the joint that each belongs to.
     pub(crate) joints: Vec<(Span, usize)>,
@@ -31,7 +31,7 @@ pub(crate) fn toml(
     account: &Account,
     source: &str,
     options: &Options,
-) -> Written {
+) -> WrittenDescription {
     let model = network.model;
     let mut text = String::new();
     let name = options.name.as_deref().unwrap_or(&model.name);
@@ -69,7 +69,7 @@ pub(crate) fn toml(
     }
     experiment::toml(&mut text, designed);
     values(&mut text, plan, &mut joints);
-    Written { text, joints }
+    WrittenDescription { text, joints }
 }
 
 /// Lists contents of the file that are not used although they may change the model.

@@ -34,8 +34,8 @@ fn both_ends_and_the_part_of_the_time_are_told() {
     assert_eq!(one.fault, DataFault::Clipped);
     let clipped = |sample: &usize| !(-1.5..=1.0).contains(&swing(*sample as f64 / FREQUENCY));
     let part = (0..5000).filter(clipped).count() as f64 / 5000.0;
-    let told = format!("clipped at -1.5 and 1 for {:.1} % of", 100.0 * part);
-    assert!(one.message.contains(&told), "{told}: {}", one.message);
+    let output = format!("clipped at -1.5 and 1 for {:.1} % of", 100.0 * part);
+    assert!(one.message.contains(&output), "{output}: {}", one.message);
 }
 
 #[test]
@@ -79,8 +79,8 @@ fn of_several_rests_the_one_in_which_others_move_most_is_told() {
     };
     assert_eq!(stuck.fault, DataFault::Stuck);
     assert_eq!(stuck.actuator.as_deref(), Some("first"));
-    let told = "from t = 2.100 s on for 0.300 s, while other actuators move";
-    assert!(stuck.message.contains(told), "{}", stuck.message);
+    let output = "from t = 2.100 s on for 0.300 s, while other actuators move";
+    assert!(stuck.message.contains(output), "{}", stuck.message);
 }
 
 #[test]
@@ -99,9 +99,9 @@ fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
             panic!("one suspicion, not {found:?}");
         };
         assert_eq!(one.fault, DataFault::FrozenTorque);
-        let told = " from t = 1.99";
+        let output = " from t = 1.99";
         assert!(
-            one.message.contains(told) || one.message.contains(" from t = 2.00"),
+            one.message.contains(output) || one.message.contains(" from t = 2.00"),
             "{}",
             one.message
         );

@@ -101,13 +101,13 @@ fn motions_that_return_are_found_within_a_run_and_from_run_to_run() {
         ],
         None,
     );
-    let told = |samples, motion| Some(PeriodicMotion { samples, motion });
+    let output = |samples, motion| Some(PeriodicMotion { samples, motion });
     let expected = [
-        told(500, 0),
-        told(400, 1),
-        told(1700, 2),
-        told(500, 0),
-        told(1700, 2),
+        output(500, 0),
+        output(400, 1),
+        output(1700, 2),
+        output(500, 0),
+        output(1700, 2),
     ];
     assert_eq!(found, expected);
     assert_eq!(periodic_motions(&[once], None), [None]);

@@ -2,7 +2,7 @@
 
 pip install h5py mcap mcap-ros2-support numpy pyarrow rosbags scipy; python same_log.py FOLDER
 
-Without a folder the files beside this one are written anew.
+Without a folder the files next to this one are rewritten.
 """
 
 import os
@@ -72,7 +72,7 @@ def arrays(folder):
         run.create_dataset("dq", data=velocity, chunks=(50, 1), fletcher32=True)
         run.create_dataset("tau", data=effort.astype(">f8"))
         file["gain"] = 2.0
-        # What is refused when it is asked for, and may stand beside the others.
+        # Columns that are refused on request but may exist next to others.
         file["label"] = "a text"
         file["cube"] = numpy.zeros((2, 3, 4))
         file["table"] = numpy.zeros(COUNT, dtype=[("t", "f8"), ("q", "f8")])
@@ -132,7 +132,7 @@ def state(nanos, names, position, velocity, effort):
 
 
 def mcap_file(path, compression, chunk_size, several, count=COUNT):
-    """One topic with everything, or positions and efforts on topics of their own and others beside them."""
+    """One topic with everything, or positions and efforts on topics of their own and more topics."""
     _, position, velocity, effort = samples()
     with open(path, "wb") as output:
         writer = mcap_ros2.writer.Writer(output, compression=compression, chunk_size=chunk_size)

@@ -1,4 +1,4 @@
-"""Writes the Parquet files beside it: the same samples by several writers, packed by gzip and Zstandard.
+"""Writes the Parquet files next to it: the same samples by several writers, packed by gzip and Zstandard.
 
 pip install duckdb numpy polars pyarrow; python write.py
 """

@@ -132,7 +132,7 @@ fn sentence(words: &str) -> String {
 /// Verdicts of other stages, if they differ.
 fn others(verdict: &Verdict) -> String {
     let differs = |one: &&StageVerdict| one.stage != verdict.stage && one.grade != verdict.grade;
-    let told = |one: &StageVerdict| {
+    let stated = |one: &StageVerdict| {
         let which = if one.listed.is_empty() {
             String::new()
         } else {
@@ -145,17 +145,17 @@ fn others(verdict: &Verdict) -> String {
         );
         format!("<p class=\"note\">{}</p>", prose(&text))
     };
-    verdict.stages.iter().filter(differs).map(told).collect()
+    verdict.stages.iter().filter(differs).map(stated).collect()
 }
 
 /// Warnings that do not belong to a check.
 fn warnings(identification: &Identification) -> String {
     let failed = identification.checks.iter().filter(|check| !check.passed);
-    let told: Vec<&str> = failed.map(|check| check.words.as_str()).collect();
+    let stated: Vec<&str> = failed.map(|check| check.words.as_str()).collect();
     let rest: Vec<&String> = identification
         .warnings
         .iter()
-        .filter(|warning| !told.iter().any(|words| warning.contains(words)))
+        .filter(|warning| !stated.iter().any(|words| warning.contains(words)))
         .collect();
     if rest.is_empty() {
         return String::new();

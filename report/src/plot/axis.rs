@@ -11,7 +11,7 @@ const MOST_DECADES: f64 = 9.0;
 
 /// Type of scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ScaleKind {
     /// Linear.
     Linear,
     /// Logarithmic; values that are not positive are omitted.
@@ -24,7 +24,7 @@ pub(crate) struct Axis {
     /// Label with unit.
     pub(crate) label: String,
     /// Type of scale.
-    pub(crate) kind: Kind,
+    pub(crate) kind: ScaleKind,
     /// Values that the range must include.
     pub(crate) includes: Vec<f64>,
 }
@@ -34,7 +34,7 @@ impl Axis {
     pub(crate) fn linear(label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
-            kind: Kind::Linear,
+            kind: ScaleKind::Linear,
             includes: Vec::new(),
         }
     }
@@ -42,7 +42,7 @@ impl Axis {
     /// A logarithmic axis.
     pub(crate) fn logarithmic(label: impl Into<String>) -> Self {
         Self {
-            kind: Kind::Logarithmic,
+            kind: ScaleKind::Logarithmic,
             ..Self::linear(label)
         }
     }
@@ -67,7 +67,7 @@ impl Axis {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut least_step = 1.0;
         for value in values.chain(self.includes.iter().copied()) {
-            let fits = value.abs() < LARGEST && (self.kind == Kind::Linear || value > 0.0);
+            let fits = value.abs() < LARGEST && (self.kind == ScaleKind::Linear || value > 0.0);
             if fits {
                 (low, high) = (low.min(value), high.max(value));
                 // Integer data have no ticks between integers.
@@ -77,8 +77,8 @@ impl Axis {
             }
         }
         let (low, high, ticks) = match self.kind {
-            Kind::Linear => linear(low, high, count, least_step, tight),
-            Kind::Logarithmic => logarithmic(low, high, count),
+            ScaleKind::Linear => linear(low, high, count, least_step, tight),
+            ScaleKind::Logarithmic => logarithmic(low, high, count),
         };
         Scale {
             kind: self.kind,
@@ -94,7 +94,7 @@ impl Axis {
 /// Scale of an axis with range and ticks.
 #[derive(Debug, Clone)]
 pub(super) struct Scale {
-    kind: Kind,
+    kind: ScaleKind,
     low: f64,
     high: f64,
     from: f64,
@@ -108,11 +108,11 @@ impl Scale {
     pub(super) fn at(&self, value: f64) -> Option<f64> {
         let part = match self.kind {
             _ if value.abs() >= LARGEST => return None,
-            Kind::Linear => (value - self.low) / (self.high - self.low),
-            Kind::Logarithmic if value > 0.0 => {
+            ScaleKind::Linear => (value - self.low) / (self.high - self.low),
+            ScaleKind::Logarithmic if value > 0.0 => {
                 (value / self.low).ln().max(0.0) / (self.high / self.low).ln()
             }
-            Kind::Logarithmic => return None,
+            ScaleKind::Logarithmic => return None,
         };
         part.is_finite()
             .then_some(self.from + part * (self.to - self.from))

@@ -219,8 +219,8 @@ impl Chart {
     /// Extra height above the chart if title and unit do not fit in one line.
     fn above(&self) -> f64 {
         let length = |text: &str| text.chars().count();
-        let beside = length(&self.title) + length(&self.y.label);
-        if beside < TITLE_CHARACTERS || self.y.label.is_empty() {
+        let label_length = length(&self.title) + length(&self.y.label);
+        if label_length < TITLE_CHARACTERS || self.y.label.is_empty() {
             0.0
         } else {
             TITLE_LINE
@@ -313,7 +313,7 @@ fn rule_names(rules: &[&Rule], lines: &[Line], y: &Scale) -> String {
     let mut svg = String::new();
     for rule in rules {
         let Some(at) = y.at(rule.value) else { continue };
-        let first = stands_left(at, lines, y);
+        let first = is_named_left(at, lines, y);
         let places = [first, !first].map(|side| [(side, at - 4.0), (side, at + NAME)]);
         let is_free = |place: &(bool, f64)| {
             let apart =
@@ -340,7 +340,7 @@ fn rule_names(rules: &[&Rule], lines: &[Line], y: &Scale) -> String {
 }
 
 /// Whether lines are farther from a threshold at the left end than at the right end.
-fn stands_left(at: f64, lines: &[Line], y: &Scale) -> bool {
+fn is_named_left(at: f64, lines: &[Line], y: &Scale) -> bool {
     let nearest = |end: fn(&Line) -> Option<&(f64, f64)>| {
         let heights = lines.iter().filter_map(|line| y.at(end(line)?.1));
         heights
@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_thresholds_do_not_stand_on_each_other_nor_on_the_title() {
+    fn names_of_thresholds_overlap_neither_each_other_nor_the_title() {
         let mut chart = chart(vec![(0.0, 1.0), (1.0, 1000.0)]);
         let close = [999.0, 10.0, 10.5, 10.9, 11.0];
         chart.rules = close.map(|value| Rule::horizontal(value, "name")).to_vec();

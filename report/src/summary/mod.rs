@@ -243,18 +243,18 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
     let mut text = String::new();
     if verdict.grade == Grade::UseListed {
         let listed: Vec<&str> = verdict.listed.iter().map(String::as_str).collect();
-        let told = format!(
+        let sentence = format!(
             "Usable if the named fault is the cause: {}.",
             list(&listed, extent)
         );
-        paragraph(&mut text, "  ", &told);
+        paragraph(&mut text, "  ", &sentence);
         let estimate = of(identification, verdict.model, verdict.stage);
         let names = estimate.iter().flat_map(|one| &one.parameters);
         let names = names.map(|one| one.name.as_str());
         let others: Vec<&str> = names.filter(|name| !listed.contains(name)).collect();
         if !others.is_empty() {
-            let told = format!("Do not use: {}.", list(&others, extent));
-            paragraph(&mut text, "  ", &told);
+            let sentence = format!("Do not use: {}.", list(&others, extent));
+            paragraph(&mut text, "  ", &sentence);
         }
     }
     let found = failed_checks(&identification.checks, verdict.model, verdict.stage);
@@ -278,13 +278,13 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
 /// Warnings that belong to no check, and next steps.
 fn next(identification: &Identification, page: Option<&str>) -> String {
     let mut text = String::new();
-    let told: Vec<&str> = identification
+    let sentence: Vec<&str> = identification
         .checks
         .iter()
         .filter(|check| !check.passed)
         .map(|check| check.words.as_str())
         .collect();
-    let is_told = |warning: &&String| told.iter().any(|words| warning.contains(words));
+    let is_told = |warning: &&String| sentence.iter().any(|words| warning.contains(words));
     for warning in identification.warnings.iter().filter(|one| !is_told(one)) {
         text.push('\n');
         paragraph(&mut text, "", &format!("warning: {warning}"));

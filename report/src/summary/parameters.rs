@@ -119,8 +119,8 @@ impl Rows<'_> {
             } else {
                 String::new()
             };
-            let told = format!("--all lists {} more{known}.", left.len());
-            paragraph(&mut text, "", &told);
+            let sentence = format!("--all lists {} more{known}.", left.len());
+            paragraph(&mut text, "", &sentence);
         }
         text
     }

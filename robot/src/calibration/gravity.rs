@@ -83,7 +83,7 @@ impl Robot {
                 ..self.description().clone()
             },
             model,
-            doubts: Vec::new(),
+            warnings: Vec::new(),
         }))
     }
 

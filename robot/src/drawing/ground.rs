@@ -1,7 +1,7 @@
 //! Draws the fixed parts: plates, pivots and feet.
 
 use super::paper::{Sheet, flat, hull, n, polygon};
-use super::scene::{Part, Point, Scene};
+use super::scene::{DrawnPart, Point, Scene};
 use super::view::View;
 use overact_codegen::mechanism::Mechanism;
 use std::fmt::Write;
@@ -10,8 +10,8 @@ use std::fmt::Write;
 pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> String {
     // Chains that start on a moving body have no ground.
     let legs = scene.bases.iter().zip(&mechanism.legs).enumerate();
-    let standing = legs.filter(|(_, (_, leg))| leg.base_body.is_none());
-    let places: Vec<(usize, [f64; 2])> = standing
+    let grounded = legs.filter(|(_, (_, leg))| leg.base_body.is_none());
+    let places: Vec<(usize, [f64; 2])> = grounded
         .map(|(leg, (place, _))| (leg, flat(place, view, sheet)))
         .collect();
     if let Some(radius) = scene.sphere {
@@ -28,7 +28,7 @@ pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: 
     let rails = scene
         .parts
         .iter()
-        .any(|(_, part)| matches!(part, Part::Rail { .. }));
+        .any(|(_, part)| matches!(part, DrawnPart::Rail { .. }));
     if !view.planar && places.len() > 2 && !rails {
         text = polygon(
             "base",
@@ -39,7 +39,7 @@ pub(super) fn grounds(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: 
             let slides = scene
                 .parts
                 .iter()
-                .any(|(l, part)| l == leg && matches!(part, Part::Rail { .. }));
+                .any(|(l, part)| l == leg && matches!(part, DrawnPart::Rail { .. }));
             let serial = mechanism.is_tree() && !view.planar;
             match (slides, serial) {
                 (true, _) => {}

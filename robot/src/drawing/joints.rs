@@ -1,20 +1,20 @@
 //! Symbols of joints.
 
 use super::paper::{Sheet, flat, n};
-use super::scene::{Part, Point};
+use super::scene::{DrawnPart, Point};
 use super::view::View;
 
 /// Symbol of a joint; `carries`: whether another joint is at the middle of a slider.
 pub(super) fn symbol(
-    part: &Part,
+    part: &DrawnPart,
     carries: bool,
     colour: usize,
     view: &View,
     sheet: &Sheet,
 ) -> String {
     match part {
-        Part::Universal { at } => universal(flat(at, view, sheet)),
-        Part::Revolute { at, axis, actuated } => {
+        DrawnPart::Universal { at } => universal(flat(at, view, sheet)),
+        DrawnPart::Revolute { at, axis, actuated } => {
             let place = flat(at, view, sheet);
             if view.planar {
                 disc(place, colour, *actuated)
@@ -22,15 +22,15 @@ pub(super) fn symbol(
                 drum(place, view.project(axis), colour, *actuated)
             }
         }
-        Part::Slider { at, axis, actuated } => {
+        DrawnPart::Slider { at, axis, actuated } => {
             let direction = view.project(axis);
             block(flat(at, view, sheet), direction, colour, *actuated, carries)
         }
-        Part::Telescope { from, to, actuated } => {
+        DrawnPart::Telescope { from, to, actuated } => {
             telescope(from, to, colour, *actuated, view, sheet)
         }
-        Part::Ball { at } => ball(flat(at, view, sheet), colour),
-        Part::Link { .. } | Part::Stub { .. } | Part::Rail { .. } => String::new(),
+        DrawnPart::Ball { at } => ball(flat(at, view, sheet), colour),
+        DrawnPart::Link { .. } | DrawnPart::Stub { .. } | DrawnPart::Rail { .. } => String::new(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::joints::{ball, block, disc, universal};
 use super::paper::{Sheet, WIDTH, flat, n};
-use super::scene::{Part, Scene};
+use super::scene::{DrawnPart, Scene};
 use super::style::COLOURS;
 use super::view::View;
 use crate::counted::counted;
@@ -42,8 +42,8 @@ pub(super) fn names(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &S
             let moving = of_leg.joints.iter().filter(|j| !j.variable.is_empty());
             let symbols = scene.parts.iter().filter_map(|(l, part)| match part {
                 _ if *l != leg => None,
-                Part::Revolute { at, .. } | Part::Slider { at, .. } => Some(*at),
-                Part::Telescope { from, to, .. } => Some((from + to) / 2.0),
+                DrawnPart::Revolute { at, .. } | DrawnPart::Slider { at, .. } => Some(*at),
+                DrawnPart::Telescope { from, to, .. } => Some((from + to) / 2.0),
                 _ => None,
             });
             wanted.extend(
@@ -55,7 +55,7 @@ pub(super) fn names(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &S
     } else {
         for (index, (leg, base)) in mechanism.legs.iter().zip(&scene.bases).enumerate() {
             let slider = scene.parts.iter().find_map(|(l, part)| match part {
-                Part::Slider { at, .. } if *l == index => Some(*at),
+                DrawnPart::Slider { at, .. } if *l == index => Some(*at),
                 _ => None,
             });
             let at = slider.unwrap_or(*base);
@@ -138,17 +138,19 @@ fn obstacles(scene: &Scene, view: &View, sheet: &Sheet) -> Vec<[f64; 2]> {
     for (_, part) in &scene.parts {
         let on_paper = |p| flat(p, view, sheet);
         match part {
-            Part::Link { path, .. } | Part::Stub { path, .. } => {
+            DrawnPart::Link { path, .. } | DrawnPart::Stub { path, .. } => {
                 path.windows(2)
                     .for_each(|pair| line(on_paper(&pair[0]), on_paper(&pair[1])));
             }
-            Part::Rail { from, to } | Part::Telescope { from, to, .. } => {
+            DrawnPart::Rail { from, to } | DrawnPart::Telescope { from, to, .. } => {
                 line(on_paper(from), on_paper(to));
             }
-            Part::Revolute { at, actuated, .. } | Part::Slider { at, actuated, .. } => {
+            DrawnPart::Revolute { at, actuated, .. } | DrawnPart::Slider { at, actuated, .. } => {
                 around.push((on_paper(at), if *actuated { 15.0 } else { 8.0 }));
             }
-            Part::Universal { at } | Part::Ball { at } => around.push((on_paper(at), 8.0)),
+            DrawnPart::Universal { at } | DrawnPart::Ball { at } => {
+                around.push((on_paper(at), 8.0))
+            }
         }
     }
     for ([x, y], radius) in around {
@@ -282,16 +284,16 @@ enum Symbol {
 
 /// The symbols of a scene, each with its meaning.
 fn symbols(scene: &Scene) -> Vec<(Symbol, &'static str)> {
-    let has = |is: fn(&Part) -> bool| scene.parts.iter().any(|(_, part)| is(part));
+    let has = |is: fn(&DrawnPart) -> bool| scene.parts.iter().any(|(_, part)| is(part));
     let slide = |actuated| block([0.0, 0.0], [1.0, 0.0, 0.0], 7, actuated, false);
-    let turns = |part: &Part, driven: bool| matches!(part, Part::Revolute { actuated, .. } if *actuated == driven);
-    let slides = |part: &Part, driven: bool| {
+    let turns = |part: &DrawnPart, driven: bool| matches!(part, DrawnPart::Revolute { actuated, .. } if *actuated == driven);
+    let slides = |part: &DrawnPart, driven: bool| {
         matches!(
             part,
-            Part::Slider { actuated, .. } | Part::Telescope { actuated, .. } if *actuated == driven
+            DrawnPart::Slider { actuated, .. } | DrawnPart::Telescope { actuated, .. } if *actuated == driven
         )
     };
-    let any = |is: &dyn Fn(&Part, bool) -> bool, driven| {
+    let any = |is: &dyn Fn(&DrawnPart, bool) -> bool, driven| {
         scene.parts.iter().any(|(_, part)| is(part, driven))
     };
     let joints = [
@@ -307,13 +309,13 @@ fn symbols(scene: &Scene) -> Vec<(Symbol, &'static str)> {
             "passive revolute joint",
         ),
         (
-            has(|p| matches!(p, Part::Universal { .. })),
+            has(|p| matches!(p, DrawnPart::Universal { .. })),
             universal([0.0, 0.0]),
             "universal joint",
         ),
         (any(&slides, false), slide(false), "passive slide"),
         (
-            has(|p| matches!(p, Part::Ball { .. })),
+            has(|p| matches!(p, DrawnPart::Ball { .. })),
             ball([0.0, 0.0], 7),
             "point end",
         ),

@@ -1,6 +1,6 @@
 //! Scene of a mechanism at its home configuration.
 
-use super::scene::{NOTHING, Part, Point, Scene};
+use super::scene::{DrawnPart, NOTHING, Point, Scene};
 use super::{sphere, walk};
 use nalgebra::Vector3;
 use overact_codegen::mechanism::{BodyIndex, End, Mechanism, numeric::platform_frame};
@@ -45,7 +45,7 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
             scene.parts.extend(branch(mechanism, leg.end_body, at));
             scene.attachments.push(at);
             if matches!(end, End::Point { .. }) {
-                scene.parts.push((index, Part::Ball { at }));
+                scene.parts.push((index, DrawnPart::Ball { at }));
             }
         }
     }
@@ -53,14 +53,14 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     scene
 }
 
-/// Part of a body between its joint and the base of a chain, with the number of its leg.
-fn branch(mechanism: &Mechanism, body: Option<BodyIndex>, to: Point) -> Option<(usize, Part)> {
+/// Segment of a body between its joint and the base of a chain, with the number of its leg.
+fn branch(mechanism: &Mechanism, body: Option<BodyIndex>, to: Point) -> Option<(usize, DrawnPart)> {
     let BodyIndex { leg, joint } = body?;
     let home = &mechanism.home;
     let frame = mechanism.body_frame(BodyIndex { leg, joint }, &home.pose, &home.joints);
     let from = frame.translation.vector;
     let path = vec![from, to];
-    ((to - from).norm() > NOTHING).then_some((leg, Part::Link { body: joint, path }))
+    ((to - from).norm() > NOTHING).then_some((leg, DrawnPart::Link { body: joint, path }))
 }
 
 /// Separates coincident sliders of several legs.
@@ -69,7 +69,7 @@ fn part_sliders(scene: &mut Scene, pixel: f64) {
         .parts
         .iter()
         .filter_map(|(leg, part)| match part {
-            Part::Slider { at, axis, .. } => Some((*leg, *at, *axis)),
+            DrawnPart::Slider { at, axis, .. } => Some((*leg, *at, *axis)),
             _ => None,
         })
         .collect();
@@ -93,14 +93,14 @@ fn part_sliders(scene: &mut Scene, pixel: f64) {
 fn shift(scene: &mut Scene, leg: usize, by: &Point) {
     for (_, part) in scene.parts.iter_mut().filter(|(l, _)| *l == leg) {
         match part {
-            Part::Link { path, .. } | Part::Stub { path, .. } => {
+            DrawnPart::Link { path, .. } | DrawnPart::Stub { path, .. } => {
                 path.iter_mut().for_each(|p| *p += by);
             }
-            Part::Revolute { at, .. }
-            | Part::Slider { at, .. }
-            | Part::Universal { at }
-            | Part::Ball { at } => *at += by,
-            Part::Rail { from, to } | Part::Telescope { from, to, .. } => {
+            DrawnPart::Revolute { at, .. }
+            | DrawnPart::Slider { at, .. }
+            | DrawnPart::Universal { at }
+            | DrawnPart::Ball { at } => *at += by,
+            DrawnPart::Rail { from, to } | DrawnPart::Telescope { from, to, .. } => {
                 *from += by;
                 *to += by;
             }

@@ -4,14 +4,14 @@ use super::ground::grounds;
 use super::joints;
 use super::labels;
 use super::paper::{Sheet, WIDTH, flat, hull, n, path, polygon};
-use super::scene::{NOTHING, Part, Point, Scene};
+use super::scene::{DrawnPart, NOTHING, Point, Scene};
 use super::style::{COLOURS, css};
 use super::view::View;
 use overact_codegen::mechanism::Mechanism;
 use std::collections::BTreeMap;
 
 /// SVG elements with their depth.
-struct Piece {
+struct SvgElement {
     near: f64,
     text: String,
 }
@@ -45,8 +45,8 @@ pub(super) fn document(mechanism: &Mechanism, scene: &Scene, view: &View, sheet:
 /// All elements except text.
 ///
 /// Planar robots have a fixed order: grounds and rails, the platform, bodies, joints.
-fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> Vec<Piece> {
-    let mut pieces = vec![Piece {
+fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> Vec<SvgElement> {
+    let mut pieces = vec![SvgElement {
         near: f64::from(-1_000_000_000),
         text: grounds(mechanism, scene, view, sheet),
     }];
@@ -61,11 +61,11 @@ fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> V
         let colour = leg % COLOURS;
         let path = |points: &[Point]| path(points, view, sheet);
         let text = match part {
-            Part::Link { body, path: points } => {
+            DrawnPart::Link { body, path: points } => {
                 let shade = shades.get(&(*leg, *body)).copied().unwrap_or(0);
                 link(&path(points), colour, shade, view.planar)
             }
-            Part::Stub { body, path: points } => {
+            DrawnPart::Stub { body, path: points } => {
                 let shade = shades.get(&(*leg, *body)).copied().unwrap_or(0);
                 let class = ["a", "b"][shade];
                 format!(
@@ -73,7 +73,7 @@ fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> V
                     path(points)
                 )
             }
-            Part::Rail { from, to } => format!(
+            DrawnPart::Rail { from, to } => format!(
                 "<path class=\"ov-rail\" d=\"{}\" stroke-width=\"5\" stroke-linecap=\"round\"/>\n",
                 path(&[*from, *to])
             ),
@@ -82,37 +82,40 @@ fn pieces(mechanism: &Mechanism, scene: &Scene, view: &View, sheet: &Sheet) -> V
                 joints::symbol(joint, carries, colour, view, sheet)
             }
         };
-        pieces.push(Piece { near, text });
+        pieces.push(SvgElement { near, text });
     }
     pieces.push(platform(scene, view, sheet));
     pieces
 }
 
 /// Whether a slider carries another joint of its leg.
-fn carries(scene: &Scene, leg: usize, slider: &Part) -> bool {
+fn carries(scene: &Scene, leg: usize, slider: &DrawnPart) -> bool {
     let Some(at) = slider.place() else {
         return false;
     };
     scene.parts.iter().any(|(l, part)| {
-        let other = matches!(part, Part::Revolute { .. } | Part::Universal { .. });
+        let other = matches!(
+            part,
+            DrawnPart::Revolute { .. } | DrawnPart::Universal { .. }
+        );
         let here = part.place().is_some_and(|p| (p - at).norm() < NOTHING);
         *l == leg && other && here
     })
 }
 
 /// Depth of a part, and an offset that draws joints before the bodies that they connect.
-fn nearness(part: &Part, view: &View, sheet: &Sheet) -> (f64, f64) {
+fn nearness(part: &DrawnPart, view: &View, sheet: &Sheet) -> (f64, f64) {
     let at = |p: &Point| sheet.place(view, p)[2];
     match part {
-        Part::Rail { from, to } => ((at(from) + at(to)) / 2.0, -20.0),
-        Part::Link { path, .. } | Part::Stub { path, .. } => {
+        DrawnPart::Rail { from, to } => ((at(from) + at(to)) / 2.0, -20.0),
+        DrawnPart::Link { path, .. } | DrawnPart::Stub { path, .. } => {
             let sum: f64 = path.iter().map(&at).sum();
             (sum / path.len().max(1) as f64, 5.0)
         }
-        Part::Telescope { from, to, .. } => ((at(from) + at(to)) / 2.0, 8.0),
-        Part::Slider { at: p, .. } => (at(p), 15.0),
-        Part::Revolute { at: p, .. } | Part::Universal { at: p } => (at(p), 20.0),
-        Part::Ball { at: p } => (at(p), 25.0),
+        DrawnPart::Telescope { from, to, .. } => ((at(from) + at(to)) / 2.0, 8.0),
+        DrawnPart::Slider { at: p, .. } => (at(p), 15.0),
+        DrawnPart::Revolute { at: p, .. } | DrawnPart::Universal { at: p } => (at(p), 20.0),
+        DrawnPart::Ball { at: p } => (at(p), 25.0),
     }
 }
 
@@ -127,10 +130,10 @@ fn before_its_bodies(
 ) -> f64 {
     let bodies = scene.parts.iter().filter(|(l, part)| {
         let passes = match part {
-            Part::Link { path, .. } | Part::Stub { path, .. } => {
+            DrawnPart::Link { path, .. } | DrawnPart::Stub { path, .. } => {
                 path.windows(2).any(|p| between(&p[0], &p[1], joint))
             }
-            Part::Telescope { from, to, .. } => between(from, to, joint),
+            DrawnPart::Telescope { from, to, .. } => between(from, to, joint),
             _ => false,
         };
         *l == leg && passes
@@ -152,7 +155,7 @@ fn between(a: &Point, b: &Point, point: &Point) -> bool {
 fn shades(scene: &Scene) -> BTreeMap<(usize, usize), usize> {
     let mut shades = BTreeMap::new();
     for (leg, part) in &scene.parts {
-        if let Part::Link { body, .. } | Part::Stub { body, .. } = part {
+        if let DrawnPart::Link { body, .. } | DrawnPart::Stub { body, .. } = part {
             shades.insert((*leg, *body), 0);
         }
     }
@@ -184,9 +187,9 @@ fn link(path: &str, colour: usize, shade: usize, planar: bool) -> String {
 }
 
 /// Platform: a plate through the attachments, a bar between two, or a ring around one.
-fn platform(scene: &Scene, view: &View, sheet: &Sheet) -> Piece {
+fn platform(scene: &Scene, view: &View, sheet: &Sheet) -> SvgElement {
     let Some(frame) = &scene.platform else {
-        return Piece {
+        return SvgElement {
             near: 0.0,
             text: String::new(),
         };
@@ -216,5 +219,5 @@ fn platform(scene: &Scene, view: &View, sheet: &Sheet) -> Piece {
         _ => polygon("plate", &outline),
     };
     let near = if view.planar { 6.0 } else { mean };
-    Piece { near, text }
+    SvgElement { near, text }
 }

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Vector3};
 pub(super) type Point = Vector3<f64>;
 
 /// Part of a leg: a body segment, a joint or a rail.
-pub(super) enum Part {
+pub(super) enum DrawnPart {
     /// Segment of the body after joint number `body` of its leg.
     Link { body: usize, path: Vec<Point> },
     /// Body whose length the description does not give.
@@ -37,7 +37,7 @@ pub(super) enum Part {
     Ball { at: Point },
 }
 
-impl Part {
+impl DrawnPart {
     /// Transforms the part to the frame of a body.
     pub(super) fn carry(&mut self, frame: &Isometry3<f64>) {
         let point = |at: &mut Point| *at = (frame * nalgebra::Point3::from(*at)).coords;
@@ -70,7 +70,7 @@ impl Part {
 /// Scene of a robot.
 pub(super) struct Scene {
     /// Parts with the number of their leg.
-    pub(super) parts: Vec<(usize, Part)>,
+    pub(super) parts: Vec<(usize, DrawnPart)>,
     /// Base of each leg, which is also the place of its name.
     pub(super) bases: Vec<Point>,
     /// Attachment points of the legs on the platform.
@@ -92,12 +92,12 @@ impl Scene {
         points.extend(self.platform.iter().map(|frame| frame.translation.vector));
         for (_, part) in &self.parts {
             match part {
-                Part::Link { path, .. } | Part::Stub { path, .. } => points.extend(path),
-                Part::Revolute { at, .. }
-                | Part::Slider { at, .. }
-                | Part::Universal { at }
-                | Part::Ball { at } => points.push(*at),
-                Part::Rail { from, to } | Part::Telescope { from, to, .. } => {
+                DrawnPart::Link { path, .. } | DrawnPart::Stub { path, .. } => points.extend(path),
+                DrawnPart::Revolute { at, .. }
+                | DrawnPart::Slider { at, .. }
+                | DrawnPart::Universal { at }
+                | DrawnPart::Ball { at } => points.push(*at),
+                DrawnPart::Rail { from, to } | DrawnPart::Telescope { from, to, .. } => {
                     points.extend([from, to]);
                 }
             }
@@ -107,8 +107,8 @@ impl Scene {
 
     /// Points that the view should separate: joints, and the middle of telescopes.
     pub(super) fn landmarks(&self) -> Vec<Point> {
-        let landmark = |(_, part): &(usize, Part)| match part {
-            Part::Telescope { from, to, .. } => Some((from + to) / 2.0),
+        let landmark = |(_, part): &(usize, DrawnPart)| match part {
+            DrawnPart::Telescope { from, to, .. } => Some((from + to) / 2.0),
             part => part.place().copied(),
         };
         self.parts.iter().filter_map(landmark).collect()

@@ -3,7 +3,7 @@
 //! Their descriptions have angles and no lengths. Joints are drawn where their axes meet the
 //! sphere, bodies as arcs of great circles.
 
-use super::scene::{NOTHING, Part, Point, Scene};
+use super::scene::{DrawnPart, NOTHING, Point, Scene};
 use nalgebra::{Isometry3, Vector3};
 use overact_codegen::mechanism::{JointKind, Leg, Mechanism};
 
@@ -51,7 +51,7 @@ pub(super) fn scene(mechanism: &Mechanism, platform: Option<Isometry3<f64>>) -> 
             if let Some((body, last)) = before {
                 let mut path = arc(&last, &axis, self::radius(body));
                 path.push(axis * radius);
-                scene.parts.push((index, Part::Link { body, path }));
+                scene.parts.push((index, DrawnPart::Link { body, path }));
             }
             if before.is_none() {
                 scene.bases.push(axis * radius);
@@ -60,7 +60,7 @@ pub(super) fn scene(mechanism: &Mechanism, platform: Option<Isometry3<f64>>) -> 
             let actuated = joint.actuated;
             scene
                 .parts
-                .push((index, Part::Revolute { at, axis, actuated }));
+                .push((index, DrawnPart::Revolute { at, axis, actuated }));
             before = Some((number, axis));
         }
         if let Some((_, last)) = before {

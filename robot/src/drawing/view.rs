@@ -1,6 +1,6 @@
 //! View direction of a drawing.
 
-use super::scene::{Part, Point, Scene};
+use super::scene::{DrawnPart, Point, Scene};
 use nalgebra::{Rotation3, Unit, Vector3};
 use overact_codegen::mechanism::{Mechanism, Motion};
 
@@ -158,7 +158,7 @@ fn plane(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
     };
     let motion = mechanism.platform.as_ref().map(|p| p.motion);
     let turning = scene.parts.iter().find_map(|(_, part)| match part {
-        Part::Revolute { axis, .. } => Some(*axis),
+        DrawnPart::Revolute { axis, .. } => Some(*axis),
         _ => None,
     });
     let normal = match motion {
@@ -173,9 +173,9 @@ fn plane(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
     let flat = |p: &Point| normal.dot(p).abs() < 1e-6;
     let turns = |a: &Point| a.cross(&normal).norm() < 1e-6;
     let lies = scene.parts.iter().all(|(_, part)| match part {
-        Part::Revolute { axis, .. } => turns(axis),
-        Part::Rail { from, to } | Part::Telescope { from, to, .. } => flat(&(to - from)),
-        Part::Slider { axis, .. } => flat(axis),
+        DrawnPart::Revolute { axis, .. } => turns(axis),
+        DrawnPart::Rail { from, to } | DrawnPart::Telescope { from, to, .. } => flat(&(to - from)),
+        DrawnPart::Slider { axis, .. } => flat(axis),
         _ => true,
     });
     let first = scene.bases.first().copied().unwrap_or_default();
@@ -190,7 +190,7 @@ fn plane(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
 /// there is one.
 fn straight(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
     let slide = scene.parts.iter().find_map(|(_, part)| match part {
-        Part::Slider { axis, .. } => Some(*axis),
+        DrawnPart::Slider { axis, .. } => Some(*axis),
         _ => None,
     })?;
     let fall = gravity(mechanism);

@@ -1,11 +1,16 @@
 //! Converts a leg to parts of the scene, joint by joint.
 
-use super::scene::{NOTHING, Part, Point};
+use super::scene::{DrawnPart, NOTHING, Point};
 use nalgebra::{Isometry3, Vector3};
 use overact_codegen::mechanism::{Joint, JointKind, Leg, placement_isometry};
 
 /// Parts and base of a leg. `pixel` is the length of one pixel, m; `tree`: a serial robot.
-pub(super) fn parts(leg: &Leg, positions: &[f64], pixel: f64, tree: bool) -> (Vec<Part>, Point) {
+pub(super) fn parts(
+    leg: &Leg,
+    positions: &[f64],
+    pixel: f64,
+    tree: bool,
+) -> (Vec<DrawnPart>, Point) {
     let mut walk = Walk::new(leg, positions, pixel, tree);
     walk.run();
     walk.join_universals();
@@ -20,7 +25,7 @@ struct Walk<'m> {
     pixel: f64,
     /// Whether the leg is a serial robot of its own.
     tree: bool,
-    parts: Vec<Part>,
+    parts: Vec<DrawnPart>,
     base: Point,
 }
 
@@ -102,7 +107,7 @@ impl<'m> Walk<'m> {
     fn link(&mut self, body: usize, mut path: Vec<Point>) {
         path.dedup_by(|a, b| (*a - *b).norm() < NOTHING);
         if path.len() > 1 {
-            self.parts.push(Part::Link { body, path });
+            self.parts.push(DrawnPart::Link { body, path });
         }
     }
 
@@ -141,7 +146,7 @@ impl<'m> Walk<'m> {
             self.base = at;
         }
         let actuated = self.leg.joints[index].actuated;
-        self.parts.push(Part::Revolute { at, axis, actuated });
+        self.parts.push(DrawnPart::Revolute { at, axis, actuated });
     }
 
     fn prismatic(&mut self, index: usize, foot: Point) {
@@ -149,7 +154,7 @@ impl<'m> Walk<'m> {
         let (axis, at, actuated) = (self.axis(index), self.origin(index), joint.actuated);
         let moving = joint.antecedent.is_some();
         if moving && (at - foot).norm() > NOTHING {
-            self.parts.push(Part::Telescope {
+            self.parts.push(DrawnPart::Telescope {
                 from: foot,
                 to: at,
                 actuated,
@@ -163,8 +168,8 @@ impl<'m> Walk<'m> {
             axis
         };
         let (from, to) = (foot - along * (40.0 * self.pixel), at + along * beyond);
-        self.parts.push(Part::Rail { from, to });
-        self.parts.push(Part::Slider { at, axis, actuated });
+        self.parts.push(DrawnPart::Rail { from, to });
+        self.parts.push(DrawnPart::Slider { at, axis, actuated });
     }
 
     /// Adds a body that no other joint continues.
@@ -182,14 +187,14 @@ impl<'m> Walk<'m> {
             [(of, factor)] if *of != index && (factor.value() - 1.0).abs() < NOTHING => Some(*of),
             _ => None,
         };
-        let beside = twin.filter(|t| joints[*t].antecedent == joints[index].antecedent);
-        if let Some((bar, next)) = beside.and_then(|bar| Some((bar, children(bar).next()?))) {
+        let parallel_bar = twin.filter(|t| joints[*t].antecedent == joints[index].antecedent);
+        if let Some((bar, next)) = parallel_bar.and_then(|bar| Some((bar, children(bar).next()?))) {
             let (start, far) = (self.origin(index), self.foot(next));
             let end = start + far - self.origin(bar);
             self.link(index, vec![start, end]);
             self.link(next, vec![end, far]);
             let axis = self.axis(index);
-            self.parts.push(Part::Revolute {
+            self.parts.push(DrawnPart::Revolute {
                 at: end,
                 axis,
                 actuated: false,
@@ -201,8 +206,8 @@ impl<'m> Walk<'m> {
 
     /// Merges two coincident passive revolute joints into a universal joint.
     fn join_universals(&mut self) {
-        let passive = |part: &Part| match part {
-            Part::Revolute {
+        let passive = |part: &DrawnPart| match part {
+            DrawnPart::Revolute {
                 at,
                 actuated: false,
                 ..
@@ -217,7 +222,7 @@ impl<'m> Walk<'m> {
                 ((a - b).norm() < NOTHING).then_some((a, i))
             });
             if let Some((at, other)) = pair.filter(|_| !self.tree) {
-                self.parts[index] = Part::Universal { at };
+                self.parts[index] = DrawnPart::Universal { at };
                 self.parts.remove(other);
             }
             index += 1;
@@ -236,7 +241,7 @@ impl<'m> Walk<'m> {
         };
         let from = self.origin(index);
         let to = from + direction * (95.0 * self.pixel);
-        self.parts.push(Part::Stub {
+        self.parts.push(DrawnPart::Stub {
             body: index,
             path: vec![from, to],
         });

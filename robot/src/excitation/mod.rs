@@ -136,7 +136,7 @@ impl Robot {
         text::description(self, "")?;
         let task = Task::new(self, effort, start)?;
         let chains = task.search(self, effort, start, progress)?;
-        Ok(task.told(self, chains))
+        Ok(task.excitation(self, chains))
     }
 
     /// Description in which the found runs replace the training runs; validation runs stay.
@@ -258,7 +258,7 @@ impl<'a> Task<'a> {
     ) -> Result<Chains, Error> {
         let mut search = self.of(effort);
         let mut chains = Chains::default();
-        let (mut told_random, mut told) = (Vec::new(), Vec::new());
+        let (mut random_information, mut run_information) = (Vec::new(), Vec::new());
         for (index, frame) in self.frames.iter().enumerate() {
             let part = 1.0 / self.frames.len() as f64;
             let tell = |generation: usize| {
@@ -275,14 +275,15 @@ impl<'a> Task<'a> {
             let all = search.random(&series, &mut random);
             chains.hurried |= search.late().0;
             let best = search
-                .best(&all, &told_random)
-                .zip(search.best(&all, &told));
+                .best(&all, &random_information)
+                .zip(search.best(&all, &run_information));
             let (of_random, start) = best.ok_or_else(|| self.no_motion(robot))?;
-            let evolved = search.evolved(&series, start, &told, &mut random, &tell);
+            let evolved = search.evolved(&series, start, &run_information, &mut random, &tell);
             let settled = search.settled(&series, &evolved);
             // A series may keep the limits at the samples while no scaled version keeps them
             // between samples; try another then.
-            let settled = settled.or_else(|| search.settled_random(&series, &told, &mut random));
+            let settled =
+                settled.or_else(|| search.settled_random(&series, &run_information, &mut random));
             let found: Candidate = settled.ok_or_else(|| self.no_motion(robot))?;
             let both = chains.hundred.iter().zip(&all);
             chains.hundred = match index {
@@ -291,8 +292,8 @@ impl<'a> Task<'a> {
                     .map(|(sum, one)| added(sum, &one.information))
                     .collect(),
             };
-            told_random = added(&told_random, &of_random.information);
-            told = added(&told, &found.information);
+            random_information = added(&random_information, &of_random.information);
+            run_information = added(&run_information, &found.information);
             chains.random.push(of_random.trajectory.clone());
             chains.found.push(found.trajectory);
         }
@@ -322,7 +323,7 @@ impl<'a> Task<'a> {
     }
 
     /// Judges all runs at equal duration.
-    fn told(&self, robot: &Robot, chains: Chains) -> Excitation {
+    fn excitation(&self, robot: &Robot, chains: Chains) -> Excitation {
         let names = self.frames.iter().map(|frame| frame.name.clone()).collect();
         let with = |all: Vec<Trajectory>| self.frames.iter().cloned().zip(all).collect();
         let mut assumed = self.assumed.clone();
@@ -332,7 +333,9 @@ impl<'a> Task<'a> {
             assumed.push(words);
         }
         let hundred = chains.hundred.iter();
-        let hundred = hundred.map(|told| self.question.judge(told)).collect();
+        let hundred = hundred
+            .map(|run_information| self.question.judge(run_information))
+            .collect();
         let (random, found): (Vec<_>, Vec<_>) = (with(chains.random), with(chains.found));
         let duration =
             |runs: &[(FourierRun, Trajectory)]| runs.iter().map(|(f, _)| f.duration).sum::<f64>();

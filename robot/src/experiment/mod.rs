@@ -168,7 +168,7 @@ impl VirtualExperiment<'_> {
         }
     }
 
-    /// Checks that training runs remain besides those `held_out`.
+    /// Checks that training runs remain apart from those `held_out`.
     pub(crate) fn check_some_left(&self, held_out: &[String]) -> Result<(), Error> {
         let mut runs = self.plan.runs.iter();
         if runs.any(|run| !held_out.contains(&run.name)) {

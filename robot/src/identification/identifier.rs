@@ -283,14 +283,14 @@ impl<'a> Identifier<'a> {
         self.robot.check_prior()?;
         let settings = self.with_defaults();
         let essential = self.essential();
-        let beside = match settings.instruments {
+        let instrumented = match settings.instruments {
             Instruments::Simulated => Some(self.robot.simulated(self.runs, &settings)?),
             _ => None,
         };
         let variants = self.robot.variants();
         let scales = self.robot.scales();
         let dataset = Dataset {
-            runs: beside.as_deref().unwrap_or(self.runs),
+            runs: instrumented.as_deref().unwrap_or(self.runs),
             variants: &variants.lent(),
             scales: Some(&scales),
             ..self.dataset()

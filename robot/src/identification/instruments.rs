@@ -8,8 +8,8 @@ use crate::{configuration::prior::of_load, error::Error, robot::Robot};
 use overact::{Info, Model};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    Estimate, Instruments, Log, Prepared, Projection, Settings, estimate_projection, is_carried,
-    prepare,
+    Estimate, Instruments, Log, PreparedSystem, Projection, Settings, estimate_projection,
+    is_carried, prepare,
 };
 use overact_simulation::{
     Cascade, Drives, Experiment, Record, Recorded, follow_recorded, simulate,
@@ -58,15 +58,15 @@ pub fn beside_simulated(
             records.extend(simulate(model, &plan, &|_, _| ()).map_err(failed)?);
         }
     }
-    let mut beside = Vec::new();
+    let mut instrumented = Vec::new();
     for log in runs {
         let own = records.iter().find(|record| record.name == log.name());
-        beside.push(match own {
+        instrumented.push(match own {
             Some(record) => log.with_instruments(as_log(record)?),
             None => log,
         });
     }
-    Ok(beside)
+    Ok(instrumented)
 }
 
 impl Robot {
@@ -106,7 +106,7 @@ fn along_references(
     let whole = estimated(model, runs, settings)?;
     let robot = model.info().sizes.parameters;
     let loaded = runs.iter().any(Log::payload);
-    let mut beside = Vec::new();
+    let mut instrumented = Vec::new();
     for log in runs {
         let reference = log.instruments().map(Log::load).transpose()?;
         let (positions, _) = reference.unwrap_or_default();
@@ -125,9 +125,9 @@ fn along_references(
             positions: &positions,
         };
         let record = follow_recorded(model, cascade, &parameters, recorded).map_err(failed)?;
-        beside.push(log.clone().with_instruments(as_log(&record)?));
+        instrumented.push(log.clone().with_instruments(as_log(&record)?));
     }
-    Ok(beside)
+    Ok(instrumented)
 }
 
 /// Standard parameters equivalent to the base estimate by least squares, the payload's last.
@@ -157,7 +157,7 @@ fn estimated<'a>(
 /// Assigns each base parameter's value to its kept parameter; regrouped ones are zero.
 fn standard(
     info: &Info<'_>,
-    prepared: &Prepared,
+    prepared: &PreparedSystem,
     estimate: &Estimate,
     load: Option<&str>,
 ) -> Vec<f64> {

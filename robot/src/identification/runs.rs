@@ -51,7 +51,7 @@ impl Robot {
         if errors.is_empty()
             && let Some(mapping) = self.references(&mapping)
         {
-            return beside_references(logs, files, &mapping);
+            return with_references(logs, files, &mapping);
         }
         if errors.is_empty() {
             Ok(logs)
@@ -169,18 +169,18 @@ impl Robot {
 }
 
 /// Adds the recorded references to runs.
-fn beside_references(
+fn with_references(
     logs: Vec<Log>,
     files: &[(&Path, bool)],
     mapping: &Mapping,
 ) -> Result<Vec<Log>, Error> {
     let references = overact_logs::read_all(files, mapping, &|_| ());
     let pairs = logs.into_iter().zip(references);
-    let beside = |(log, reference): (Log, Result<Log, _>)| {
+    let with_reference = |(log, reference): (Log, Result<Log, _>)| {
         let reference = reference.map_err(Error::from)?;
         Ok(log.with_instruments(reference))
     };
-    pairs.map(beside).collect()
+    pairs.map(with_reference).collect()
 }
 
 impl VirtualExperiment<'_> {

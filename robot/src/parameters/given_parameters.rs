@@ -25,7 +25,7 @@ pub struct GivenParameters {
     /// Values by name (SI units).
     pub values: BTreeMap<String, f64>,
     /// Sentences on values that no body or joint can have, with file and line.
-    pub doubts: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 /// Reads a robot's standard parameters from the `[parameters]` table of a TOML file.
@@ -92,7 +92,7 @@ impl CompiledFile {
             ..*request
         };
         let mut robot = Self::new(source, &request)?;
-        robot.doubts = given.doubts;
+        robot.warnings = given.warnings;
         Ok(robot)
     }
 }
@@ -103,10 +103,10 @@ fn given(path: &Path, description: &Description) -> Result<(Source, GivenParamet
     let source = read_or(path, origin)?;
     match parse_parameters(&source, description) {
         Ok(values) => {
-            let doubts = physical_warnings(&source, &values);
+            let warnings = physical_warnings(&source, &values);
             let pairs = values.into_iter().map(|one| (one.name.value, one.value));
             let values = pairs.collect();
-            Ok((source, GivenParameters { values, doubts }))
+            Ok((source, GivenParameters { values, warnings }))
         }
         Err(diagnostics) => Err(Error::Description {
             source,

@@ -5,7 +5,7 @@
 #![allow(
     dead_code,
     unreachable_pub,
-    reason = "each test, of the crate and beside it, uses a part of the robots"
+    reason = "each test, inside and outside the crate, uses a part of the robots"
 )]
 
 pub mod mechanisms;

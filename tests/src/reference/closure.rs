@@ -131,7 +131,7 @@ impl State {
     /// Motion of the platform.
     #[must_use]
     pub fn platform(&self, mechanism: &Mechanism) -> BodyMotion {
-        if matches!(mechanism.motion, Motion::Aside(_)) {
+        if matches!(mechanism.motion, Motion::Parasitic(_)) {
             let still = BodyMotion::at_rest(mechanism.motion.placement(&self.pose));
             return parasitic_motion::platform(mechanism, self).unwrap_or(still);
         }
@@ -267,7 +267,7 @@ fn joint_accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f
     if !mechanism.motion.has_platform() {
         return chains::accelerations(mechanism, state);
     }
-    if matches!(mechanism.motion, Motion::Aside(_)) {
+    if matches!(mechanism.motion, Motion::Parasitic(_)) {
         let [joints, _] = parasitic_motion::accelerations(mechanism, state)?;
         return Ok(joints);
     }

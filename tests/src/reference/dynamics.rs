@@ -209,7 +209,7 @@ impl<'a> Dynamics<'a> {
     pub fn partition(&self, kept: &[usize], loads: &DMatrix<f64>) -> Result<Partition, Error> {
         let actuators = self.jacobians.actuated.len();
         let projected: Vec<usize> = (0..actuators).filter(|at| !kept.contains(at)).collect();
-        if matches!(self.mechanism.motion, Motion::Aside(_)) {
+        if matches!(self.mechanism.motion, Motion::Parasitic(_)) {
             return self.partition_with_parasitic_motion(kept, projected, loads);
         }
         let matrix = self.partition_matrix(&projected);

@@ -64,7 +64,7 @@ impl Jacobians {
         if !mechanism.motion.has_platform() {
             return chains::jacobians(mechanism, q);
         }
-        if matches!(mechanism.motion, Motion::Aside(_)) {
+        if matches!(mechanism.motion, Motion::Parasitic(_)) {
             return parasitic_motion::jacobians(mechanism, pose, q);
         }
         let (total, dof) = (mechanism.joints(), mechanism.dof());

@@ -44,7 +44,7 @@ pub enum Motion {
     Spatial,
     /// Motion of a free body that its legs restrict: the independent components among six. Pose: as
     /// for any motion.
-    Aside([bool; 6]),
+    Parasitic([bool; 6]),
 }
 
 impl Motion {
@@ -76,7 +76,7 @@ impl Motion {
             Self::Schoenflies(axis) => vec![0, 1, 2, 3 + axis],
             Self::Spherical => (3..6).collect(),
             Self::Spatial => (0..6).collect(),
-            Self::Aside(_) => self.independent(),
+            Self::Parasitic(_) => self.independent(),
         };
         let mut basis = DMatrix::zeros(6, rows.len());
         for (at, &row) in rows.iter().enumerate() {
@@ -99,7 +99,7 @@ impl Motion {
             Self::Translation => Frame::at(pose[0], pose[1], pose[2]),
             Self::Schoenflies(axis) => Frame::at(pose[0], pose[1], pose[2]) * about(axis, pose[3]),
             Self::Spherical => Frame::new(orientation(pose).into_inner(), Vector3::zeros()),
-            Self::Spatial | Self::Aside(_) => Frame::new(
+            Self::Spatial | Self::Parasitic(_) => Frame::new(
                 orientation(&pose[3..]).into_inner(),
                 Vector3::new(pose[0], pose[1], pose[2]),
             ),
@@ -115,11 +115,11 @@ impl Motion {
             Self::Spherical => 0,
             Self::Spatial => 3,
             // Displacement of the independent components, or of all six.
-            Self::Aside(_) if displacement.len() < 6 => {
+            Self::Parasitic(_) if displacement.len() < 6 => {
                 let whole = self.twist_basis() * displacement;
                 return Self::Spatial.displace(pose, &whole);
             }
-            Self::Aside(_) => 3,
+            Self::Parasitic(_) => 3,
             _ => {
                 return pose
                     .iter()
@@ -145,7 +145,7 @@ impl Motion {
     #[must_use]
     pub fn independent(&self) -> Vec<usize> {
         match self {
-            Self::Aside(own) => (0..6).filter(|&at| own[at]).collect(),
+            Self::Parasitic(own) => (0..6).filter(|&at| own[at]).collect(),
             _ => Vec::new(),
         }
     }
@@ -155,7 +155,7 @@ impl Motion {
     #[must_use]
     pub fn free_basis(&self) -> DMatrix<f64> {
         match self {
-            Self::Aside(_) => Self::Spatial.twist_basis(),
+            Self::Parasitic(_) => Self::Spatial.twist_basis(),
             _ => self.twist_basis(),
         }
     }

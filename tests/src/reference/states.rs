@@ -41,7 +41,7 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Result<V
         let displacement = random_vector(&mut generator, &scales);
         let twist = random_vector(&mut generator, &vec![MAX_SPEED; dof]);
         let acceleration = random_vector(&mut generator, &vec![MAX_ACCELERATION; dof]);
-        let solved = if matches!(mechanism.motion, Motion::Aside(_)) {
+        let solved = if matches!(mechanism.motion, Motion::Parasitic(_)) {
             let start = parasitic_motion::start(mechanism);
             parasitic_motion::displaced(mechanism, &mechanism.home, &start, &displacement).and_then(
                 |(pose, q)| State::with_joints(mechanism, &pose, &q, &twist, &acceleration),

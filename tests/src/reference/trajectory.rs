@@ -29,7 +29,7 @@ pub fn step(state: &State) -> f64 {
 pub fn at(mechanism: &Mechanism, state: &State, t: f64) -> Result<State, Error> {
     let displacement = &state.twist * t + &state.acceleration * (0.5 * t * t);
     let twist = &state.twist + &state.acceleration * t;
-    if matches!(mechanism.motion, Motion::Aside(_)) {
+    if matches!(mechanism.motion, Motion::Parasitic(_)) {
         let (pose, q) =
             parasitic_motion::displaced(mechanism, &state.pose, &state.q, &displacement)?;
         return State::with_joints(mechanism, &pose, &q, &twist, &state.acceleration);

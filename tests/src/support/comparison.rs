@@ -9,7 +9,7 @@ use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use overact::Error;
 use overact::{Columns, Function};
-use overact_codegen::derivation::{MotionInput, Selection, Underivable};
+use overact_codegen::derivation::{DerivationError, MotionInput, Selection};
 use overact_codegen::internals::{Assembler, Search};
 use overact_codegen::lowering::Program;
 use overact_codegen::{CompiledFunction, RobotModel};
@@ -163,7 +163,7 @@ fn program_of(model: &RobotModel, kept: &[usize]) -> Result<Option<Program>, Fai
     };
     match assembler.program(function, MotionInput::Joints) {
         Ok(program) => Ok(Some(program)),
-        Err(Underivable::SingularPartition) => Ok(None),
+        Err(DerivationError::SingularPartition) => Ok(None),
         Err(error) => Err(format!("{error:?}").into()),
     }
 }

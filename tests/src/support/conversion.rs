@@ -47,7 +47,7 @@ fn motion(motion: mechanism::Motion) -> Motion {
         Described::Schoenflies { axis } => Motion::Schoenflies(axis),
         Described::Spherical => Motion::Spherical,
         Described::Spatial => Motion::Spatial,
-        Described::Parasitic { independent } => Motion::Aside(independent),
+        Described::Parasitic { independent } => Motion::Parasitic(independent),
     }
 }
 

@@ -109,8 +109,8 @@ impl Expected {
     ///
     /// If the reference cannot compute the Jacobians there.
     pub fn at<'a>(&'a self, sample: &'a Sample) -> Result<Truth<'a>, Failure> {
-        let side = |state| -> Result<Side<'a>, Failure> {
-            Ok(Side {
+        let side = |state| -> Result<ReferenceSide<'a>, Failure> {
+            Ok(ReferenceSide {
                 dynamics: Dynamics::new(&self.mechanism, state)?,
                 platform: OnceCell::new(),
                 loads: OnceCell::new(),
@@ -168,13 +168,13 @@ impl Expected {
 pub struct Truth<'a> {
     expected: &'a Expected,
     sample: &'a Sample,
-    here: Side<'a>,
-    fitted: Side<'a>,
+    here: ReferenceSide<'a>,
+    fitted: ReferenceSide<'a>,
 }
 
 /// Reference in the sample's state, or in the one fitted to its actuators.
 #[derive(Debug)]
-struct Side<'a> {
+struct ReferenceSide<'a> {
     dynamics: Dynamics<'a>,
     /// Standard regressor of the platform projection, all columns.
     platform: OnceCell<DMatrix<f64>>,
@@ -182,7 +182,7 @@ struct Side<'a> {
     loads: OnceCell<DMatrix<f64>>,
 }
 
-impl Side<'_> {
+impl ReferenceSide<'_> {
     fn platform(&self) -> Result<&DMatrix<f64>, Failure> {
         if let Some(known) = self.platform.get() {
             return Ok(known);
@@ -242,7 +242,11 @@ impl Truth<'_> {
         }
     }
 
-    fn dynamic(&self, side: &Side<'_>, function: Function) -> Result<DMatrix<f64>, Failure> {
+    fn dynamic(
+        &self,
+        side: &ReferenceSide<'_>,
+        function: Function,
+    ) -> Result<DMatrix<f64>, Failure> {
         let (expected, dynamics) = (self.expected, &side.dynamics);
         let chi = &self.sample.all_parameters;
         let torques = DVector::from_column_slice(&self.sample.torques);

@@ -110,8 +110,8 @@ fn formulated(
             let same = evaluate(&found, &input)?;
             agreement.compare(&matrix(&found, &same), &matrix(&wanted, &numbers));
         }
-        let told = format!("{stem}, {function:?}, {formulation:?}: {agreement}");
-        assert!(agreement.within(TOLERANCE), "{told}");
+        let output = format!("{stem}, {function:?}, {formulation:?}: {agreement}");
+        assert!(agreement.within(TOLERANCE), "{output}");
     }
     Ok(())
 }

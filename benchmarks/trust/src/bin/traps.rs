@@ -54,12 +54,12 @@ fn trapped(arguments: &Arguments, path: &Path) -> Result<Vec<Outcome>, Failure> 
             prepared(&plant, &plant.experiment)?
         };
         (trap.alter)(&mut own);
-        let mut told = outcome(&subject, trap, own, &faultless);
+        let mut reported = outcome(&subject, trap, own, &faultless);
         if let Some(why) = trap.assumed {
-            told.words = format!("assumption: {why}. {}", told.words);
+            reported.words = format!("assumption: {why}. {}", reported.words);
         }
-        eprintln!("{told:?}");
-        Ok(told)
+        eprintln!("{reported:?}");
+        Ok(reported)
     };
     let all = traps(subject.info().name).into_iter();
     let mut all: Vec<Trap> = all
@@ -120,7 +120,7 @@ fn table(outcomes: &[Outcome]) -> String {
 }
 
 /// False alarms on faultless draws of a robot, by check.
-fn accused(arguments: &Arguments, path: &Path, draws: u64) -> Result<String, Failure> {
+fn alarmed(arguments: &Arguments, path: &Path, draws: u64) -> Result<String, Failure> {
     let mut subject = Subject::load(path)?;
     subject.shorten(arguments.part);
     let one = |number: u64| -> Result<_, Failure> {
@@ -166,7 +166,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             "| robot | draws | use | partly | no | remarks | checks that found something |\n|---|---:|---:|---:|---:|---:|---|"
         );
         for path in &arguments.robots {
-            print!("{}", accused(arguments, path, draws)?);
+            print!("{}", alarmed(arguments, path, draws)?);
         }
         return Ok(());
     }

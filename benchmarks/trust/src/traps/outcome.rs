@@ -166,7 +166,7 @@ pub fn outcome(
                 honest: honest.map(|(size, _)| size),
                 power: at_report.or(oracle.map(|size| power(size, quantile(LEVEL)))),
                 assumed: start.assumed || trap.size.is_some_and(|size| is_stated(&result, size)),
-                ..told(&result, start)
+                ..summary(&result, start)
             }
         }
         Err(error) => Outcome {
@@ -269,7 +269,7 @@ pub fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identificat
     )?)
 }
 
-fn told(result: &Identification, start: Outcome) -> Outcome {
+fn summary(result: &Identification, start: Outcome) -> Outcome {
     let verdict = result.verdicts.first();
     let listed = |name: &str| {
         verdict.is_none_or(|verdict| {

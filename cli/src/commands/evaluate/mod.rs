@@ -123,7 +123,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let given = match &arguments.parameters {
         Some(path) => {
             let given = read_parameters(path, &description, &robot.info())?;
-            print_warnings(&given.doubts, as_json);
+            print_warnings(&given.warnings, as_json);
             GivenParameters::new(&given.values, &robot)
         }
         None => GivenParameters::default(),

@@ -230,7 +230,7 @@ fn load_all(
         match compiled {
             Ok(robot) => {
                 print_description_note(&robot, as_json);
-                print_warnings(&robot.doubts, as_json);
+                print_warnings(&robot.warnings, as_json);
                 good.push(robot);
             }
             Err(failure) => bad.push(failure),

@@ -20,12 +20,12 @@ pub(super) struct Module {
     /// Arguments of `overact generate`.
     arguments: String,
     language: Language,
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<ModulePart>,
 }
 
 /// A file of a module.
 #[derive(Debug)]
-pub(super) struct Part {
+pub(super) struct ModulePart {
     /// Name in the output folder.
     name: String,
     /// Path, if it is written to a file.
@@ -46,7 +46,7 @@ impl Module {
         own += &own_options;
         labels += &own_options;
         let parts = match arguments.lang {
-            Language::Rust => vec![Part {
+            Language::Rust => vec![ModulePart {
                 name: format!("{}.rs", module_name(path)),
                 file: rust_file(path, arguments),
                 code: rust::file(&robot.model, &labels),
@@ -55,7 +55,7 @@ impl Module {
                 let files = c::files(&robot.model, &labels);
                 let part = |extension: &str, code: String| {
                     let name = format!("{}.{extension}", files.stem);
-                    Part {
+                    ModulePart {
                         file: arguments.output().map(|folder| folder.join(&name)),
                         name,
                         code,
@@ -79,7 +79,7 @@ impl Module {
     /// Module as a JSON document, with its text if it is not written to a file.
     pub(super) fn document(&self) -> Value {
         let mut document = json!({ "robot": self.robot, "description": self.description });
-        let texts = |part: &Part| {
+        let texts = |part: &ModulePart| {
             let mut text = json!({ "file": part.file });
             if part.file.is_none() {
                 text["source"] = json!(part.code);
@@ -96,7 +96,7 @@ impl Module {
                     .for_each(|(key, value)| document[key] = value);
             }
             (_, parts) => {
-                let named = |part: &Part| {
+                let named = |part: &ModulePart| {
                     let mut text = texts(part);
                     text["name"] = json!(part.name);
                     text

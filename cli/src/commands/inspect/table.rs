@@ -164,13 +164,13 @@ fn functions(document: &Inspection) -> String {
 
 /// Cost of functions in Rust in which legs run in SIMD lanes.
 fn side_by_side(document: &Inspection) -> String {
-    let told = document.functions.iter().filter_map(|function| {
+    let function_rows = document.functions.iter().filter_map(|function| {
         let cost = function.cost.side_by_side?;
         let counts = [cost.legs, cost.once, cost.each, cost.lanes].map(|count| count.to_string());
         Some([vec![function.function.clone()], counts.to_vec()].concat())
     });
-    let told: Vec<Vec<String>> = told.collect();
-    if told.is_empty() {
+    let function_rows: Vec<Vec<String>> = function_rows.collect();
+    if function_rows.is_empty() {
         return String::new();
     }
     let head = [
@@ -181,12 +181,12 @@ fn side_by_side(document: &Inspection) -> String {
         "lanes",
     ];
     let head = vec![head.map(str::to_owned).to_vec()];
-    format!("\n{}", columns(&[head, told].concat(), &[true]))
+    format!("\n{}", columns(&[head, function_rows].concat(), &[true]))
 }
 
 /// Cost per step of functions that iterate.
 fn iterations(function: &inspection::Function) -> String {
-    let told = function.cost.iterations.iter().map(|one| {
+    let function_rows = function.cost.iterations.iter().map(|one| {
         let runs = match (one.within, one.runs) {
             (Some(_), 1) => " inside".to_owned(),
             (Some(_), runs) => format!(" {runs} times inside"),
@@ -194,7 +194,7 @@ fn iterations(function: &inspection::Function) -> String {
         };
         format!("{}{runs}", one.operations)
     });
-    told.collect::<Vec<_>>().join(", ")
+    function_rows.collect::<Vec<_>>().join(", ")
 }
 
 fn conditioning(document: &Inspection) -> String {

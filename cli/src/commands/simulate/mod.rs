@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(path) = &arguments.parameters {
         let info = robot.model().info();
         let given = read_parameters(path, robot.description(), &info)?;
-        print_warnings(&given.doubts, as_json);
+        print_warnings(&given.warnings, as_json);
         experiment.set_parameters(&given.values);
     }
     if let Some(seed) = arguments.seed {

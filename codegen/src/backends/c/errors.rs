@@ -9,7 +9,7 @@ use overact_core::ActuatorGroup;
 use std::collections::BTreeSet;
 
 /// An error: enumerator without prefix, and its text.
-struct Kind {
+struct ErrorEntry {
     name: String,
     text: String,
 }
@@ -36,8 +36,8 @@ const INPUTS: [&str; 15] = [
 /// All errors of a robot's functions.
 ///
 /// The numbers depend on the robot only, not on which functions are generated.
-fn kinds(model: &RobotModel) -> Vec<Kind> {
-    let kind = |name: &str, text: &str| Kind {
+fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
+    let kind = |name: &str, text: &str| ErrorEntry {
         name: name.to_owned(),
         text: text.to_owned(),
     };
@@ -58,22 +58,22 @@ fn kinds(model: &RobotModel) -> Vec<Kind> {
         kind("MASS_MATRIX", "the mass matrix is not positive definite"),
     ];
     for input in ["pose", "start"] {
-        kinds.push(Kind {
+        kinds.push(ErrorEntry {
             name: format!("ZERO_QUATERNION_{}", input.to_uppercase()),
             text: format!("the quaternion of `{input}` is zero, which is no rotation"),
         });
     }
-    kinds.extend(INPUTS.iter().map(|input| Kind {
+    kinds.extend(INPUTS.iter().map(|input| ErrorEntry {
         name: not_finite(input),
         text: format!("`{input}` has a number that is not finite"),
     }));
     let legs = model.mechanism.legs.iter();
     for (leg, name) in legs.clone().zip(leg_constants(model)) {
-        kinds.push(Kind {
+        kinds.push(ErrorEntry {
             name: format!("OUT_OF_REACH_{name}"),
             text: format!("the pose is out of reach of leg `{}`", leg.name),
         });
-        kinds.push(Kind {
+        kinds.push(ErrorEntry {
             name: format!("SINGULAR_LEG_{name}"),
             text: format!("leg `{}` is singular here", leg.name),
         });
@@ -83,19 +83,22 @@ fn kinds(model: &RobotModel) -> Vec<Kind> {
             "SINGULAR_COORDINATES",
             "the independent coordinates do not determine the platform's motion here",
         ));
-        kinds.extend(legs.zip(leg_constants(model)).map(|(leg, name)| Kind {
-            name: format!("NOT_CLOSED_{name}"),
-            text: format!("leg `{}` does not allow the pose", leg.name),
-        }));
+        kinds.extend(
+            legs.zip(leg_constants(model))
+                .map(|(leg, name)| ErrorEntry {
+                    name: format!("NOT_CLOSED_{name}"),
+                    text: format!("leg `{}` does not allow the pose", leg.name),
+                }),
+        );
     }
     kinds.push(kind("OVERFLOW", "a value is too large for a number"));
-    kinds.extend(INPUTS.iter().map(|input| Kind {
+    kinds.extend(INPUTS.iter().map(|input| ErrorEntry {
         name: out_of_range(input),
         text: format!(
             "`{input}` has a number that is too large: values computed from it might overflow"
         ),
     }));
-    kinds.push(Kind {
+    kinds.push(ErrorEntry {
         name: not_finite("inputs"),
         text: "`inputs` has a number that is not finite".to_owned(),
     });

@@ -14,7 +14,7 @@ use crate::model::{CompiledFunction, RobotModel};
 use overact_core::Extent;
 
 /// A function as its parts.
-pub struct Written {
+pub struct FunctionText {
     /// The comment in the header.
     pub documentation: String,
     /// The signature, without the terminating character.
@@ -27,7 +27,7 @@ pub struct Written {
 
 /// Writes a function of a robot.
 #[must_use]
-pub fn written(model: &RobotModel, function: &CompiledFunction, naming: &Naming) -> Written {
+pub fn written(model: &RobotModel, function: &CompiledFunction, naming: &Naming) -> FunctionText {
     let outline = Outline::new(model, function);
     let (mut body, mut names) = (String::new(), Vec::new());
     if !outline.is_newton {
@@ -36,7 +36,7 @@ pub fn written(model: &RobotModel, function: &CompiledFunction, naming: &Naming)
         body = format!("{{\n{boundary}{rest}}}\n");
         names = own;
     }
-    Written {
+    FunctionText {
         documentation: documented(model, function, &outline, naming),
         signature: signature(&function.name, &outline.arguments, naming),
         body,

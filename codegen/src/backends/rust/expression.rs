@@ -12,7 +12,7 @@ use quote::quote;
 use std::ops::Range;
 
 /// A function's body.
-pub struct Written {
+pub struct FunctionBody {
     /// The assignments.
     pub statements: TokenStream,
     /// The output; empty if the statements write it.
@@ -21,10 +21,10 @@ pub struct Written {
 
 /// Statements and value of a body with this output, which the statements may write.
 #[must_use]
-pub(super) fn write(writer: &Writer<'_>, body: &Body, output: Option<&Array>) -> Written {
+pub(super) fn write(writer: &Writer<'_>, body: &Body, output: Option<&Array>) -> FunctionBody {
     let constants = constants(body, writer.float);
     let statements = body.statements.iter().map(|s| writer.statement(s));
-    Written {
+    FunctionBody {
         statements: quote!(#constants #(#statements)*),
         value: match output {
             Some(output) => writer.output(&body.output, output),

@@ -79,7 +79,7 @@ impl Body {
 
 /// An expression and its number of operations.
 #[derive(Debug, Clone)]
-struct Sized {
+struct SizedExpression {
     expression: Expression,
     size: usize,
 }
@@ -95,7 +95,7 @@ struct Writer<'p> {
     sections: Vec<(String, String)>,
     names: Vec<Option<String>>,
     uses: Vec<usize>,
-    inlined: Vec<Option<Sized>>,
+    inlined: Vec<Option<SizedExpression>>,
     statements: Vec<Statement>,
     taken: HashSet<String>,
     /// Names of the input elements that are bound to a name.
@@ -320,7 +320,7 @@ impl<'p> Writer<'p> {
         name
     }
 
-    fn operand(&mut self, operand: Operand) -> Sized {
+    fn operand(&mut self, operand: Operand) -> SizedExpression {
         let expression = match operand {
             Operand::Constant(value) => self.constant(value),
             Operand::Input { array, index } => self.input(array, index),
@@ -330,7 +330,7 @@ impl<'p> Writer<'p> {
                 (None, None) => Expression::Broken("an operand is used before its step"),
             },
         };
-        Sized {
+        SizedExpression {
             expression,
             size: 0,
         }
@@ -388,7 +388,7 @@ impl<'p> Writer<'p> {
         }
     }
 
-    fn text(&mut self, operation: Operation) -> Sized {
+    fn text(&mut self, operation: Operation) -> SizedExpression {
         match operation {
             Operation::Add(a, b) => self.binary(Operator::Add, a, b),
             Operation::Sub(a, b) => self.binary(Operator::Sub, a, b),
@@ -396,7 +396,7 @@ impl<'p> Writer<'p> {
             Operation::Div(a, b) => self.binary(Operator::Div, a, b),
             Operation::Neg(a) => {
                 let inner = self.operand(a);
-                Sized {
+                SizedExpression {
                     expression: Expression::Negative(Box::new(inner.expression)),
                     size: inner.size,
                 }
@@ -411,27 +411,27 @@ impl<'p> Writer<'p> {
         }
     }
 
-    fn binary(&mut self, operator: Operator, a: Operand, b: Operand) -> Sized {
+    fn binary(&mut self, operator: Operator, a: Operand, b: Operand) -> SizedExpression {
         let (a, b) = (self.operand(a), self.operand(b));
-        Sized {
+        SizedExpression {
             size: a.size + b.size + 1,
             expression: Expression::Binary(operator, Box::new([a.expression, b.expression])),
         }
     }
 
-    fn call(&mut self, function: Call, operands: &[Operand]) -> Sized {
-        let operands: Vec<Sized> = operands.iter().map(|&a| self.operand(a)).collect();
+    fn call(&mut self, function: Call, operands: &[Operand]) -> SizedExpression {
+        let operands: Vec<SizedExpression> = operands.iter().map(|&a| self.operand(a)).collect();
         let size = operands.iter().map(|a| a.size).sum::<usize>() + 1;
         let operands = operands.into_iter().map(|a| a.expression);
-        Sized {
+        SizedExpression {
             expression: Expression::Call(function, operands.collect()),
             size,
         }
     }
 
-    fn part(&mut self, function: Call, angle: Operand) -> Sized {
+    fn part(&mut self, function: Call, angle: Operand) -> SizedExpression {
         let angle = self.operand(angle).expression;
-        Sized {
+        SizedExpression {
             expression: Expression::Call(function, vec![angle]),
             size: 1,
         }

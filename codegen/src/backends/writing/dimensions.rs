@@ -38,14 +38,14 @@ impl Dimensions {
             .iter()
             .map(|(name, value)| (name.as_str(), value.abs()))
             .collect();
-        Self::made_of(&values)
+        Self::expressions_of(&values)
     }
 
     /// All expressions of named values.
-    fn made_of(values: &[(&str, f64)]) -> Self {
+    fn expressions_of(values: &[(&str, f64)]) -> Self {
         let mut bases: Vec<Base> = Vec::new();
         for &(name, value) in values {
-            if !value.is_normal() || stands_for_itself(value) {
+            if !value.is_normal() || is_plain_number(value) {
                 continue;
             }
             match bases.iter_mut().find(|base| is_same(base.value, value)) {
@@ -65,7 +65,7 @@ impl Dimensions {
                 all.extend((at < other_at).then(|| base.times(other)));
             }
         }
-        all.retain(|dimension| !stands_for_itself(dimension.value) && !is_by_chance(dimension));
+        all.retain(|dimension| !is_plain_number(dimension.value) && !is_by_chance(dimension));
         all.sort_by_key(|dimension| dimension.size);
         Self(all)
     }
@@ -82,7 +82,7 @@ impl Dimensions {
 
 /// Whether a number needs no name: a factor of two is no ratio of lengths, even if one has this
 /// value.
-fn stands_for_itself(value: f64) -> bool {
+fn is_plain_number(value: f64) -> bool {
     [0.5, 1.0, 2.0].into_iter().any(|own| is_same(own, value))
 }
 
@@ -186,7 +186,7 @@ mod tests {
     use super::Dimensions;
 
     fn name(values: &[(&str, f64)], value: f64) -> Option<String> {
-        let dimensions = Dimensions::made_of(values);
+        let dimensions = Dimensions::expressions_of(values);
         dimensions
             .find(value)
             .map(|d| format!("{}: {}", d.name, d.expression))
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_has_no_name() {
+    fn ambiguous_values_have_no_name() {
         let values = [("a", 0.3), ("b", 0.6)];
         assert_eq!(name(&values, 0.3).as_deref(), Some("A: a"));
         // 1.2 is twice b; 0.18 is a b and 2 a².

@@ -9,14 +9,14 @@ use super::labels::Labels;
 use std::collections::BTreeSet;
 
 /// A kind of name.
-struct Kind {
+struct NamePattern {
     pattern: &'static str,
     symbol: &'static str,
     meaning: &'static str,
 }
 
-const fn kind(pattern: &'static str, symbol: &'static str, meaning: &'static str) -> Kind {
-    Kind {
+const fn kind(pattern: &'static str, symbol: &'static str, meaning: &'static str) -> NamePattern {
+    NamePattern {
         pattern,
         symbol,
         meaning,
@@ -24,7 +24,7 @@ const fn kind(pattern: &'static str, symbol: &'static str, meaning: &'static str
 }
 
 /// All kinds of names that the derivation assigns.
-const KINDS: &[Kind] = &[
+const KINDS: &[NamePattern] = &[
     kind(
         "%",
         "v",

@@ -28,12 +28,12 @@ pub struct Names<'p> {
 struct Term {
     negative: bool,
     label: Label,
-    kind: Kind,
+    kind: NameUse,
 }
 
 /// The composite names that a name can be part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum NameUse {
     /// All.
     Name,
     /// Products and sums.
@@ -83,7 +83,7 @@ impl<'p> Names<'p> {
         Term {
             negative: positive.is_some(),
             label: self.labels.parsed(positive.unwrap_or(name)),
-            kind: Kind::Name,
+            kind: NameUse::Name,
         }
     }
 
@@ -118,13 +118,13 @@ impl<'p> Names<'p> {
                         what: name.to_lowercase(),
                         place: String::new(),
                     },
-                    kind: Kind::Name,
+                    kind: NameUse::Name,
                 })
             }
             Operand::Input { array, index } => Some(Term {
                 negative: false,
                 label: self.labels.input(array, index)?.clone(),
-                kind: Kind::Name,
+                kind: NameUse::Name,
             }),
             // An inlined value has no name of its own, but its operands may have.
             Operand::Step(at) => match &self.given[at] {
@@ -157,12 +157,13 @@ impl<'p> Names<'p> {
     /// An operand's name, if it can be part of a product.
     fn factor(&self, operand: Operand) -> Option<Term> {
         self.operand(operand)
-            .filter(|term| term.kind != Kind::Closed)
+            .filter(|term| term.kind != NameUse::Closed)
     }
 
     /// An operand's name, if it is not composite.
     fn whole(&self, operand: Operand) -> Option<Term> {
-        self.operand(operand).filter(|term| term.kind == Kind::Name)
+        self.operand(operand)
+            .filter(|term| term.kind == NameUse::Name)
     }
 
     /// `what_a` for an odd function.
@@ -174,7 +175,7 @@ impl<'p> Names<'p> {
         };
         Some(Term {
             label,
-            kind: Kind::Closed,
+            kind: NameUse::Closed,
             ..a
         })
     }
@@ -192,7 +193,7 @@ impl<'p> Names<'p> {
                 what: format!("{}_squared", a.label.what),
                 ..a.label
             },
-            kind: Kind::Product,
+            kind: NameUse::Product,
         })
     }
 
@@ -207,7 +208,7 @@ impl<'p> Names<'p> {
         Some(Term {
             negative: a.negative != b.negative,
             label: pair(&first.label, "_", &second.label),
-            kind: Kind::Product,
+            kind: NameUse::Product,
         })
     }
 
@@ -216,7 +217,7 @@ impl<'p> Names<'p> {
         Some(Term {
             negative: a.negative != b.negative,
             label: pair(&a.label, "_per_", &b.label),
-            kind: Kind::Closed,
+            kind: NameUse::Closed,
         })
     }
 
@@ -233,7 +234,7 @@ impl<'p> Names<'p> {
         Some(Term {
             negative: false,
             label: pair(&first.label, word, &second.label),
-            kind: Kind::Closed,
+            kind: NameUse::Closed,
         })
     }
 }

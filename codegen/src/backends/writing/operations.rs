@@ -72,7 +72,7 @@ pub fn of_robot(model: &RobotModel) -> Vec<String> {
 
 /// Text for the operations of legs in SIMD lanes: `; in lanes of vectors 237 + 6 x 419`.
 fn lanes(cost: &TotalCost) -> String {
-    let told = cost.side_by_side.map(|side| {
+    let lane_count = cost.side_by_side.map(|side| {
         let (once, each, legs) = (side.once, side.each, side.legs);
         let lanes = match side.lanes {
             0..=2 => "in lanes".to_owned(),
@@ -80,7 +80,7 @@ fn lanes(cost: &TotalCost) -> String {
         };
         format!("; {lanes} {once} + {legs} x {each}")
     });
-    told.unwrap_or_default()
+    lane_count.unwrap_or_default()
 }
 
 /// Short text of a cost: `362, 4 √, 1 sc, 8 gd`.

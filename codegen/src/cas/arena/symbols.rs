@@ -24,7 +24,7 @@ impl std::fmt::Display for InputElement {
 
 /// What a symbol represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum SymbolKind {
     /// An element of a function's input array.
     Input(InputElement),
     /// An unknown in the search for equations.
@@ -42,13 +42,13 @@ pub(super) struct Symbol {
     pub(super) circle: [Element; POINTS],
     /// Real sample of the symbol as a number or an angle.
     pub(super) sample: f64,
-    kind: Kind,
+    kind: SymbolKind,
     /// Fingerprint of an arbitrary number, if the symbol's own is that of a sign.
     as_any: Option<Fingerprint>,
 }
 
 impl Symbol {
-    fn new(name: &str, kind: Kind) -> Self {
+    fn new(name: &str, kind: SymbolKind) -> Self {
         let seed = mix_name(name);
         // Samples lie in (0.2, 1.2), where sums, products and angles are all well-behaved.
         let sample = 0.2 + (mix(seed ^ 5) >> 11) as f64 / (1_u64 << 53) as f64;
@@ -66,7 +66,7 @@ impl Symbol {
     }
 
     pub(super) fn is_placeholder(&self) -> bool {
-        self.kind == Kind::Placeholder
+        self.kind == SymbolKind::Placeholder
     }
 }
 
@@ -81,8 +81,8 @@ impl Arena {
     #[must_use]
     pub fn input_element(&self, id: SymbolId) -> Option<InputElement> {
         match self.tables.borrow().symbols[id.0 as usize].kind {
-            Kind::Input(element) => Some(element),
-            Kind::Placeholder | Kind::Free => None,
+            SymbolKind::Input(element) => Some(element),
+            SymbolKind::Placeholder | SymbolKind::Free => None,
         }
     }
 
@@ -109,13 +109,13 @@ impl Arena {
     /// The symbol of that name, created if it is new. It represents a number and, in a
     /// [`Direction`], an angle.
     pub fn symbol(&self, name: &str) -> SymbolId {
-        self.symbol_of_kind(name, Kind::Free)
+        self.symbol_of_kind(name, SymbolKind::Free)
     }
 
     /// The symbol of an element of an input array.
     pub fn input_symbol(&self, array: &'static str, index: usize) -> SymbolId {
         let element = InputElement { array, index };
-        self.symbol_of_kind(&element.to_string(), Kind::Input(element))
+        self.symbol_of_kind(&element.to_string(), SymbolKind::Input(element))
     }
 
     /// The symbol of another graph, created here if it is new.
@@ -124,7 +124,7 @@ impl Arena {
         self.symbol_of_kind(&other.symbol_name(id), kind)
     }
 
-    fn symbol_of_kind(&self, name: &str, kind: Kind) -> SymbolId {
+    fn symbol_of_kind(&self, name: &str, kind: SymbolKind) -> SymbolId {
         let mut tables = self.tables.borrow_mut();
         if let Some(&id) = tables.symbol_ids.get(name) {
             return id;
@@ -248,7 +248,7 @@ impl Arena {
     /// Where it cancels, the expression equals one without it but still contains it. Such a node
     /// never replaces an expression without the placeholder.
     pub fn placeholder(&self, name: &str) -> Expr<'_> {
-        self.value_of(self.symbol_of_kind(name, Kind::Placeholder))
+        self.value_of(self.symbol_of_kind(name, SymbolKind::Placeholder))
     }
 }
 

@@ -2,7 +2,7 @@
 //! home.
 
 use crate::cas::Arena;
-use crate::derivation::{Derived, MotionInput, Selection, Underivable, derive};
+use crate::derivation::{DerivationError, Derived, MotionInput, Selection, derive};
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::states::random_states;
 use crate::mechanism::{Home, Mechanism, check};
@@ -99,7 +99,7 @@ fn derived<'a>(
     mechanism: &'a Mechanism,
     function: Function,
     from: MotionInput,
-) -> Result<Derived<'a>, Underivable> {
+) -> Result<Derived<'a>, DerivationError> {
     let selection = Selection::default();
     derive(arena, mechanism, &selection, function, from)
 }

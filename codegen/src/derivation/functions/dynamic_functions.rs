@@ -3,6 +3,7 @@
 
 use crate::cas::{Expr, Number};
 use crate::derivation::context::{DerivationContext, column};
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::dynamics::actuated_joint_forces::ActuatedJointForces;
 use crate::derivation::linear_algebra::elimination::{Rows, inverse};
 use crate::derivation::linear_algebra::linear::{apply, product, transposed};
@@ -10,7 +11,6 @@ use crate::derivation::linear_algebra::null_space::null_space;
 use crate::derivation::parameter::BodyParameter;
 use crate::derivation::regressor::Projection;
 use crate::derivation::selection::DynamicsBy;
-use crate::derivation::underivable::Underivable;
 use overact_core::{ActuatorGroup, Columns, Input};
 
 impl<'a> DerivationContext<'a, '_> {
@@ -29,13 +29,16 @@ impl<'a> DerivationContext<'a, '_> {
     }
 
     /// Columns of some parameters in the actuator projection, eq. (36).
-    pub(crate) fn on_actuators(&mut self, of: &[BodyParameter]) -> Result<Rows<'a>, Underivable> {
+    pub(crate) fn on_actuators(
+        &mut self,
+        of: &[BodyParameter],
+    ) -> Result<Rows<'a>, DerivationError> {
         let projection = self.kept_projection()?;
         Ok(self.columns(&projection, of))
     }
 
     /// The projection on the kept actuators, with a guarded determinant.
-    fn kept_projection(&mut self) -> Result<Projection<'a>, Underivable> {
+    fn kept_projection(&mut self) -> Result<Projection<'a>, DerivationError> {
         let projection = self
             .robot
             .project_on_actuators(&self.selection.kept_actuators)?;
@@ -96,7 +99,7 @@ impl<'a> DerivationContext<'a, '_> {
     }
 
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, with the kept actuators a and the others b.
-    pub(crate) fn project_actuators(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
+    pub(crate) fn project_actuators(&mut self, n: usize) -> Result<Rows<'a>, DerivationError> {
         let torques = self.input("torques", n);
         let projection = self.kept_projection()?;
         let kept = &self.selection.kept_actuators;
@@ -184,7 +187,7 @@ impl<'a> DerivationContext<'a, '_> {
     ///
     /// # Errors
     /// See [`DerivationContext::null_space`].
-    pub(crate) fn preloaded_torques(&mut self, n: usize) -> Result<Rows<'a>, Underivable> {
+    pub(crate) fn preloaded_torques(&mut self, n: usize) -> Result<Rows<'a>, DerivationError> {
         let (twist, acceleration) = (self.twist(), self.acceleration());
         let forces = self.projected_dynamics(Columns::Standard, &twist, &acceleration);
         let preload = self.input("preload", n - self.robot.mechanism.dof());
@@ -207,17 +210,17 @@ impl<'a> DerivationContext<'a, '_> {
     ///
     /// # Errors
     /// Kept actuators that never determine the platform's motion.
-    pub(crate) fn null_space(&mut self) -> Result<Rows<'a>, Underivable> {
+    pub(crate) fn null_space(&mut self) -> Result<Rows<'a>, DerivationError> {
         Ok(self.basis()?.0)
     }
 
     /// N, and the inverse of the kept actuators' rows of J_p^inv.
-    fn basis(&mut self) -> Result<(Rows<'a>, Rows<'a>), Underivable> {
+    fn basis(&mut self) -> Result<(Rows<'a>, Rows<'a>), DerivationError> {
         let jacobian = self.robot.inverse_jacobian();
         let kept = &self.selection.kept_actuators;
         let rows: Rows<'a> = kept.iter().map(|&i| jacobian[i].clone()).collect();
         let home = |value: Expr<'a>| self.robot.at_home(value);
-        let inverse = inverse(&rows, &home).ok_or(Underivable::SingularPartition)?;
+        let inverse = inverse(&rows, &home).ok_or(DerivationError::SingularPartition)?;
         self.guard_platform(&inverse.determinants, ActuatorGroup::Kept);
         self.robot.name_partition(&inverse, &[], kept);
         let arena = self.robot.arena;

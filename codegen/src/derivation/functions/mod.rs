@@ -10,13 +10,13 @@ pub(crate) mod sums;
 
 use crate::cas::{Arena, Expr};
 use crate::derivation::context::{DerivationContext, column};
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::forward::closed_form::closed_form;
 use crate::derivation::function_form::FunctionForm;
 use crate::derivation::guard::{Guard, GuardKind};
 use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::selection::{JointsBy, Selection};
-use crate::derivation::underivable::Underivable;
 use crate::mechanism::Mechanism;
 use overact_core::Function;
 
@@ -57,14 +57,14 @@ impl Derived<'_> {
 /// Derives a function in its own graph.
 ///
 /// # Errors
-/// See [`Underivable`].
+/// See [`DerivationError`].
 pub fn derive<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
     selection: &Selection,
     function: Function,
     from: MotionInput,
-) -> Result<Derived<'a>, Underivable> {
+) -> Result<Derived<'a>, DerivationError> {
     let derived = if function == Function::PoseInClosedForm {
         pose_in_closed_form(arena, mechanism)?
     } else {
@@ -81,7 +81,7 @@ pub(crate) fn with_divisors<'a>(
     arena: &'a Arena,
     mechanism: &Mechanism,
     mut derived: Derived<'a>,
-) -> Result<Derived<'a>, Underivable> {
+) -> Result<Derived<'a>, DerivationError> {
     // Conditions on the pose are computed separately and may have more divisors than the output.
     let of_pose = derived.guards.iter();
     let of_pose = of_pose.filter(|guard| matches!(guard.kind, GuardKind::Closed(_)));
@@ -91,7 +91,7 @@ pub(crate) fn with_divisors<'a>(
     let singular = |guard: &&Guard<'_>| guard.kind.home().is_some_and(|home| !home.is_finite());
     let mut guards = derived.guards.iter().chain(&derived.divisors);
     match guards.find(singular) {
-        Some(guard) => Err(Underivable::SingularHome {
+        Some(guard) => Err(DerivationError::SingularHome {
             leg: guard.leg.clone(),
         }),
         None => Ok(derived),
@@ -104,8 +104,8 @@ pub(crate) fn derive_with<'a, 's>(
     mechanism: &'a Mechanism,
     selection: &'s Selection,
     form: FunctionForm,
-    rows: impl FnOnce(&mut DerivationContext<'a, 's>) -> Result<Rows<'a>, Underivable>,
-) -> Result<Derived<'a>, Underivable> {
+    rows: impl FnOnce(&mut DerivationContext<'a, 's>) -> Result<Rows<'a>, DerivationError>,
+) -> Result<Derived<'a>, DerivationError> {
     let FunctionForm { function, from } = form;
     // Forward kinematics yields a closed pose; functions that project onto the closures start from
     // other poses.
@@ -150,8 +150,8 @@ pub(crate) fn derive_with<'a, 's>(
 fn pose_in_closed_form<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
-) -> Result<Derived<'a>, Underivable> {
-    let found = closed_form(arena, mechanism).ok_or(Underivable::ForwardKinematics)?;
+) -> Result<Derived<'a>, DerivationError> {
+    let found = closed_form(arena, mechanism).ok_or(DerivationError::ForwardKinematics)?;
     let guards = found.reach.into_iter().map(|(reach, leg)| Guard {
         value: reach.radicand,
         kind: GuardKind::Reach(mechanism.home.value(arena, reach.radicand).abs()),
@@ -168,10 +168,10 @@ fn pose_in_closed_form<'a>(
 
 impl<'a> DerivationContext<'a, '_> {
     /// The output of each function, row by row.
-    fn rows(&mut self, function: Function) -> Result<Rows<'a>, Underivable> {
+    fn rows(&mut self, function: Function) -> Result<Rows<'a>, DerivationError> {
         let n = self.robot.mechanism.actuated().len();
         Ok(match function {
-            Function::PoseInClosedForm => return Err(Underivable::ForwardKinematics),
+            Function::PoseInClosedForm => return Err(DerivationError::ForwardKinematics),
             Function::Joints => column(self.joint_positions()),
             Function::ActuatorPositions => column(self.actuator_positions()),
             Function::PoseStep => column(self.pose_step()),

@@ -12,13 +12,13 @@ use super::actuators::{ActuatorSystem, COFACTORS};
 use super::{Derived, derive_with, with_divisors};
 use crate::cas::{Arena, Expr, InputElement};
 use crate::derivation::context::{DerivationContext, Owner, column};
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::dynamics::actuated_joint_forces::ActuatedJointForces;
 use crate::derivation::function_form::FunctionForm;
 use crate::derivation::guard::{Guard, GuardKind};
 use crate::derivation::linear_algebra::elimination::{Rows, inverse};
 use crate::derivation::linear_algebra::linear::{Factored, apply, dot, transposed};
 use crate::derivation::selection::Selection;
-use crate::derivation::underivable::Underivable;
 use crate::mechanism::Mechanism;
 use overact_core::{ActuatorGroup, Columns, Function};
 
@@ -56,13 +56,13 @@ struct Parts<'a> {
 /// `None` if the function is not a sum.
 ///
 /// # Errors
-/// See [`Underivable`].
+/// See [`DerivationError`].
 pub(crate) fn derive_addends<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
     selection: &Selection,
     form: FunctionForm,
-) -> Result<Option<Addends<'a>>, Underivable> {
+) -> Result<Option<Addends<'a>>, DerivationError> {
     let mut shape = None;
     let derived = derive_with(arena, mechanism, selection, form, |context| {
         let Some(parts) = context.addends(form.function) else {

@@ -20,7 +20,7 @@ use crate::mechanism::{BodyIndex, JointKind, Mechanism};
 
 /// Known state of the skeleton and of earlier chains, which paths pass.
 #[derive(Debug)]
-pub(crate) struct Known<'r, 'a> {
+pub(crate) struct KnownMotion<'r, 'a> {
     pub(crate) arena: &'a Arena,
     pub(crate) mechanism: &'r Mechanism,
     pub(crate) configuration: &'r Configuration<'a>,
@@ -74,7 +74,7 @@ impl<'a> Path<'a> {
     /// Returns `None` if the configuration does not determine a sine or cosine.
     #[must_use]
     pub(crate) fn new(
-        known: &Known<'_, 'a>,
+        known: &KnownMotion<'_, 'a>,
         from: Option<BodyIndex>,
         to: BodyIndex,
         axes: &Orientation,
@@ -173,7 +173,7 @@ impl<'a> Path<'a> {
 impl<'a> Step<'a> {
     /// The step at a joint, in given axes.
     fn new(
-        known: &Known<'_, 'a>,
+        known: &KnownMotion<'_, 'a>,
         axes: &Orientation,
         at: BodyIndex,
         is_forward: bool,
@@ -205,7 +205,7 @@ impl<'a> Step<'a> {
 
 /// The orientation of a body in given axes.
 fn seen<'a>(
-    known: &Known<'_, 'a>,
+    known: &KnownMotion<'_, 'a>,
     axes: &Orientation,
     body: Option<BodyIndex>,
 ) -> Option<Matrix3<'a>> {

@@ -11,12 +11,12 @@ mod forces;
 use crate::cas::{Arena, Expr, Number, Vector3};
 use crate::derivation::bodies::motion::RobotMotion;
 use crate::derivation::bodies::platform_body::PlatformBody;
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::linear_algebra::elimination::{Rows, inverse};
 use crate::derivation::linear_algebra::linear::{dot, product, transposed};
 use crate::derivation::parameter::BodyParameter;
 use crate::derivation::robot::Robot;
 use crate::derivation::selection::Combination;
-use crate::derivation::underivable::Underivable;
 use crate::mechanism::JointIndex;
 use overact_description::StandardParameter;
 
@@ -67,11 +67,11 @@ impl<'a> Robot<'a> {
     pub(crate) fn project_on_actuators(
         &self,
         kept: &[usize],
-    ) -> Result<Projection<'a>, Underivable> {
+    ) -> Result<Projection<'a>, DerivationError> {
         let all = self.inverse_jacobian();
         let kept_rows: Rows<'a> = kept.iter().map(|&i| all[i].clone()).collect();
         let home = |e: Expr<'a>| self.at_home(e);
-        let inverted = inverse(&kept_rows, &home).ok_or(Underivable::SingularPartition)?;
+        let inverted = inverse(&kept_rows, &home).ok_or(DerivationError::SingularPartition)?;
         let legs: Vec<Rows<'a>> = self
             .legs
             .iter()

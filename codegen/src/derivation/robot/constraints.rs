@@ -12,13 +12,13 @@ use crate::derivation::closure::bias::end_bias;
 use crate::derivation::closure::parasitic_motion::{
     BlockedRow, ParasiticMotion, SIX, dependent_components,
 };
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::guard::{Guard, GuardKind};
 use crate::derivation::kinematics::frames::LegFrames;
 use crate::derivation::kinematics::platform::PlatformPose;
 use crate::derivation::kinematics::spatial::SpatialMotion;
 use crate::derivation::linear_algebra::linear::apply;
 use crate::derivation::names::coordinate_label;
-use crate::derivation::underivable::Underivable;
 use crate::mechanism::numeric::best_conditioned;
 use crate::mechanism::{End, Leg, Motion, TwistCoordinate};
 use nalgebra::DMatrix;
@@ -32,7 +32,7 @@ impl<'a> Robot<'a> {
     /// Rows that do not determine them.
     pub(crate) fn derive_parasitic_motion(
         &mut self,
-    ) -> Result<Option<ParasiticMotion<'a>>, Underivable> {
+    ) -> Result<Option<ParasiticMotion<'a>>, DerivationError> {
         let Some(independent) = self.mechanism.independent_coordinates() else {
             return Ok(None);
         };
@@ -45,7 +45,7 @@ impl<'a> Robot<'a> {
         let rows = chosen.map(|row| all[row].clone()).collect();
         let home = |value: Expr<'a>| self.at_home(value);
         let parasitic = ParasiticMotion::new(independent, rows, &home)
-            .ok_or_else(|| Underivable::SingularHome { leg: String::new() })?;
+            .ok_or_else(|| DerivationError::SingularHome { leg: String::new() })?;
         self.guard_coordinates(&parasitic.solved.determinants);
         Ok(Some(parasitic))
     }

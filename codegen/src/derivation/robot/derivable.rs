@@ -2,9 +2,9 @@
 
 use super::Robot;
 use crate::cas::Arena;
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::selection::Formulation;
-use crate::derivation::underivable::Underivable;
 use crate::mechanism::Mechanism;
 
 /// Checks the closures and the partition of the actuator projection.
@@ -14,7 +14,7 @@ use crate::mechanism::Mechanism;
 ///
 /// # Errors
 /// A leg or a partition that is singular in every configuration.
-pub(crate) fn derivable(mechanism: &Mechanism) -> Result<(), Underivable> {
+pub(crate) fn derivable(mechanism: &Mechanism) -> Result<(), DerivationError> {
     let arena = Arena::new();
     let plain = Formulation::default();
     let robot = Robot::new(&arena, mechanism, MotionInput::Joints, &plain, &[])?;

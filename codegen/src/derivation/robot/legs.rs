@@ -5,17 +5,17 @@ use super::{Robot, name_rows};
 use crate::cas::{Expr, Vector3};
 use crate::derivation::closure::leg::{GroundAcceleration, LegGravity, LegState};
 use crate::derivation::closure::leg_closure::{ClosureRows, LegClosure, split_rows};
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::guard::{Guard, GuardKind};
 use crate::derivation::kinematics::centres::centres;
 use crate::derivation::kinematics::frames::LegFrames;
 use crate::derivation::kinematics::inverse_kinematics::{Task, solve_leg};
 use crate::derivation::kinematics::orientation::{ObserverFrame, Orientation};
-use crate::derivation::kinematics::path::{Known, Path, observer_frames, orientation};
+use crate::derivation::kinematics::path::{KnownMotion, Path, observer_frames, orientation};
 use crate::derivation::kinematics::platform::PlatformPose;
 use crate::derivation::kinematics::rates::Rates;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::selection::Formulation;
-use crate::derivation::underivable::Underivable;
 use crate::mechanism::Leg;
 
 impl<'a> Robot<'a> {
@@ -28,7 +28,7 @@ impl<'a> Robot<'a> {
         &mut self,
         index: usize,
         formulation: &Formulation,
-    ) -> Result<(), Underivable> {
+    ) -> Result<(), DerivationError> {
         let (arena, mechanism) = (self.arena, self.mechanism);
         let leg = &mechanism.legs[index];
         arena.enter(&leg.name);
@@ -88,12 +88,12 @@ impl<'a> Robot<'a> {
         &mut self,
         index: usize,
         platform: &PlatformPose<'a>,
-    ) -> Result<(), Underivable> {
+    ) -> Result<(), DerivationError> {
         if self.configuration.from() == MotionInput::Joints {
             return Ok(());
         }
         let leg = &self.mechanism.legs[index].name;
-        let unsolved = || Underivable::InverseKinematics { leg: leg.clone() };
+        let unsolved = || DerivationError::InverseKinematics { leg: leg.clone() };
         let task = Task::new(self.arena, self.mechanism, index, platform).ok_or_else(unsolved)?;
         let conditions = solve_leg(task, &mut self.configuration).ok_or_else(unsolved)?;
         let guards = conditions.into_iter().map(|reach| Guard {
@@ -113,7 +113,7 @@ impl<'a> Robot<'a> {
         index: usize,
         observer: Option<&ObserverFrame>,
         formulation: &Formulation,
-    ) -> Result<LegFrames<'a>, Underivable> {
+    ) -> Result<LegFrames<'a>, DerivationError> {
         let (arena, configuration) = (self.arena, &self.configuration);
         let leg = &self.mechanism.legs[index];
         let first_joint = self.mechanism.leg_range(index).start;
@@ -139,7 +139,7 @@ impl<'a> Robot<'a> {
             closure_frame,
             observer,
         );
-        frames.ok_or_else(|| Underivable::InverseKinematics {
+        frames.ok_or_else(|| DerivationError::InverseKinematics {
             leg: leg.name.clone(),
         })
     }
@@ -182,7 +182,7 @@ impl<'a> Robot<'a> {
         frames: &LegFrames<'a>,
         rates: &Rates,
         platform: &PlatformPose<'a>,
-    ) -> Result<LegClosure<'a>, Underivable> {
+    ) -> Result<LegClosure<'a>, DerivationError> {
         let (arena, mechanism) = (self.arena, self.mechanism);
         let leg = &mechanism.legs[index];
         let home = |e: Expr<'a>| self.at_home(e);
@@ -195,7 +195,7 @@ impl<'a> Robot<'a> {
             }
         };
         let closure = LegClosure::new(arena, leg, frames, rates, platform, &rows, &home);
-        closure.ok_or_else(|| Underivable::SingularLeg {
+        closure.ok_or_else(|| DerivationError::SingularLeg {
             leg: leg.name.clone(),
         })
     }
@@ -233,7 +233,7 @@ impl<'a> Robot<'a> {
         let leg = &self.mechanism.legs[index];
         leg.end.as_ref()?;
         let legs = self.legs.iter();
-        let known = Known {
+        let known = KnownMotion {
             arena: self.arena,
             mechanism: self.mechanism,
             configuration: &self.configuration,

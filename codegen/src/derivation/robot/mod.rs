@@ -13,6 +13,7 @@ use crate::derivation::bodies::platform_body::{Mount, PlatformBody};
 use crate::derivation::closure::leg::LegState;
 use crate::derivation::closure::leg_closure::LegClosure;
 use crate::derivation::closure::parasitic_motion::ParasiticMotion;
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::guard::Guard;
 use crate::derivation::kinematics::configuration::Configuration;
 use crate::derivation::kinematics::frames::LegFrames;
@@ -22,7 +23,6 @@ use crate::derivation::linear_algebra::linear::apply;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::names::{Accelerations, coordinate_label, joined};
 use crate::derivation::selection::Formulation;
-use crate::derivation::underivable::Underivable;
 use crate::mechanism::{Mechanism, TwistCoordinate};
 use std::cell::RefCell;
 
@@ -75,7 +75,7 @@ impl<'a> Robot<'a> {
         from: MotionInput,
         formulation: &Formulation,
         still: &[usize],
-    ) -> Result<Self, Underivable> {
+    ) -> Result<Self, DerivationError> {
         let motion = mechanism.platform.as_ref().map(|p| p.motion);
         // The configuration of a tree consists of its joints, whatever the input is called.
         let from = if mechanism.is_tree() {

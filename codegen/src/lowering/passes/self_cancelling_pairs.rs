@@ -7,14 +7,14 @@ use super::requests::{Form, Request};
 
 /// Operation on a pair, as a bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PairOperation {
     Sum = 1,
     Difference = 2,
     Product = 4,
 }
 
 /// Two nodes, the smaller first, and the operation on them.
-type Pair = ((u32, u32), Kind);
+type Pair = ((u32, u32), PairOperation);
 
 /// For each two nodes of a group, the operations whose values only they request.
 pub(super) struct SelfCancellingPairs {
@@ -77,9 +77,9 @@ fn only_pair(requests: &[Request], head: u32) -> Option<Pair> {
 /// The pair of a request's target and existing node, if it has the requested value.
 fn pair_of(request: &Request) -> Option<Pair> {
     let kind = match request.form {
-        Form::Plus if request.with.is_negative() => Kind::Sum,
-        Form::Plus => Kind::Difference,
-        Form::Over => Kind::Product,
+        Form::Plus if request.with.is_negative() => PairOperation::Sum,
+        Form::Plus => PairOperation::Difference,
+        Form::Over => PairOperation::Product,
         Form::Times => return None,
     };
     let (target, with) = (request.target, request.with.node() as u32);

@@ -7,7 +7,7 @@
 //! is searched in pieces, each a run of nodes in the order of the derivation.
 
 use super::requests::{Form, Request, requests};
-use super::self_cancelling_pairs::{Kind, SelfCancellingPairs};
+use super::self_cancelling_pairs::{PairOperation, SelfCancellingPairs};
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{Element, canonical};
 use crate::cas::filter::Filter;
@@ -175,13 +175,13 @@ fn for_each_pair(
         for (&second, &own) in others.filter(|(n, _)| dag.is_live(**n)) {
             let b = Edge::to(second);
             let right = dag.value(b);
-            if own & Kind::Sum as u8 == 0 {
+            if own & PairOperation::Sum as u8 == 0 {
                 visit(Definition::Sum(a, b), left + right);
             }
-            if own & Kind::Product as u8 == 0 {
+            if own & PairOperation::Product as u8 == 0 {
                 visit(Definition::Product(a, b), left * right);
             }
-            if own & Kind::Difference as u8 == 0 && first != second {
+            if own & PairOperation::Difference as u8 == 0 && first != second {
                 visit(Definition::Sum(a, b.times(true)), left + -right);
             }
         }

@@ -50,10 +50,10 @@ const DAMAGES: [(&str, Damage); 12] = [
     ("an entry is missing", |p, _| {
         p.entries.truncate(p.entries.len() - 1)
     }),
-    ("an entry stands on nothing", |p, _| {
+    ("an entry refers to no node", |p, _| {
         p.entries[0].operand = Operand::Step(p.steps.len());
     }),
-    ("a guard stands on nothing", |p, _| {
+    ("a guard refers to no node", |p, _| {
         let condition = Condition::Reach {
             leg: String::new(),
             home: 0.0,

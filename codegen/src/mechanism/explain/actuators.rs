@@ -158,9 +158,9 @@ pub(in crate::mechanism) fn underactuated(
     let owner = owner(mechanism);
     // Poses near home show whether only home is singular.
     let everywhere = random_states(mechanism, 4, 3).into_iter().all(|state| {
-        let mut beside = mechanism.clone();
-        beside.home = Home::new(mechanism, state.pose, state.joints);
-        beside.independent_actuators().len() < beside.dof()
+        let mut displaced = mechanism.clone();
+        displaced.home = Home::new(mechanism, state.pose, state.joints);
+        displaced.independent_actuators().len() < displaced.dof()
     });
     let label = jacobian(mechanism).map_or_else(String::new, |j| free_motions(mechanism, &j));
     let twins = jacobian(mechanism).map_or_else(Vec::new, |j| twins(mechanism, &j));

@@ -55,7 +55,7 @@ const LEGS: usize = 3;
 const MOST: [usize; 2] = [125, 180];
 
 /// The program of a function in lanes, if it is faster.
-pub(crate) fn beside(
+pub(crate) fn lane_program(
     assembler: &Assembler<'_>,
     function: Function,
     from: MotionInput,

@@ -13,7 +13,7 @@ use overact_core::StandardParameter;
 const STATES: usize = 4;
 
 /// Values of an input by its name.
-type Given<'g> = dyn Fn(&str) -> Option<Vec<f64>> + 'g;
+type InputValues<'g> = dyn Fn(&str) -> Option<Vec<f64>> + 'g;
 
 /// Magnitude at home of a leg's divisor, relative to other states, below which it vanishes.
 const VANISHING: f64 = 1e-4;
@@ -70,7 +70,7 @@ pub(super) fn agrees(assembler: &Assembler<'_>, lanes: &Lanes, straight: &Progra
 }
 
 /// The function's output.
-fn outcome(lanes: &Lanes, given: &Given<'_>) -> Option<Vec<f64>> {
+fn outcome(lanes: &Lanes, given: &InputValues<'_>) -> Option<Vec<f64>> {
     match &lanes.gathered {
         LaneOutput::Columns(columns) => side_by_side(lanes, columns, given),
         LaneOutput::Sums(sums) => following(lanes, sums, given),
@@ -78,7 +78,7 @@ fn outcome(lanes: &Lanes, given: &Given<'_>) -> Option<Vec<f64>> {
 }
 
 /// Puts columns in their places in the output.
-fn side_by_side(lanes: &Lanes, columns: &[Column], given: &Given<'_>) -> Option<Vec<f64>> {
+fn side_by_side(lanes: &Lanes, columns: &[Column], given: &InputValues<'_>) -> Option<Vec<f64>> {
     let width = lanes.output.shape.last().copied().unwrap_or_default();
     let mut output = vec![0.0; lanes.output.len()];
     for leg in 0..lanes.legs.len() {
@@ -97,7 +97,7 @@ fn side_by_side(lanes: &Lanes, columns: &[Column], given: &Given<'_>) -> Option<
 }
 
 /// The output computed from the sums.
-fn following(lanes: &Lanes, sums: &Sums, given: &Given<'_>) -> Option<Vec<f64>> {
+fn following(lanes: &Lanes, sums: &Sums, given: &InputValues<'_>) -> Option<Vec<f64>> {
     let added = summed(lanes, sums.count, given)?;
     let rows = rows_of(lanes, sums.count, given)?;
     let inputs = GatheredInputs {
@@ -151,7 +151,7 @@ impl GatheredInputs<'_> {
 }
 
 /// Nonzero numbers of the legs' rows, each for all legs.
-pub(super) fn rows_of(lanes: &Lanes, count: usize, given: &Given<'_>) -> Option<Vec<f64>> {
+pub(super) fn rows_of(lanes: &Lanes, count: usize, given: &InputValues<'_>) -> Option<Vec<f64>> {
     let legs = 0..lanes.legs.len();
     let all = legs.map(|leg| value(&lanes.program, &|name| of_leg(lanes, leg, name, given)));
     let all: Option<Vec<Vec<f64>>> = all.collect();
@@ -166,7 +166,7 @@ pub(super) fn rows_of(lanes: &Lanes, count: usize, given: &Given<'_>) -> Option<
 }
 
 /// The sums over the legs.
-pub(super) fn summed(lanes: &Lanes, count: usize, given: &Given<'_>) -> Option<Vec<f64>> {
+pub(super) fn summed(lanes: &Lanes, count: usize, given: &InputValues<'_>) -> Option<Vec<f64>> {
     let mut sums = vec![0.0; count];
     for leg in 0..lanes.legs.len() {
         let found = value(&lanes.program, &|name| of_leg(lanes, leg, name, given))?;
@@ -188,7 +188,12 @@ pub(super) fn guarded(program: &Program, inputs: GatheredInputs<'_>) -> Option<V
 }
 
 /// An input of a program in lanes, for one leg.
-pub(super) fn of_leg(lanes: &Lanes, leg: usize, name: &str, given: &Given<'_>) -> Option<Vec<f64>> {
+pub(super) fn of_leg(
+    lanes: &Lanes,
+    leg: usize,
+    name: &str,
+    given: &InputValues<'_>,
+) -> Option<Vec<f64>> {
     let inputs = &lanes.program.inputs;
     let at = inputs.iter().position(|input| input.name == name)?;
     match &lanes.inputs[at] {
@@ -256,7 +261,7 @@ fn of_body(assembler: &Assembler<'_>, name: &str) -> Option<Vec<f64>> {
 pub(super) fn value_of(
     program: &Program,
     operands: &[Operand],
-    given: &Given<'_>,
+    given: &InputValues<'_>,
 ) -> Option<Vec<f64>> {
     let program = Program {
         entries: operands.iter().map(|&o| Entry::positive(o)).collect(),
@@ -271,7 +276,7 @@ pub(super) fn value_of(
 }
 
 /// Output of a program; missing inputs are one.
-fn value(program: &Program, given: &Given<'_>) -> Option<Vec<f64>> {
+fn value(program: &Program, given: &InputValues<'_>) -> Option<Vec<f64>> {
     let inputs = program.inputs.iter();
     let inputs: Vec<Vec<f64>> = inputs
         .map(|input| given(&input.name).unwrap_or_else(|| vec![1.0; input.len()]))

@@ -21,7 +21,7 @@ const SPOILING: f64 = 1.0;
 const LIKELY: f64 = 0.5;
 
 /// A tested fault hypothesis.
-pub(super) struct Tested {
+pub(super) struct TestedHypothesis {
     pub(super) group: Group,
     pub(super) wald: WaldTest,
     /// Size to use instead of the fitted one, if another test determines it better.
@@ -30,7 +30,7 @@ pub(super) struct Tested {
     pub(super) band_factor: f64,
 }
 
-impl Tested {
+impl TestedHypothesis {
     /// The fault; not for a payload.
     pub(super) fn hypothesis(&self, scores: &Scores) -> FaultHypothesis {
         self.group.fault_hypothesis(scores)
@@ -117,12 +117,15 @@ pub(super) struct Harm {
 }
 
 /// Tests groups of columns against the base parameters; skips untestable ones.
-pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Vec<Tested> {
+pub(super) fn tested(
+    scores: &Scores,
+    groups: impl Iterator<Item = Group>,
+) -> Vec<TestedHypothesis> {
     groups
         .filter_map(|group| {
             let wald = scores.test(&group, scores.selected())?;
             let size = None;
-            Some(Tested {
+            Some(TestedHypothesis {
                 group,
                 wald,
                 size,
@@ -133,13 +136,13 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
 }
 
 /// Tests one hypothesis against the base parameters; `None` if absent or untestable.
-pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<Tested> {
+pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<TestedHypothesis> {
     let place = scores.hypotheses.iter().position(|one| *one == wanted)?;
     tested(scores, std::iter::once(Group::hypothesis(place))).pop()
 }
 
 /// The hypothesis that explains most of the residual, among those significant at `level`.
-pub(super) fn most_significant(all: &[Tested], level: f64) -> Option<&Tested> {
+pub(super) fn most_significant(all: &[TestedHypothesis], level: f64) -> Option<&TestedHypothesis> {
     let beyond = all.iter().filter(|one| one.wald.probability < level);
     beyond.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))
 }
@@ -162,8 +165,8 @@ pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
 pub(super) fn worst_harm(
     context: &Context<'_>,
     scores: &Scores,
-    all: &[Tested],
-    most_significant: &Tested,
+    all: &[TestedHypothesis],
+    most_significant: &TestedHypothesis,
     level: f64,
 ) -> Harm {
     let likely = all.iter().filter(|one| {
@@ -194,7 +197,7 @@ pub(super) fn worst_harm(
 }
 
 /// Effect of a fault on the base and recommended parameters of the first model.
-pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> Harm {
+pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &TestedHypothesis) -> Harm {
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Harm::none();
     };

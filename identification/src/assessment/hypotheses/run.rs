@@ -14,7 +14,7 @@ use crate::{
         Motions,
         conditioning::{KeptActuators, home_scales},
     },
-    regression::{chunk::projected, fold::Phases, projection::ModelKind},
+    regression::{chunk::projected, phase_sums::Phases, projection::ModelKind},
 };
 use overact_logs::{Error, Log};
 

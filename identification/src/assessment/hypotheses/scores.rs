@@ -20,7 +20,7 @@ use crate::{
     filters::DECIMATION_PADDING,
     regression::{
         columns::ColumnSet,
-        fold::{self, Folds, Phases},
+        phase_sums::{self, PhaseSums, Phases},
         projection::ModelKind,
     },
     result::Estimate,
@@ -160,7 +160,7 @@ fn means(runs: &[RunScores]) -> Vec<MotionMean> {
         if run.folds.is_empty() {
             continue;
         }
-        let place = fold::add(&mut all, run.folds.clone());
+        let place = phase_sums::add(&mut all, run.folds.clone());
         owners.resize(all.len(), Vec::new());
         owners[place].push(number);
     }
@@ -171,7 +171,7 @@ fn means(runs: &[RunScores]) -> Vec<MotionMean> {
             rows.column(last).clone_owned(),
         )
     };
-    let mean = |(runs, folds): (Vec<usize>, Folds)| {
+    let mean = |(runs, folds): (Vec<usize>, Vec<PhaseSums>)| {
         let mean = Mean::new(&folds, split)?;
         Some(MotionMean { runs, mean })
     };

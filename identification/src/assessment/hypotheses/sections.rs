@@ -14,7 +14,7 @@ use crate::{
         intervals::scores::{SECTIONS, cosines},
         periodic_variance::Mean,
     },
-    regression::fold::{Fold, Folds, Phases},
+    regression::phase_sums::{PhaseSums, Phases},
 };
 
 /// Products of columns and residual, one column per section or cosine.
@@ -55,7 +55,7 @@ pub(super) struct RunScores {
     /// Timing of the run and pace of the actuators.
     pub(super) tempo: Tempo,
     /// For periodic motion: mean rows and residual of each line at each phase.
-    pub(super) folds: Folds,
+    pub(super) folds: Vec<PhaseSums>,
 }
 
 /// Mean residual of a periodic motion, and the runs that have it.
@@ -188,7 +188,7 @@ pub(super) struct Sink<'a> {
     lines: usize,
     squares: Vec<f64>,
     phases: Option<Phases>,
-    folds: Folds,
+    folds: Vec<PhaseSums>,
 }
 
 impl<'a> Sink<'a> {
@@ -277,7 +277,7 @@ impl<'a> Sink<'a> {
             return;
         };
         if self.folds.is_empty() {
-            let fold = |_| Fold::new(phases, self.frame.layout.columns + 1);
+            let fold = |_| PhaseSums::new(phases, self.frame.layout.columns + 1);
             self.folds = (0..lines.len()).map(fold).collect();
         }
         for (fold, line) in self.folds.iter_mut().zip(lines) {

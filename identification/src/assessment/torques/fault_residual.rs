@@ -14,7 +14,7 @@ use crate::{
     kinematics::Motions,
     regression::{
         columns::ColumnSet,
-        factor::{Factor, Reduced},
+        factor::{Factor, ReducedFactor},
         states::SampledStates,
     },
     settings::Settings,
@@ -138,7 +138,7 @@ impl FaultResidual<'_> {
         };
         let place = *self.columns.payload.iter().find(is_mass)?;
         let selected: Vec<usize> = (0..base.columns.len()).collect();
-        let Reduced { triangle, rhs, .. } = self.stacked(Some(fault)).0.reduced(&selected);
+        let ReducedFactor { triangle, rhs, .. } = self.stacked(Some(fault)).0.reduced(&selected);
         let solved = triangle.solve_upper_triangular(&rhs)?;
         solved.get(place).copied().filter(|mass| mass.is_finite())
     }

@@ -126,8 +126,8 @@ fn of_one(
             heavy.filter(|other| fault_residual.mass(*other).is_some_and(|mass| mass > 0.0));
         fault = heavy.next().unwrap_or(fault);
     }
-    let told = told(model, runs, fault, &so(before, after));
-    Some(measured(told, before, after, EXPLAINED))
+    let fault_check = fault_check(model, runs, fault, &so(before, after));
+    Some(measured(fault_check, before, after, EXPLAINED))
 }
 
 /// The fault of all positions or of gravity that explains the torques, in all runs alike.
@@ -159,8 +159,8 @@ fn of_all(
     let best = faults.into_iter().filter(explains);
     let (fault, after) = best.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let part = fault.explained(model, EXPLAINED);
-    let told = fault.check(model, &so(before, after));
-    Some(measured(told, before, after, part))
+    let fault_check = fault.check(model, &so(before, after));
+    Some(measured(fault_check, before, after, part))
 }
 
 /// A check with the residual after the correction, and the fraction allowed as threshold.
@@ -172,7 +172,7 @@ fn measured(check: Check, before: f64, after: f64, part: f64) -> Check {
 }
 
 /// The failed check of a fault; `so` is the evidence.
-fn told(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
+fn fault_check(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
     let info = model.info();
     let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
     let (kind, run, actuator, message) = match fault {

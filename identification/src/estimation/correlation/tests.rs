@@ -52,7 +52,7 @@ fn system(a: f64, seed: u64) -> System {
         line_names: vec![String::from("x"), String::from("y")],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
-        folds: Vec::new(),
+        phase_sums: Vec::new(),
         stretches: vec![Stretch {
             run: 0,
             lines,
@@ -146,7 +146,7 @@ fn a_residual_that_repeats_itself_does_not_average_out() {
             line_names: vec![String::from("1")],
             lines: vec![factor],
             parts: Vec::new(),
-            folds: Vec::new(),
+            phase_sums: Vec::new(),
             stretches: vec![Stretch {
                 run: 0,
                 lines: vec![rows],

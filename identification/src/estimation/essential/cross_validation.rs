@@ -7,7 +7,7 @@ use super::super::estimate::percent;
 use crate::regression::{
     elimination::eliminate,
     factor::{DATA_RANK_TOLERANCE, Factor},
-    system::{Part, System},
+    system::{RunPart, System},
 };
 
 /// Folds of a system.
@@ -60,7 +60,7 @@ impl CrossValidationFolds {
         let ones = vec![1.0; weights.len()];
         let merged = |label: usize, held: bool, weights: &[f64]| -> Option<Factor> {
             let parts = system.parts.iter().zip(labels);
-            let chosen: Vec<&Part> = parts
+            let chosen: Vec<&RunPart> = parts
                 .filter(|(_, own)| (**own == label) == held)
                 .map(|(part, _)| part)
                 .collect();

@@ -63,7 +63,7 @@ fn system(errors: f64, seed: u64) -> System {
         line_names: vec![String::from("1")],
         lines: vec![line],
         parts: Vec::new(),
-        folds: Vec::new(),
+        phase_sums: Vec::new(),
         stretches: vec![Stretch {
             run: 0,
             lines: vec![rows],

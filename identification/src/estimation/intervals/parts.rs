@@ -18,10 +18,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::scores::{Context, Covariance};
-use crate::regression::system::{Part, System};
+use crate::regression::system::{RunPart, System};
 
 /// Smallest fraction of the white-noise variance that the parts must represent.
-const LEAST_TOLD: f64 = 1e-6;
+const LEAST_VARIANCE_RATIO: f64 = 1e-6;
 
 /// Covariance from the parts of a system; `None` if they represent too little of a parameter.
 pub(super) fn covariance(system: &System, context: &Context<'_>) -> Option<Covariance> {
@@ -56,11 +56,11 @@ pub(super) fn covariance(system: &System, context: &Context<'_>) -> Option<Covar
             same - z[g].dot(&z[h])
         });
         let wanted: f64 = a.iter().sum();
-        let told = c.trace() / wanted;
-        if told.is_nan() || told < LEAST_TOLD {
+        let variance_ratio = c.trace() / wanted;
+        if variance_ratio.is_nan() || variance_ratio < LEAST_VARIANCE_RATIO {
             return None;
         }
-        factors.push(told.sqrt().recip());
+        factors.push(variance_ratio.sqrt().recip());
         freedoms.push(c.trace().powi(2) / c.norm_squared());
     }
     for (i, j) in (0..p).flat_map(|i| (0..p).map(move |j| (i, j))) {
@@ -74,7 +74,7 @@ pub(super) fn covariance(system: &System, context: &Context<'_>) -> Option<Covar
 }
 
 /// G of a part.
-fn gram(part: &Part, context: &Context<'_>) -> DMatrix<f64> {
+fn gram(part: &RunPart, context: &Context<'_>) -> DMatrix<f64> {
     let p = context.selected.len();
     let mut sum = DMatrix::zeros(p, p);
     for (line, weight) in part.lines.iter().zip(&context.estimation.weights) {
@@ -85,7 +85,7 @@ fn gram(part: &Part, context: &Context<'_>) -> DMatrix<f64> {
 }
 
 /// s of a part.
-fn score(part: &Part, context: &Context<'_>) -> DVector<f64> {
+fn score(part: &RunPart, context: &Context<'_>) -> DVector<f64> {
     let values = DVector::from_column_slice(&context.estimation.values);
     let mut sum = DVector::zeros(context.selected.len());
     for (line, weight) in part.lines.iter().zip(&context.estimation.weights) {

@@ -26,7 +26,7 @@ pub(super) fn ratios(
     }
     let places: Vec<usize> = (0..p).collect();
     let mut sum_variances = vec![SumVariance::default(); p];
-    for folds in &system.folds {
+    for phase_sums in &system.phase_sums {
         let weighted = |line: usize, rows: DMatrix<f64>| {
             let weight = context.estimation.weights[line];
             let columns = rows.select_columns(context.selected) * weight;
@@ -35,7 +35,7 @@ pub(super) fn ratios(
             let residual = y - &columns * values;
             (columns, residual)
         };
-        let Some(mean) = Mean::new(folds, weighted) else {
+        let Some(mean) = Mean::new(phase_sums, weighted) else {
             continue;
         };
         let left = mean.left(&places, &context.inverse);
@@ -44,7 +44,7 @@ pub(super) fn ratios(
             *all = all.and(own);
         }
     }
-    if system.folds.is_empty() {
+    if system.phase_sums.is_empty() {
         return vec![VarianceRatio::ONE; p];
     }
     let (variances, squares) = (covariance.matrix.diagonal(), context.inverse.diagonal());
@@ -125,7 +125,7 @@ fn enlarged(ratios: &[LogarithmicRatio]) -> Vec<VarianceRatio> {
 mod tests {
     use super::{LEAST_MEAN, LogarithmicRatio, VarianceRatio, enlarged};
 
-    fn told(ratios: &[f64]) -> Vec<LogarithmicRatio> {
+    fn logarithms(ratios: &[f64]) -> Vec<LogarithmicRatio> {
         let estimate = |ratio: f64| VarianceRatio {
             ratio,
             freedom: 20.0,
@@ -136,13 +136,13 @@ mod tests {
 
     #[test]
     fn ratios_that_chance_makes_enlarge_nothing() {
-        let found = enlarged(&told(&[0.6, 1.7, 1.1, 0.8, 1.3, 0.9]));
+        let found = enlarged(&logarithms(&[0.6, 1.7, 1.1, 0.8, 1.3, 0.9]));
         assert!(found.iter().all(|own| own.ratio == 1.0), "{found:?}");
     }
 
     #[test]
     fn ratios_are_drawn_to_their_mean_as_far_as_chance_parts_them() {
-        let found = enlarged(&told(&[2.5, 4.0, 3.0, 2.8, 3.6]));
+        let found = enlarged(&logarithms(&[2.5, 4.0, 3.0, 2.8, 3.6]));
         let first = found[0].ratio;
         assert!(first.ln() > LEAST_MEAN);
         assert!(
@@ -150,7 +150,7 @@ mod tests {
             "{found:?}"
         );
         // If the true ratios differ, each keeps most of its own value.
-        let found = enlarged(&told(&[1.0, 1.1, 30.0, 40.0, 0.9, 35.0]));
+        let found = enlarged(&logarithms(&[1.0, 1.1, 30.0, 40.0, 0.9, 35.0]));
         assert!(found[0].ratio < 2.0 && found[3].ratio > 20.0, "{found:?}");
         assert!(
             found[3].freedom < 25.0 && found[0].ratio >= 1.0,

@@ -229,16 +229,16 @@ impl<'a> Context<'a> {
 
     fn contribution(&self, stretch: &Stretch, noise: &DMatrix<f64>) -> Option<StretchContribution> {
         let (cosines, sections) = counts(stretch)?;
-        let told = self.sections(stretch, sections);
+        let sums_of_sections = self.sections(stretch, sections);
         let waves = DMatrix::from_fn(sections, cosines, |k, b| {
             std::f64::consts::SQRT_2 * cosine(b + 1, k, sections)
         });
-        let sums = self.influence() * &told.scores * &waves;
+        let sums = self.influence() * &sums_of_sections.scores * &waves;
         let matrix = &sums * sums.transpose() / cosines as f64;
         Some(StretchContribution {
             equations: stretch.lines.first()?.nrows(),
             matrix,
-            moments: self.moments(&told, &waves, noise),
+            moments: self.moments(&sums_of_sections, &waves, noise),
         })
     }
 
@@ -247,7 +247,7 @@ impl<'a> Context<'a> {
         let turned = self.influence().transpose();
         let (q, p) = turned.shape();
         let entries = q * p - p * p.saturating_sub(1) / 2;
-        let mut told = Sections {
+        let mut sums_of_sections = Sections {
             scores: DMatrix::zeros(q, sections),
             variances: DMatrix::zeros(p, sections),
             fourths: vec![0.0; p],
@@ -257,14 +257,20 @@ impl<'a> Context<'a> {
         for section in 0..sections {
             let range = range(stretch, section, sections);
             let Section { scores, gram } = self.section(stretch, range, true);
-            told.scores.set_column(section, &scores.row_sum_tr());
+            sums_of_sections
+                .scores
+                .set_column(section, &scores.row_sum_tr());
             let noise = square(&scores);
             let own = scores * &turned;
             for (i, column) in own.column_iter().enumerate() {
-                told.variances[(i, section)] = column.norm_squared();
-                told.fourths[i] += column.iter().map(|value| value.powi(4)).sum::<f64>();
+                sums_of_sections.variances[(i, section)] = column.norm_squared();
+                sums_of_sections.fourths[i] +=
+                    column.iter().map(|value| value.powi(4)).sum::<f64>();
             }
-            for (to, from) in [(&mut told.fitted, &gram), (&mut told.noisy, &noise)] {
+            for (to, from) in [
+                (&mut sums_of_sections.fitted, &gram),
+                (&mut sums_of_sections.noisy, &noise),
+            ] {
                 let mut place = to.column_mut(section);
                 let upper = (0..q).flat_map(|j| &from.as_slice()[j * q..j * q + p.min(j + 1)]);
                 place
@@ -273,7 +279,7 @@ impl<'a> Context<'a> {
                     .for_each(|(to, from)| *to = *from);
             }
         }
-        told
+        sums_of_sections
     }
 
     /// Equations of a section of a stretch; with G if `wanted`.
@@ -346,17 +352,22 @@ impl<'a> Context<'a> {
         sums.collect()
     }
 
-    fn moments(&self, told: &Sections, waves: &DMatrix<f64>, noise: &DMatrix<f64>) -> Vec<Moments> {
+    fn moments(
+        &self,
+        sums_of_sections: &Sections,
+        waves: &DMatrix<f64>,
+        noise: &DMatrix<f64>,
+    ) -> Vec<Moments> {
         let p = self.selected.len();
         let (sections, cosines) = waves.shape();
-        let fitted = self.turned(&told.fitted, waves);
-        let noisy = self.turned(&told.noisy, waves);
+        let fitted = self.turned(&sums_of_sections.fitted, waves);
+        let noisy = self.turned(&sums_of_sections.noisy, waves);
         // φ_b φ_b' are cosines of the difference and of the sum.
         let both = DMatrix::from_fn(sections, 2 * cosines + 1, |k, m| cosine(m, k, sections));
-        let spectra = &told.variances * both;
+        let spectra = &sums_of_sections.variances * both;
         (0..p)
             .map(|i| {
-                let own = told.variances.row(i);
+                let own = sums_of_sections.variances.row(i);
                 let spectrum = spectra.row(i);
                 let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
                 let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
@@ -368,7 +379,7 @@ impl<'a> Context<'a> {
                 let count = cosines as f64;
                 let expected = c.trace() / count;
                 // Scatter of single squares, which enters every C_bb'².
-                let by_chance = SCATTER * told.fourths[i];
+                let by_chance = SCATTER * sums_of_sections.fourths[i];
                 let squares = c.norm_squared() / (count * count) - by_chance;
                 Moments {
                     wanted: own.iter().sum(),

@@ -17,7 +17,7 @@ const TRUTH: [f64; 3] = [2.0, -1.0, 0.5];
 
 /// Options of a draw.
 #[derive(Clone, Copy)]
-struct Kind {
+struct DrawOptions {
     /// Correlation of the residual between successive instants.
     memory: f64,
     /// Growth of the residual with the first column.
@@ -29,7 +29,7 @@ struct Kind {
 /// Two lines with periodic columns and a constant one.
 ///
 /// Their residuals are partly common to both lines.
-fn system(kind: Kind, samples: usize, seed: u64) -> System {
+fn system(kind: DrawOptions, samples: usize, seed: u64) -> System {
     let mut generator = Pcg64::seed_from_u64(seed);
     let mut white = || {
         (0..12)
@@ -74,7 +74,7 @@ fn system(kind: Kind, samples: usize, seed: u64) -> System {
         line_names: vec![String::from("x"), String::from("y")],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
-        folds: Vec::new(),
+        phase_sums: Vec::new(),
         stretches: vec![Stretch {
             run: 0,
             lines,
@@ -86,7 +86,7 @@ fn system(kind: Kind, samples: usize, seed: u64) -> System {
 }
 
 /// Intervals of one draw.
-fn intervals(kind: Kind, samples: usize, seed: u64) -> Vec<[f64; 2]> {
+fn intervals(kind: DrawOptions, samples: usize, seed: u64) -> Vec<[f64; 2]> {
     let system = system(kind, samples, seed);
     let selected = [0, 1, 2];
     let found = estimate(&system, &selected, &settings()).expect("an estimate");
@@ -106,7 +106,7 @@ fn intervals_contain_the_truth_as_often_as_they_say() {
         (0.0, 1.0, 0.0),
         (0.0, 0.0, 0.3),
     ] {
-        let kind = Kind {
+        let kind = DrawOptions {
             memory,
             growth,
             repeated,
@@ -128,7 +128,7 @@ fn intervals_contain_the_truth_as_often_as_they_say() {
 
 #[test]
 fn more_periods_tell_no_more_of_what_repeats_itself() {
-    let kind = Kind {
+    let kind = DrawOptions {
         memory: 0.0,
         growth: 0.0,
         repeated: 1.0,

@@ -20,7 +20,7 @@ use overact_identification::{
 /// Section; empty if nothing was tested.
 pub(crate) fn section(contents: &Contents<'_>) -> Section {
     let all = &contents.identification.errors_in_regressor;
-    let tested = all.iter().any(|told| told.agreement.is_some());
+    let tested = all.iter().any(|comparison| comparison.agreement.is_some());
     let mut body = String::new();
     if tested {
         body.push_str(&paragraph(
@@ -36,19 +36,20 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
 }
 
 /// Results for one model.
-fn of_model(told: &ErrorsInRegressor) -> String {
-    let heading = format!("<h3>{}</h3>\n", escape(case_heading(told.model)));
-    let outcome = match (&told.agreement, &told.missing) {
-        (Some(agreement), _) => verdict(told, agreement),
+fn of_model(comparison: &ErrorsInRegressor) -> String {
+    let heading = format!("<h3>{}</h3>\n", escape(case_heading(comparison.model)));
+    let outcome = match (&comparison.agreement, &comparison.missing) {
+        (Some(agreement), _) => verdict(comparison, agreement),
         (None, Some(why)) => format!("Not tested: {why}."),
         (None, None) => String::from("Not tested."),
     };
     let mut html = heading + &paragraph(&outcome);
-    let differs = told.agreement.as_ref().is_some_and(|one| one.differs);
-    if differs && !told.parameters.iter().any(|one| one.spoiled) {
+    let differs = comparison.agreement.as_ref().is_some_and(|one| one.differs);
+    if differs && !comparison.parameters.iter().any(|one| one.spoiled) {
         html.push_str(&paragraph("No difference exceeds the standard deviation of least squares, so the bias does not matter."));
     }
-    let (differing, rest): (Vec<_>, Vec<_>) = told.parameters.iter().partition(|one| one.differs);
+    let (differing, rest): (Vec<_>, Vec<_>) =
+        comparison.parameters.iter().partition(|one| one.differs);
     if !differing.is_empty() {
         html.push_str(&table("Base parameters that differ", &differing));
         html.push_str(&note(
@@ -69,8 +70,8 @@ fn of_model(told: &ErrorsInRegressor) -> String {
 }
 
 /// Whether least squares and instrumental variables agree, in words.
-fn verdict(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
-    let source = match told.instruments {
+fn verdict(comparison: &ErrorsInRegressor, agreement: &Agreement) -> String {
+    let source = match comparison.instruments {
         Instruments::Periods => "the other periods of the same motion",
         Instruments::Simulated => "the motion of the simulated robot",
         Instruments::None => "none",

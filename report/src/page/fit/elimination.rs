@@ -28,7 +28,7 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
         }
         let recommended = of(identification, estimate.model, Stage::Recommended);
         let _ = writeln!(body, "<h3>{}</h3>", case_heading(estimate.model));
-        body.push_str(&paragraph(&told(estimate, recommended)));
+        body.push_str(&paragraph(&sentence(estimate, recommended)));
         if !estimate.removals.is_empty() {
             body.push_str(&path(identification, estimate, recommended));
             body.push_str(&details(
@@ -49,7 +49,7 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
 }
 
 /// Elimination in words.
-fn told(estimate: &Estimate, recommended: Option<&Estimate>) -> String {
+fn sentence(estimate: &Estimate, recommended: Option<&Estimate>) -> String {
     let mut text = String::new();
     if let Some(one) = recommended {
         let _ = write!(

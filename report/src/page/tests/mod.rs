@@ -5,7 +5,7 @@ mod example;
 mod words;
 
 use super::{Attachment, Contents, page};
-use crate::{Extent, Units, beside, numbers, summary, tables};
+use crate::{Extent, Units, compare_with_published, numbers, summary, tables};
 use example::{HOSTILE, identification, published, series, settings, units};
 use overact_identification::{
     CalibratedParameter, Calibration, CalibrationScope, Estimate, Figures, HeldParameter,
@@ -128,11 +128,11 @@ fn no_name_becomes_markup_and_nothing_is_loaded() {
 fn no_name_reaches_the_terminal_but_as_text() {
     let mut identification = identification();
     identification.robot += &"x".repeat(5000);
-    let told = summary(&identification, Some("report.html"), Extent::Whole)
+    let output = summary(&identification, Some("report.html"), Extent::Whole)
         + &tables(&identification)
-        + &beside(&identification, Some(&published()));
+        + &compare_with_published(&identification, Some(&published()));
     let hidden = |c: char| c != '\n' && overact_core::text::is_invisible(c);
-    assert!(!told.contains(hidden), "{told:?}");
+    assert!(!output.contains(hidden), "{output:?}");
     for words in [
         "platform projection (torques of all actuators): USE IT FOR WHAT IS LISTED",
         "  Usable if the named fault is the cause: m_platformR.\n",
@@ -140,10 +140,10 @@ fn no_name_reaches_the_terminal_but_as_text() {
         "leg1: clipped",
         "Evidence and plots: report.html",
     ] {
-        assert!(told.contains(words), "{words} in {told}");
+        assert!(output.contains(words), "{words} in {output}");
     }
     let is_long = |line: &&str| line.chars().count() > 400;
-    assert_eq!(told.lines().find(is_long), None);
+    assert_eq!(output.lines().find(is_long), None);
     let page = full(&identification);
     let hidden = |c: char| c != '\n' && overact_core::text::is_invisible(c);
     assert!(!page.contains(hidden));
@@ -224,10 +224,10 @@ fn what_there_is_not_is_not_spoken_of() {
     identification.cross_validation.clear();
     let html = of(&identification, &Units::default());
     assert!(!html.contains("the prediction of validation data is no worse"));
-    let told = summary(&identification, None, Extent::Whole);
+    let output = summary(&identification, None, Extent::Whole);
     assert!(
-        told.contains("base parameters: ") && told.contains("by the r_sigma rule: "),
-        "{told}"
+        output.contains("base parameters: ") && output.contains("by the r_sigma rule: "),
+        "{output}"
     );
 }
 
@@ -257,7 +257,7 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
     let conditioning = text(element(&document, "conditioning"));
     assert!(
         conditioning.contains("held out at 0.00 s"),
-        "the crossing is told of: {conditioning}"
+        "the crossing is reported: {conditioning}"
     );
 }
 

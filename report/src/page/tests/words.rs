@@ -29,8 +29,11 @@ fn the_first_figures_keep_their_units_beside_them() {
     let document = parsed(&html);
     let mut all = document.descendants();
     let facts = all.find(|node| node.attribute("class") == Some("facts"));
-    let told = text(facts.expect("the result in a few numbers"));
+    let output = text(facts.expect("the result in a few numbers"));
     for (unit, apart) in [("\u{a0}%", " %"), ("\u{a0}s, ", " s, ")] {
-        assert!(told.contains(unit) && !told.contains(apart), "{told:?}");
+        assert!(
+            output.contains(unit) && !output.contains(apart),
+            "{output:?}"
+        );
     }
 }

@@ -38,7 +38,7 @@ pub const ALL: [&str; 44] = [
     "passive revolute",
     "passive prismatic",
     "dependent joint in the chain",
-    "dependent joint beside the chain",
+    "dependent joint off the chain",
     "joint that follows one of another kind",
     "fixed joint",
     "branching tree",
@@ -71,7 +71,7 @@ impl Sketch {
             Motion::Translation => "translation",
             Motion::Schoenflies(_) => "schoenflies",
             Motion::Spherical => "spherical",
-            Motion::Spatial | Motion::Aside(_) => "spatial",
+            Motion::Spatial | Motion::Parasitic(_) => "spatial",
         };
         note(true, format!("motion: {motion}"));
         note(self.shapes.len() > 1, "legs that differ".to_owned());
@@ -140,7 +140,7 @@ impl Shape {
                 note(true, format!("{driven} {kind}"));
                 continue;
             }
-            let place = if path.contains(&at) { "in" } else { "beside" };
+            let place = if path.contains(&at) { "in" } else { "off" };
             note(!is_tree, format!("dependent joint {place} the chain"));
             let other = |t: &(usize, f64)| self.members[t.0].joint.kind != joint.kind;
             let mixed = joint.terms.iter().any(other);

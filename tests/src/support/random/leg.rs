@@ -50,7 +50,7 @@ impl Structure {
             Motion::Planar(axis) => vec![InPlane(axis), InPlane(axis)],
             Motion::Translation | Motion::Schoenflies(_) => vec![Parallelograms],
             Motion::Spherical => vec![Wrist],
-            Motion::Spatial | Motion::Aside(_) => any.to_vec(),
+            Motion::Spatial | Motion::Parasitic(_) => any.to_vec(),
         };
         if dice.chance(0.5) {
             dice.pick(&own)

@@ -80,7 +80,7 @@ impl Sketch {
             Motion::Translation => at.to_vec(),
             Motion::Schoenflies(axis) => [&at[..], &[rotation[axis]]].concat(),
             Motion::Spherical => quaternion().to_vec(),
-            Motion::Spatial | Motion::Aside(_) => [&at[..], &quaternion()].concat(),
+            Motion::Spatial | Motion::Parasitic(_) => [&at[..], &quaternion()].concat(),
         }
     }
 }

@@ -51,7 +51,7 @@ impl Sketch {
             Motion::Translation => ("translation", None),
             Motion::Schoenflies(axis) => ("schoenflies", Some(axis)),
             Motion::Spherical => ("spherical", None),
-            Motion::Spatial | Motion::Aside(_) => ("spatial", None),
+            Motion::Spatial | Motion::Parasitic(_) => ("spatial", None),
         };
         line(text, &format!("\n[platform]\nmotion = \"{word}\""));
         let point = match self.motion {

@@ -14,7 +14,7 @@ mod right;
 
 /// A factor of an orientation.
 #[derive(Debug, Clone, PartialEq)]
-enum Part {
+enum OrientationFactor {
     /// Rz(rz) Ry(ry) Rx(rx) of constant angles.
     Tilt([Angle; 3]),
     /// A turn about z, of all joints of a run of parallel axes.
@@ -23,7 +23,7 @@ enum Part {
 
 /// A frame's orientation in the robot's base frame.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Orientation(Vec<Part>);
+pub struct Orientation(Vec<OrientationFactor>);
 
 impl Orientation {
     /// The orientations of all frames of a leg; `None` if a constant overflows.
@@ -39,19 +39,28 @@ impl Orientation {
                 Some(a) => all[a].0.clone(),
                 None => Self::fixed(leg.base.rotation).0,
             };
-            let from = match parts.pop_if(|part| matches!(part, Part::Turn(_))) {
-                Some(Part::Turn(turn)) => turn,
+            let from = match parts.pop_if(|part| matches!(part, OrientationFactor::Turn(_))) {
+                Some(OrientationFactor::Turn(turn)) => turn,
                 _ => Direction::constant(Angle::ZERO),
             };
             let turned = from.plus(&Direction::constant(joint.gamma))?;
             let theta = joint_turn(leg, index, first_joint, configuration)?;
-            let tilt = Part::Tilt([joint.alpha, Angle::ZERO, Angle::ZERO]);
+            let tilt = OrientationFactor::Tilt([joint.alpha, Angle::ZERO, Angle::ZERO]);
             match parallel(joint.alpha) {
-                Some(sign) if sign == Ratio::ONE => parts.push(Part::Turn(turned.plus(&theta)?)),
-                Some(_) => {
-                    parts.extend([tilt, Part::Turn(turned.negative().plus(&theta)?)]);
+                Some(sign) if sign == Ratio::ONE => {
+                    parts.push(OrientationFactor::Turn(turned.plus(&theta)?))
                 }
-                None => parts.extend([Part::Turn(turned), tilt, Part::Turn(theta)]),
+                Some(_) => {
+                    parts.extend([
+                        tilt,
+                        OrientationFactor::Turn(turned.negative().plus(&theta)?),
+                    ]);
+                }
+                None => parts.extend([
+                    OrientationFactor::Turn(turned),
+                    tilt,
+                    OrientationFactor::Turn(theta),
+                ]),
             }
             all.push(Self(parts));
         }
@@ -64,7 +73,10 @@ impl Orientation {
     pub(crate) fn followed_by(&self, next: &Self) -> Option<Self> {
         let mut parts = self.0.clone();
         let mut rest = next.0.as_slice();
-        if let (Some(Part::Turn(last)), [Part::Turn(first), others @ ..]) = (parts.last_mut(), rest)
+        if let (
+            Some(OrientationFactor::Turn(last)),
+            [OrientationFactor::Turn(first), others @ ..],
+        ) = (parts.last_mut(), rest)
         {
             *last = last.plus(first)?;
             rest = others;
@@ -79,7 +91,7 @@ impl Orientation {
         let is_turned = rotation.iter().any(|angle| !angle.is_zero());
         Self(
             is_turned
-                .then_some(Part::Tilt(rotation))
+                .then_some(OrientationFactor::Tilt(rotation))
                 .into_iter()
                 .collect(),
         )
@@ -114,12 +126,16 @@ impl Orientation {
         let shared = shared.count();
         let (mut forth, mut back) = (&self.0[shared..], &from.0[shared..]);
         let mut middle = Matrix3::identity(arena);
-        if let ([Part::Turn(to), rest @ ..], [Part::Turn(of), others @ ..]) = (forth, back) {
+        if let (
+            [OrientationFactor::Turn(to), rest @ ..],
+            [OrientationFactor::Turn(of), others @ ..],
+        ) = (forth, back)
+        {
             let turn = to.plus(&of.negative())?;
-            middle = Part::Turn(turn).matrix(arena, configuration)?;
+            middle = OrientationFactor::Turn(turn).matrix(arena, configuration)?;
             (forth, back) = (rest, others);
         }
-        let product = |start: Matrix3<'a>, parts: &[Part]| {
+        let product = |start: Matrix3<'a>, parts: &[OrientationFactor]| {
             parts.iter().try_fold(start, |product, part| {
                 Some(product * part.matrix(arena, configuration)?)
             })
@@ -216,7 +232,7 @@ pub(crate) fn keep_rows<'a>(
     })
 }
 
-impl Part {
+impl OrientationFactor {
     fn matrix<'a>(
         &self,
         arena: &'a Arena,

@@ -3,7 +3,7 @@
 //! If the tilts of a leg's base and of the body that carries it cancel, or flip the axis, the
 //! rotations before and after are about parallel axes and merge into one.
 
-use super::Part;
+use super::OrientationFactor;
 use crate::cas::{Angle, Direction, Ratio};
 
 /// A rotation by right angles, as a matrix.
@@ -12,8 +12,8 @@ type Right = [[i8; 3]; 3];
 const IDENTITY: Right = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 /// The same orientation with merged rotations about parallel axes; `None` if a constant overflows.
-pub(super) fn merged(parts: &[Part]) -> Option<Vec<Part>> {
-    let mut all: Vec<Part> = Vec::new();
+pub(super) fn merged(parts: &[OrientationFactor]) -> Option<Vec<OrientationFactor>> {
+    let mut all: Vec<OrientationFactor> = Vec::new();
     let mut at = 0;
     while at < parts.len() {
         let run = parts[at..].iter().map_while(rotation);
@@ -31,12 +31,12 @@ pub(super) fn merged(parts: &[Part]) -> Option<Vec<Part>> {
             (_, [0, 0, 1]) => push(&mut all, about_z(whole))?,
             (_, [0, 0, -1]) => {
                 // Rz(a) Rx(180°) is Rx(180°) Rz(-a).
-                let before = match all.pop_if(|part| matches!(part, Part::Turn(_))) {
-                    Some(Part::Turn(turn)) => turn.negative(),
+                let before = match all.pop_if(|part| matches!(part, OrientationFactor::Turn(_))) {
+                    Some(OrientationFactor::Turn(turn)) => turn.negative(),
                     _ => Direction::constant(Angle::ZERO),
                 };
-                all.push(Part::Tilt([half()?, Angle::ZERO, Angle::ZERO]));
-                all.push(Part::Turn(before));
+                all.push(OrientationFactor::Tilt([half()?, Angle::ZERO, Angle::ZERO]));
+                all.push(OrientationFactor::Turn(before));
                 let over = [[1, 0, 0], [0, -1, 0], [0, 0, -1]];
                 push(&mut all, about_z(product(&over, &whole)))?;
             }
@@ -48,23 +48,25 @@ pub(super) fn merged(parts: &[Part]) -> Option<Vec<Part>> {
 }
 
 /// Appends a part; consecutive rotations about z are merged.
-fn push(all: &mut Vec<Part>, part: Part) -> Option<()> {
+fn push(all: &mut Vec<OrientationFactor>, part: OrientationFactor) -> Option<()> {
     match (all.last_mut(), part) {
-        (Some(Part::Turn(last)), Part::Turn(next)) => *last = last.plus(&next)?,
+        (Some(OrientationFactor::Turn(last)), OrientationFactor::Turn(next)) => {
+            *last = last.plus(&next)?
+        }
         (_, part) => all.push(part),
     }
     Some(())
 }
 
 /// A part as a constant rotation by right angles.
-fn rotation(part: &Part) -> Option<Right> {
+fn rotation(part: &OrientationFactor) -> Option<Right> {
     match part {
-        Part::Tilt([rx, ry, rz]) => {
+        OrientationFactor::Tilt([rx, ry, rz]) => {
             let [x, y, z] = [about(0, *rx)?, about(1, *ry)?, about(2, *rz)?];
             Some(product(&product(&z, &y), &x))
         }
-        Part::Turn(turn) if turn.is_constant() => about(2, turn.offset()),
-        Part::Turn(_) => None,
+        OrientationFactor::Turn(turn) if turn.is_constant() => about(2, turn.offset()),
+        OrientationFactor::Turn(_) => None,
     }
 }
 
@@ -88,7 +90,7 @@ fn product(a: &Right, b: &Right) -> Right {
 }
 
 /// A rotation about z.
-fn about_z(turn: Right) -> Part {
+fn about_z(turn: Right) -> OrientationFactor {
     let quarters = match (turn[0][0], turn[1][0]) {
         (0, 1) => 1,
         (-1, _) => 2,
@@ -96,7 +98,7 @@ fn about_z(turn: Right) -> Part {
         _ => 0,
     };
     let angle = Ratio::new(quarters, 2).map_or(Angle::ZERO, Angle::half_turns);
-    Part::Turn(Direction::constant(angle))
+    OrientationFactor::Turn(Direction::constant(angle))
 }
 
 fn half() -> Option<Angle> {

@@ -41,7 +41,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let (limit, noise) = limit(watched, log.samples());
         let ranges = watched.monitor.ranges();
         let range = ranges.into_iter().fold(0.0, f64::max);
-        let closing = Closing {
+        let closing = ClosureResidual {
             filtered: watched.closure_residual,
             as_logged: if watched.closure_residual > limit {
                 positions::unfiltered_miss(context.model, log)?
@@ -49,7 +49,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 None
             },
             limit,
-            harmless: HARMLESS * range * finest(context),
+            harmless: HARMLESS * range * smallest_relative_deviation(context),
             range,
         };
         let tolerance = limit.max(closing.harmless);
@@ -70,8 +70,8 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         } else {
             check
         };
-        checks.extend(explained.filter(|_| closing.misses()));
-        checks.push(if !closing.misses() {
+        checks.extend(explained.filter(|_| closing.is_violated()));
+        checks.push(if !closing.is_violated() {
             check
         } else if closing.filtered > closing.harmless {
             check.with_grade(Grade::DoNotUse)
@@ -83,7 +83,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 }
 
 /// Closure residual of a run and its limits (m, rad).
-struct Closing {
+struct ClosureResidual {
     /// Largest residual of the filtered positions.
     filtered: f64,
     /// Largest residual of the unfiltered positions; `None` if not computed or without poses.
@@ -100,9 +100,9 @@ struct Closing {
     range: f64,
 }
 
-impl Closing {
+impl ClosureResidual {
     /// Whether the positions violate the closure.
-    fn misses(&self) -> bool {
+    fn is_violated(&self) -> bool {
         self.filtered > self.limit && self.as_logged.is_none_or(|miss| miss > self.limit)
     }
 
@@ -114,7 +114,7 @@ impl Closing {
                 "the positions close the loops to {} m or rad, consistent with the encoders' resolution and noise",
                 number(self.filtered)
             ),
-            Some(miss) if !self.misses() => format!(
+            Some(miss) if !self.is_violated() => format!(
                 "the positions close the loops to {} m or rad, consistent with the encoders' resolution and noise; filtered positions miss by up to {}, since they vibrate near the cutoff",
                 number(miss),
                 number(self.filtered)
@@ -147,15 +147,19 @@ fn limit(watched: &RunMonitor, samples: usize) -> (f64, f64) {
 }
 
 /// Smallest relative standard deviation of a recommended parameter.
-fn finest(context: &Context<'_>) -> f64 {
+fn smallest_relative_deviation(context: &Context<'_>) -> f64 {
     let estimates = context.estimates_of(Stage::Recommended);
     let all = estimates.flat_map(|one| &one.parameters);
     let relative = all.map(|one| {
         let half = 0.5 * (one.interval_95[1] - one.interval_95[0]);
         half / one.value.abs()
     });
-    let finest = relative.fold(f64::INFINITY, f64::min);
-    if finest.is_finite() { finest } else { 0.0 }
+    let smallest_relative_deviation = relative.fold(f64::INFINITY, f64::min);
+    if smallest_relative_deviation.is_finite() {
+        smallest_relative_deviation
+    } else {
+        0.0
+    }
 }
 
 /// Plot of each run's closure residual and its limit.
@@ -180,9 +184,9 @@ fn evidence(context: &Context<'_>) -> Evidence {
 
 #[cfg(test)]
 mod tests {
-    use super::Closing;
+    use super::ClosureResidual;
 
-    const RINGING: Closing = Closing {
+    const RINGING: ClosureResidual = ClosureResidual {
         filtered: 1.4e-4,
         as_logged: Some(1e-5),
         limit: 5e-5,
@@ -191,26 +195,26 @@ mod tests {
     };
 
     #[test]
-    fn positions_that_close_as_they_were_logged_accuse_no_length() {
-        assert!(!RINGING.misses());
+    fn positions_that_close_before_filtering_pass() {
+        assert!(!RINGING.is_violated());
         assert!(RINGING.words().contains("near the cutoff"));
     }
 
     #[test]
-    fn positions_that_miss_filtered_or_not_accuse_the_lengths() {
+    fn positions_that_violate_the_closure_fail() {
         for as_logged in [Some(1.5e-4), None] {
-            let wrong = Closing {
+            let wrong = ClosureResidual {
                 as_logged,
                 ..RINGING
             };
-            assert!(wrong.misses());
+            assert!(wrong.is_violated());
             assert!(wrong.words().contains("--calibrate"));
         }
-        let close = Closing {
+        let close = ClosureResidual {
             filtered: 4e-5,
             as_logged: None,
             ..RINGING
         };
-        assert!(!close.misses());
+        assert!(!close.is_violated());
     }
 }

@@ -6,7 +6,9 @@ use crate::assessment::{
     check::{About, Check, CheckKind, Detectable},
     checks::{
         Context,
-        fault_hypotheses::{HARMFUL, Tested, harm, most_significant, parabola, tested, worst_harm},
+        fault_hypotheses::{
+            HARMFUL, TestedHypothesis, harm, most_significant, parabola, tested, worst_harm,
+        },
         level::{level, origin},
     },
     hypotheses::{FaultHypothesis, Group, Misreading, Scores},
@@ -136,7 +138,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 fn passed_check(
     context: &Context<'_>,
     scores: &Scores,
-    found: &[Tested],
+    found: &[TestedHypothesis],
     tests: usize,
     level: f64,
 ) -> Check {
@@ -176,10 +178,10 @@ fn passed_check(
 fn detection_limits(
     context: &Context<'_>,
     scores: &Scores,
-    found: &[Tested],
+    found: &[TestedHypothesis],
     level: f64,
 ) -> Vec<(FaultHypothesis, Detectable)> {
-    let limit = |one: &Tested| {
+    let limit = |one: &TestedHypothesis| {
         let hypothesis = one.hypothesis(scores);
         let (unit, visible) = (unit(context, hypothesis), one.wald.visible(level));
         let limit = Detectable {
@@ -189,7 +191,7 @@ fn detection_limits(
         };
         (hypothesis, limit)
     };
-    let has_limit = |one: &&Tested| {
+    let has_limit = |one: &&TestedHypothesis| {
         !matches!(
             one.hypothesis(scores),
             FaultHypothesis::Play(_) | FaultHypothesis::Eccentric(..)
@@ -198,7 +200,7 @@ fn detection_limits(
     found.iter().filter(has_limit).map(limit).collect()
 }
 
-fn ratio(one: &Tested) -> f64 {
+fn ratio(one: &TestedHypothesis) -> f64 {
     one.wald.size().abs() / one.wald.deviation
 }
 

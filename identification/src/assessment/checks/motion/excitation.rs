@@ -81,7 +81,7 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
     } else {
         Grade::UseListed
     };
-    check(told(context, &spoiled))
+    check(description(context, &spoiled))
         .with_grade(grade)
         .with_unusable_parameters(spoiled)
 }
@@ -126,7 +126,7 @@ fn summed(system: &System, estimate: &Estimate) -> Vec<String> {
 }
 
 /// Describes parameters that the runs do not separate.
-fn told(context: &Context<'_>, spoiled: &[String]) -> String {
+fn description(context: &Context<'_>, spoiled: &[String]) -> String {
     let names: Vec<String> = spoiled.iter().map(|name| format!("`{name}`")).collect();
     let names = names.join(", ");
     let still: Vec<String> = still(context)

@@ -6,7 +6,7 @@ use crate::assessment::{
     check::{About, Check, CheckKind, Grade},
     checks::{
         Context,
-        fault_hypotheses::{Harm, Tested, harm, most_significant, tested, worst_harm},
+        fault_hypotheses::{Harm, TestedHypothesis, harm, most_significant, tested, worst_harm},
         level::{level, origin},
     },
     evidence::{Axis, Curve, Evidence},
@@ -27,7 +27,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     }
     let (tests, level) = (found.len(), level(found.len()));
-    let ratio = |one: &Tested| one.wald.strength();
+    let ratio = |one: &TestedHypothesis| one.wald.strength();
     let worst = most_significant(&found, level);
     let limit = worst.unwrap_or(&found[0]).wald.quantile(level);
     let check = Check::new(CheckKind::MissingParameter, About::Model, "")
@@ -45,17 +45,17 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let hypothesis = worst.hypothesis(scores);
     let mut harm = worst_harm(context, scores, &found, worst, level);
-    let others = others(context, scores, &found, hypothesis, level);
+    let others = harmful_elsewhere(context, scores, &found, hypothesis, level);
     for (_, other) in &others {
         harm.with(context, other);
     }
-    let rest = format!(
+    let consequence = format!(
         "which explains {} % of the residual's square; {}{}",
         significant(100.0 * worst.wald.explained, 2),
         harm.words(),
-        too(&others)
+        failures_elsewhere(&others)
     );
-    let words = words(context, hypothesis, worst, rest);
+    let words = sentence(context, hypothesis, worst, consequence);
     let check = Check { words, ..check }
         .measured(ratio(worst), "standard deviations")
         .against(limit, origin(tests))
@@ -70,15 +70,15 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// Describes the strongest hypothesis; `rest` is the consequence.
-fn words(
+/// Sentence on the strongest hypothesis, which ends with its consequence.
+fn sentence(
     context: &Context<'_>,
     hypothesis: FaultHypothesis,
-    worst: &Tested,
-    rest: String,
+    worst: &TestedHypothesis,
+    consequence: String,
 ) -> String {
     let info = context.model.info();
-    let (what, name, shape) = match hypothesis {
+    let (quantity, name, shape) = match hypothesis {
         FaultHypothesis::Force(line, shape) => ("force on", info.coordinates.get(line), shape),
         FaultHypothesis::Torque(actuator, shape) => {
             ("torque of", info.actuators.get(actuator), shape)
@@ -86,62 +86,78 @@ fn words(
         _ => return String::new(),
     };
     let finding = Finding {
-        what: format!("{what} {}", called(name.copied().unwrap_or_default())),
+        quantity: format!("{quantity} {}", called(name.copied().unwrap_or_default())),
         size: worst.wald.largest(),
         strength: worst.wald.strength(),
-        rest,
+        consequence,
     };
     match hypothesis {
         FaultHypothesis::Torque(actuator, Shape::Stribeck) => {
-            finding.near_standstill(context, actuator)
+            finding.standstill_sentence(context, actuator)
         }
         FaultHypothesis::Torque(actuator, _) => {
             let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
-            finding.words(shape, shape.unit(revolute))
+            finding.sentence(shape, shape.unit(revolute))
         }
-        _ => finding.words(shape, ""),
+        _ => finding.sentence(shape, ""),
+    }
+}
+
+/// Equations in which a missing term acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum EquationLine {
+    /// Those of an actuator, by number.
+    Actuator(usize),
+    /// Those of a coordinate, by number.
+    Coordinate(usize),
+    All,
+}
+
+impl EquationLine {
+    const fn of(hypothesis: FaultHypothesis) -> Self {
+        match hypothesis {
+            FaultHypothesis::Torque(actuator, _) => Self::Actuator(actuator),
+            FaultHypothesis::Force(line, _) => Self::Coordinate(line),
+            _ => Self::All,
+        }
     }
 }
 
 /// Strongest harmful hypothesis of every other drive and coordinate.
 ///
 /// If all drives share a fault, chance decides which of them has the strongest result.
-fn others(
+fn harmful_elsewhere(
     context: &Context<'_>,
     scores: &Scores,
-    found: &[Tested],
+    found: &[TestedHypothesis],
     strongest: FaultHypothesis,
     level: f64,
 ) -> Vec<(String, Harm)> {
     let info = context.model.info();
-    let place = |hypothesis: FaultHypothesis| match hypothesis {
-        FaultHypothesis::Torque(actuator, _) => (0, actuator),
-        FaultHypothesis::Force(line, _) => (1, line),
-        _ => (2, 0),
-    };
-    let place_of = |one: &Tested| place(one.hypothesis(scores));
-    let mut places: Vec<(usize, usize)> = found.iter().map(place_of).collect();
-    places.sort_unstable();
-    places.dedup();
-    places.retain(|one| *one != place(strongest));
-    let worst_of = |at: (usize, usize)| {
-        let beyond = found
+    let line = |one: &TestedHypothesis| EquationLine::of(one.hypothesis(scores));
+    let mut lines: Vec<EquationLine> = found.iter().map(line).collect();
+    lines.sort_unstable();
+    lines.dedup();
+    lines.retain(|one| *one != EquationLine::of(strongest));
+    let worst_of = |of: EquationLine| {
+        let significant = found
             .iter()
-            .filter(|one| place_of(one) == at && one.wald.probability < level);
-        let tested = beyond.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))?;
+            .filter(|one| line(one) == of && one.wald.probability < level);
+        let tested = significant.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))?;
         let harm = harm(context, scores, tested);
-        let names = match at.0 {
-            0 => info.actuators,
-            _ => info.coordinates,
+        let name = match of {
+            EquationLine::Actuator(number) => info.actuators.get(number),
+            EquationLine::Coordinate(number) => info.coordinates.get(number),
+            EquationLine::All => None,
         };
-        let name = names.get(at.1).copied().unwrap_or_default();
+        let name = name.copied().unwrap_or_default();
         (harm.grade > Grade::Use).then(|| (name.to_owned(), harm))
     };
-    places.into_iter().filter_map(worst_of).collect()
+    lines.into_iter().filter_map(worst_of).collect()
 }
 
-/// Names the others, as the end of a sentence.
-fn too(others: &[(String, Harm)]) -> String {
+/// Drives and coordinates that fail the same test, as the end of a sentence.
+fn failures_elsewhere(others: &[(String, Harm)]) -> String {
     let names: Vec<String> = others.iter().map(|(name, _)| format!("`{name}`")).collect();
     if names.is_empty() {
         String::new()
@@ -152,36 +168,36 @@ fn too(others: &[(String, Harm)]) -> String {
 
 /// Data for the words of a finding.
 struct Finding {
-    /// The dependent torque or force.
-    what: String,
+    /// The torque or force that the model lacks.
+    quantity: String,
     /// δ, with its sign.
     size: f64,
     /// δ divided by its standard deviation.
     strength: f64,
-    /// Consequence.
-    rest: String,
+    /// Explained part of the residual, and harm.
+    consequence: String,
 }
 
 impl Finding {
     /// Sentence for a shape whose size has a unit.
-    fn words(&self, shape: Shape, unit: &str) -> String {
+    fn sentence(&self, shape: Shape, unit: &str) -> String {
         let size = format!(", by {} {unit}", significant(self.size, 3));
-        let by = match shape {
+        let size = match shape {
             // The waves are nearly collinear, so their sizes have no meaning.
             Shape::Waves => "",
             _ => size.trim_end(),
         };
         format!(
-            "the {} depends on {} beyond the model{by} ({:.1} standard deviations), {}. Add the missing term to the description, or look for other differences from it",
-            self.what,
+            "the {} depends on {} beyond the model{size} ({:.1} standard deviations), {}. Add the missing term to the description, or look for other differences from it",
+            self.quantity,
             shape.words(),
             self.strength,
-            self.rest
+            self.consequence
         )
     }
 
     /// Sentence for friction that differs near standstill; only rising friction is Stribeck's.
-    fn near_standstill(&self, context: &Context<'_>, actuator: usize) -> String {
+    fn standstill_sentence(&self, context: &Context<'_>, actuator: usize) -> String {
         let info = context.model.info();
         let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
         let (unit, rate) = if revolute {
@@ -213,16 +229,16 @@ impl Finding {
         };
         format!(
             "the friction in the {} {does} towards standstill by {} {unit} beyond the model, over about {fading} {rate} ({:.1} standard deviations), {}.{left_out} {advice}",
-            self.what,
+            self.quantity,
             significant(self.size.abs(), 3),
             self.strength,
-            self.rest
+            self.consequence
         )
     }
 }
 
 /// Plot of size by standard deviation for all hypotheses, grouped by shape.
-fn evidence(scores: &Scores, found: &[Tested], limit: f64) -> Evidence {
+fn evidence(scores: &Scores, found: &[TestedHypothesis], limit: f64) -> Evidence {
     let mut points: Vec<(Shape, Curve)> = Vec::new();
     for one in found {
         let (FaultHypothesis::Torque(number, shape) | FaultHypothesis::Force(number, shape)) =

@@ -34,7 +34,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             let words = "no mass, inertia or friction is clearly below zero";
             (String::from(words), Grade::Use)
         } else {
-            (told(&negative), Grade::DoNotUse)
+            (description(&negative), Grade::DoNotUse)
         };
         Check::new(CheckKind::NegativeParameter, About::Model, words)
             .of_model(estimate.model)
@@ -47,7 +47,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 }
 
 /// Describes negative parameters.
-fn told(negative: &[&ParameterEstimate]) -> String {
+fn description(negative: &[&ParameterEstimate]) -> String {
     let values: Vec<String> = negative
         .iter()
         .map(|one| {

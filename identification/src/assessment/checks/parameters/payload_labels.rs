@@ -7,7 +7,7 @@ use crate::{
         check::{About, Check, CheckKind, Grade},
         checks::{
             Context,
-            fault_hypotheses::{Tested, harm, tested},
+            fault_hypotheses::{TestedHypothesis, harm, tested},
             level::{level, origin},
         },
         hypotheses::{Group, Scores},
@@ -74,20 +74,26 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
     if of_load.is_empty() || !of_load.iter().all(holds_zero) {
         return None;
     }
-    let told = of_load.iter().map(|one| {
+    let masses = of_load.iter().map(|one| {
         let half = 0.5 * (one.interval_95[1] - one.interval_95[0]);
         let (value, half) = (significant(one.value, 2), significant(half, 2));
         format!("`{}` = {value} ± {half} {}", one.name, one.unit)
     });
     let words = format!(
         "no parameter of the payload differs from zero ({}): check that it was mounted in the runs with this label",
-        told.collect::<Vec<_>>().join(", ")
+        masses.collect::<Vec<_>>().join(", ")
     );
     Some(Check::new(CheckKind::PayloadLabel, About::Model, words).found())
 }
 
 /// The check of one run.
-fn of_run(context: &Context<'_>, scores: &Scores, log: &Log, one: &Tested, level: f64) -> Check {
+fn of_run(
+    context: &Context<'_>,
+    scores: &Scores,
+    log: &Log,
+    one: &TestedHypothesis,
+    level: f64,
+) -> Check {
     let wald = &one.wald;
     let check = Check::new(CheckKind::PayloadLabel, About::Model, "")
         .in_run(log.name())

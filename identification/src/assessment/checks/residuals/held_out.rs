@@ -108,7 +108,7 @@ fn parts(context: &Context<'_>, estimate: &Estimate) -> Vec<f64> {
         return Vec::new();
     };
     let (columns, values) = (estimate.columns(), estimate.values());
-    let of_part = |part: &crate::regression::system::Part| {
+    let of_part = |part: &crate::regression::system::RunPart| {
         let lines = part.lines.iter().zip(&estimate.weights);
         let squares =
             lines.map(|(line, weight)| (weight * line.residual_norm(&columns, &values)).powi(2));

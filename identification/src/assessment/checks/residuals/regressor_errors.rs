@@ -15,12 +15,12 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     Ok(context.errors_in_regressor.iter().map(of_model).collect())
 }
 
-fn of_model(told: &ErrorsInRegressor) -> Check {
+fn of_model(comparison: &ErrorsInRegressor) -> Check {
     let new = |words: String| {
-        Check::new(CheckKind::RegressorErrors, About::Model, words).of_model(told.model)
+        Check::new(CheckKind::RegressorErrors, About::Model, words).of_model(comparison.model)
     };
-    let Some(agreement) = &told.agreement else {
-        return new(untested(told));
+    let Some(agreement) = &comparison.agreement else {
+        return new(untested(comparison));
     };
     let check = |words: String| {
         new(words)
@@ -33,17 +33,17 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
                 ),
             )
     };
-    if told.is_weak() {
+    if comparison.is_weak() {
         return check(format!(
             "the instruments ({}) are too weak to test the positions' errors: F = {} is below {}, the rule of Staiger and Stock; do not use the estimate by instruments",
-            source(told),
+            source(comparison),
             significant(agreement.weakest, 3),
             agreement.weak_below,
         ))
         .found();
     }
-    let words = outcome(told, agreement) + &repeated_errors(&told.runs);
-    let spoiled: Vec<String> = told
+    let words = outcome(comparison, agreement) + &repeated_errors(&comparison.runs);
+    let spoiled: Vec<String> = comparison
         .parameters
         .iter()
         .filter(|one| agreement.differs && one.spoiled)
@@ -65,9 +65,9 @@ fn of_model(told: &ErrorsInRegressor) -> Check {
 }
 
 /// Why there is no test, in words.
-fn untested(told: &ErrorsInRegressor) -> String {
+fn untested(comparison: &ErrorsInRegressor) -> String {
     let start = "not tested whether position errors bias the estimates: ";
-    let why = match (&told.missing, told.instruments) {
+    let why = match (&comparison.missing, comparison.instruments) {
         (Some(why), _) => why.clone(),
         (None, Instruments::None) => String::from("`instruments` is \"none\""),
         (None, _) => String::from("there are no instruments"),
@@ -76,8 +76,8 @@ fn untested(told: &ErrorsInRegressor) -> String {
 }
 
 /// Source of the instruments, in words.
-fn source(told: &ErrorsInRegressor) -> String {
-    match told.instruments {
+fn source(comparison: &ErrorsInRegressor) -> String {
+    match comparison.instruments {
         Instruments::Simulated => return String::from("the motion of the simulated robot"),
         Instruments::None => return String::from("none"),
         Instruments::Periods => {}
@@ -91,12 +91,12 @@ fn source(told: &ErrorsInRegressor) -> String {
             if run.found { ", found" } else { "" }
         )
     };
-    let runs: Vec<String> = told.runs.iter().map(one).collect();
+    let runs: Vec<String> = comparison.runs.iter().map(one).collect();
     format!("the other periods: {}", runs.join("; "))
 }
 
 /// Result of the comparison, in words.
-fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
+fn outcome(comparison: &ErrorsInRegressor, agreement: &Agreement) -> String {
     let [k, rest] = agreement.degrees_of_freedom;
     let whose = if agreement.together {
         "which chance exceeds"
@@ -111,10 +111,10 @@ fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
     if !agreement.differs {
         return format!(
             "least squares and instruments ({}) agree ({test})",
-            source(told)
+            source(comparison)
         );
     }
-    let spoiled = told.parameters.iter().filter(|one| one.spoiled);
+    let spoiled = comparison.parameters.iter().filter(|one| one.spoiled);
     let spoiled: Vec<String> = spoiled
         .map(|one| {
             format!(
@@ -129,12 +129,12 @@ fn outcome(told: &ErrorsInRegressor, agreement: &Agreement) -> String {
     if spoiled.is_empty() {
         return format!(
             "position errors bias no parameter by more than its standard deviation, although least squares and instruments ({}) differ significantly ({test})",
-            source(told)
+            source(comparison)
         );
     }
     format!(
         "position errors bias least squares, according to instruments ({}; {test}): {}; use the estimate by instruments for these",
-        source(told),
+        source(comparison),
         spoiled.join(", ")
     )
 }

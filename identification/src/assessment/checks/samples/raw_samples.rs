@@ -105,11 +105,14 @@ pub(crate) fn suspicious(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<
 /// Findings in the raw numbers of a run, except for angles of many turns.
 fn suspicions(model: &dyn Model, run: &str, monitor: Monitor) -> Vec<Check> {
     let suspicions = monitor.suspicions(model.info().actuators, couples(model));
-    suspicions.into_iter().map(|one| told(run, one)).collect()
+    suspicions
+        .into_iter()
+        .map(|one| suspicion_check(run, one))
+        .collect()
 }
 
 /// A suspicion as a check.
-fn told(run: &str, suspicion: Suspicion) -> Check {
+fn suspicion_check(run: &str, suspicion: Suspicion) -> Check {
     let (kind, grade, origin) = match suspicion.fault {
         DataFault::Clipped => (
             CheckKind::ClippedTorque,

@@ -47,9 +47,11 @@ pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let (as_logged, as_degrees) = errors.unwrap_or((1.0, 1.0));
     let are_radians = as_logged <= EXPLAINED * as_degrees;
     let are_degrees = as_degrees <= EXPLAINED * as_logged;
-    let is_told = |rotates: bool| are_degrees || !(are_radians || rotates);
-    let told = found.into_iter().filter(|(_, rotates)| is_told(*rotates));
-    Ok(told.map(|(check, _)| check).collect())
+    let is_reported = |rotates: bool| are_degrees || !(are_radians || rotates);
+    let reported = found
+        .into_iter()
+        .filter(|(_, rotates)| is_reported(*rotates));
+    Ok(reported.map(|(check, _)| check).collect())
 }
 
 /// The check for degrees in a run, if its angles are large enough.

@@ -15,7 +15,7 @@ use crate::assessment::{
 use overact_logs::Error;
 
 /// Fraction of the size that must remain in half the band if there is a filter.
-const LEFT: f64 = 0.5;
+const REMAINING: f64 = 0.5;
 
 /// Whether a fault of `size` is also found in half the band.
 ///
@@ -42,7 +42,7 @@ pub(crate) fn confirms(
 
 /// Whether enough of the size remains in half the band.
 fn remains(size: f64, half: f64) -> bool {
-    half * size.signum() >= LEFT * size.abs()
+    half * size.signum() >= REMAINING * size.abs()
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::assessment::{
     check::{About, Check, CheckKind},
     checks::{
         Context,
-        fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
+        fault_hypotheses::{TestedHypothesis, dry_friction, harm, only, parabola},
         level::{level, origin},
         motion::filters::{equal_bands, torque_band},
     },
@@ -47,10 +47,11 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     };
     // Effect on all parameters, including dry friction, at the size found without dry friction.
-    let whole = only(scores, FaultHypothesis::SmoothingWithFriction).map(|whole| Tested {
-        size: Some(one.wald.size()),
-        ..whole
-    });
+    let whole =
+        only(scores, FaultHypothesis::SmoothingWithFriction).map(|whole| TestedHypothesis {
+            size: Some(one.wald.size()),
+            ..whole
+        });
     let whole = whole.as_ref().unwrap_or(&one);
     let level = level(1);
     let harmless = harmless(context);

@@ -14,14 +14,14 @@
 //! frequency, without itself, within the band of the cosines of the scores.
 //!
 //! - `power`: P of the lines of a piece, and S.
-//! - `piece`: contribution of a piece to Q and Q'.
+//! - `piece_contribution`: contribution of a piece to Q and Q'.
 //! - `signs`: the ratio for residuals that are unrelated to the motion.
 //!
 //! The latter ratio is 1 on average for a residual of constant size. Otherwise it differs, since
 //! the fit removes another part of the residual. The result is divided by the ratio for residuals
 //! with random signs.
 
-mod piece;
+mod piece_contribution;
 mod power;
 mod signs;
 
@@ -32,7 +32,7 @@ use crate::{
     estimation::{correlation::pieces, periodic_variance::VarianceRatio},
     regression::system::System,
 };
-use piece::{PieceContribution, contributions};
+use piece_contribution::{PieceContribution, contributions};
 use signs::{DRAWS, Signs};
 
 /// Q_i/Q'_i of each parameter, and the degrees of freedom of Q_i.
@@ -57,11 +57,11 @@ pub(crate) fn ratios(system: &System, context: &Context<'_>) -> Vec<VarianceRati
             let sum = |of: fn(&PieceContribution) -> f64| -> f64 {
                 contributions.iter().map(|all| of(&all[i])).sum()
             };
-            let around = sum(|contribution| contribution.around);
-            let ratio = sum(|contribution| contribution.own) / around;
-            let by_chance = sum(|contribution| contribution.drawn.own)
-                / sum(|contribution| contribution.drawn.around);
-            let freedom = 2.0 * around * around / sum(|contribution| contribution.squares);
+            let around = sum(|contribution| contribution.residual.at_neighbours);
+            let ratio = sum(|contribution| contribution.residual.at_motion) / around;
+            let by_chance = sum(|contribution| contribution.random_signs.at_motion)
+                / sum(|contribution| contribution.random_signs.at_neighbours);
+            let freedom = 2.0 * around * around / sum(|contribution| contribution.variance);
             VarianceRatio {
                 ratio: ratio / by_chance,
                 // The ratio for random signs also scatters, like the mean of `DRAWS` residuals.

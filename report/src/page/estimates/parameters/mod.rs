@@ -195,7 +195,7 @@ fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
         .iter()
         .map(|one| {
             let answer = answers.iter().find(|answer| answer.model == one.model);
-            let beside = answer.map_or_else(String::new, |answer| {
+            let recommended = answer.map_or_else(String::new, |answer| {
                 format!(
                     " (the {} recommended ones: {} %)",
                     answer.parameters.len(),
@@ -203,7 +203,7 @@ fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
                 )
             });
             format!(
-                "{}: {} parameters, relative residual {} %{beside}.",
+                "{}: {} parameters, relative residual {} %{recommended}.",
                 case_heading(one.model),
                 one.parameters.len(),
                 significant(one.relative_error_percent, 3),

@@ -51,7 +51,7 @@ pub(super) struct JointItem {
 
 /// Contents of an SDFormat file: its frames, links and joints.
 #[derive(Debug)]
-pub(super) struct Gathered<'f> {
+pub(super) struct SdfContents<'f> {
     pub(super) files: &'f Files,
     pub(super) frames: Frames,
     pub(super) links: Vec<Link>,
@@ -67,7 +67,7 @@ pub(super) struct Gathered<'f> {
     shown_without: String,
 }
 
-impl<'f> Gathered<'f> {
+impl<'f> SdfContents<'f> {
     pub(super) fn new(
         files: &'f Files,
         place: Place,
@@ -147,12 +147,12 @@ impl<'f> Gathered<'f> {
         let is_from_file = source.from.is_some();
         self.open.extend(source.from);
         self.depth += 1;
-        let gathered = self.inside(element, own, frame, owner);
+        let read = self.inside(element, own, frame, owner);
         self.depth -= 1;
         if is_from_file {
             self.open.pop();
         }
-        gathered
+        read
     }
 
     /// Reads the contents of a model and sets its canonical link.

@@ -44,7 +44,7 @@ impl Phases {
 
 /// Sums of the rows of a line at each phase.
 #[derive(Debug, Clone)]
-pub(crate) struct Fold {
+pub(crate) struct PhaseSums {
     pub(crate) phases: Phases,
     /// Values of a row.
     width: usize,
@@ -52,7 +52,7 @@ pub(crate) struct Fold {
     counts: Vec<u32>,
 }
 
-impl Fold {
+impl PhaseSums {
     /// Sums of no rows.
     pub(crate) fn new(phases: Phases, width: usize) -> Self {
         Self {
@@ -99,14 +99,11 @@ impl Fold {
     }
 }
 
-/// Sums of all lines for a periodic motion.
-pub(crate) type Folds = Vec<Fold>;
-
-/// Adds the folds of a run to `all`, which has one entry for each motion.
+/// Adds the sums of a run's lines to those of its motion, of which `all` has one entry each.
 ///
 /// Returns the index of the run's motion.
-pub(crate) fn add(all: &mut Vec<Folds>, own: Folds) -> usize {
-    let motion = |folds: &Folds| folds.first().map(|fold| fold.phases.motion);
+pub(crate) fn add(all: &mut Vec<Vec<PhaseSums>>, own: Vec<PhaseSums>) -> usize {
+    let motion = |lines: &[PhaseSums]| lines.first().map(|line| line.phases.motion);
     let same = all.iter().position(|one| motion(one) == motion(&own));
     let Some(place) = same else {
         all.push(own);
@@ -119,7 +116,7 @@ pub(crate) fn add(all: &mut Vec<Folds>, own: Folds) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{Fold, Phases, add};
+    use super::{PhaseSums, Phases, add};
     use overact_logs::periods::PeriodicMotion;
 
     fn phases(samples: usize, decimation: usize) -> Option<Phases> {
@@ -128,43 +125,43 @@ mod tests {
     }
 
     #[test]
-    fn products_of_means_are_those_of_all_rows_of_a_motion_that_returns() {
+    fn products_of_means_are_those_of_all_rows_of_a_periodic_motion() {
         // Five periods of 60 equations, with 32 phases.
         let phases = phases(600, 10).expect("long enough");
         let row = |equation: usize| {
             let angle = std::f64::consts::TAU * equation as f64 / 60.0;
             [1.0, angle.sin(), (3.0 * angle).cos()]
         };
-        let mut fold = Fold::new(phases, 3);
+        let mut sums = PhaseSums::new(phases, 3);
         let mut products = nalgebra::DMatrix::<f64>::zeros(3, 3);
         for equation in 0..300 {
             let own = row(equation);
-            fold.add(equation, own.iter());
+            sums.add(equation, own.iter());
             let own = nalgebra::DMatrix::from_row_slice(1, 3, &own);
             products += own.tr_mul(&own);
         }
-        let means = fold.means().expect("every phase has equations");
+        let means = sums.means().expect("every phase has equations");
         assert_eq!(means.shape(), (32, 3));
         let miss = (means.tr_mul(&means) - &products).norm() / products.norm();
         assert!(miss < 0.03, "{miss}");
     }
 
     #[test]
-    fn what_alternates_from_period_to_period_is_no_part_of_the_means() {
-        let mut fold = Fold::new(phases(16, 1).expect("long enough"), 1);
+    fn values_that_alternate_between_periods_cancel_in_the_means() {
+        let mut sums = PhaseSums::new(phases(16, 1).expect("long enough"), 1);
         for equation in 0..64 {
             let sign = if equation / 16 % 2 == 0 { 1.0 } else { -1.0 };
-            fold.add(equation, [sign].iter());
+            sums.add(equation, [sign].iter());
         }
-        assert_eq!(fold.means().expect("every phase").norm(), 0.0);
+        assert_eq!(sums.means().expect("every phase").norm(), 0.0);
     }
 
     #[test]
-    fn runs_of_one_motion_are_folded_together() {
+    fn runs_of_one_motion_are_summed_together() {
         let one = |value: f64| {
-            let mut fold = Fold::new(phases(16, 1).expect("long enough"), 1);
-            (0..16).for_each(|equation| fold.add(equation, [value].iter()));
-            fold
+            let mut sums = PhaseSums::new(phases(16, 1).expect("long enough"), 1);
+            (0..16).for_each(|equation| sums.add(equation, [value].iter()));
+            sums
         };
         let mut all = Vec::new();
         assert_eq!(add(&mut all, vec![one(1.0)]), 0);
@@ -174,7 +171,7 @@ mod tests {
             motion: 2,
         };
         let phases = Phases::new(other, 1).expect("long enough");
-        assert_eq!(add(&mut all, vec![Fold::new(phases, 1)]), 1);
+        assert_eq!(add(&mut all, vec![PhaseSums::new(phases, 1)]), 1);
         assert_eq!(all.len(), 2);
         let means = all[0][0].means().expect("every phase");
         assert!(
@@ -186,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_period_of_a_few_equations_is_not_folded() {
+    fn a_period_of_a_few_equations_is_not_summed() {
         assert!(phases(150, 10).is_none());
         assert!(phases(160, 10).is_some());
     }

@@ -1,4 +1,4 @@
-//! Contribution of a piece of a run to Q and Q'.
+//! Contribution of a piece of a run to the power sums Q and Q'.
 //!
 //! The fit removes H_jk(f) = λ_j λ_k W_j(f) A^-1 W_k(f)* of white noise of constant size, so the
 //! mean of c* P c is N c*c - c*H c. Removal of up to one half is corrected by division. Beyond
@@ -16,27 +16,27 @@ use crate::estimation::{
     intervals::scores::{Context, cosines},
 };
 
-/// Inverse of the largest factor of this correction.
+/// Smallest remaining part of the power that is corrected by division.
 const LEAST_LEFT: f64 = 0.5;
 
 /// Contribution of a piece for one parameter.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PieceContribution {
-    /// Part of Q_i.
-    pub(super) own: f64,
-    /// Part of Q'_i.
-    pub(super) around: f64,
-    /// Part of the variance of Q_i.
-    pub(super) squares: f64,
-    /// Parts for random signs, summed over all draws.
-    pub(super) drawn: Parts,
+    /// Q_i and Q'_i of the residual.
+    pub(super) residual: PowerSums,
+    /// Variance of Q_i.
+    pub(super) variance: f64,
+    /// Q_i and Q'_i of residuals with random signs, summed over all draws.
+    pub(super) random_signs: PowerSums,
 }
 
-/// Parts of Q_i and Q'_i.
+/// Sums of a residual's power, weighted by the influence of each frequency on a parameter.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Parts {
-    pub(super) own: f64,
-    pub(super) around: f64,
+pub(super) struct PowerSums {
+    /// Q_i: power at the frequencies of the motion.
+    pub(super) at_motion: f64,
+    /// Q'_i: power at their neighbours.
+    pub(super) at_neighbours: f64,
 }
 
 /// Spectra of the columns of a line of a piece.
@@ -99,16 +99,16 @@ pub(super) fn contributions<'a>(
         lines.push(Line::new(context, &fourier, &columns));
     }
     let bins = fourier.frequencies();
-    let taken = taken(&lines, count, bins);
+    let leverages = leverages(&lines, count, bins);
     let neighbours = Neighbours::new(count, bins, cosines(count));
-    let means = |powers: &Powers| neighbours.means(powers, &taken);
+    let means = |powers: &Powers| neighbours.means(powers, &leverages);
     let own = Powers::new(&spectra, bins);
     let drawn = Powers::new(&drawn, bins);
     let (around, drawn_around) = (means(&own), means(&drawn));
     summed(
         context.selected.len(),
         &lines,
-        [&taken, &own, &around, &drawn, &drawn_around],
+        [&leverages, &own, &around, &drawn, &drawn_around],
         bins,
         neighbours.padding(),
     )
@@ -116,7 +116,7 @@ pub(super) fn contributions<'a>(
 
 /// Contributions for all parameters.
 ///
-/// `powers` are those of the fit's removal, the residual, its neighbours, the drawn residuals, and
+/// `powers` are those that the fit removes, of the residual, its neighbours, the drawn residuals, and
 /// their neighbours.
 fn summed(
     parameters: usize,
@@ -142,31 +142,31 @@ fn summed(
         forms.evaluate();
         for (i, contribution) in contributions.iter_mut().enumerate() {
             let plain: f64 = c.iter().flatten().map(|part| part[i] * part[i]).sum();
-            let [taken, own, around, drawn, drawn_around] = sums.each_ref().map(|sum| sum[i]);
-            let left = 1.0 - taken / plain.max(f64::MIN_POSITIVE);
+            let [leverage, own, around, drawn, drawn_around] = sums.each_ref().map(|sum| sum[i]);
+            let left = 1.0 - leverage / plain.max(f64::MIN_POSITIVE);
             let left = left.clamp(0.0, 1.0);
             let factor = 1.0 / left.max(LEAST_LEFT);
-            let filled = |own: f64, mean: f64| {
-                let own = factor * own + (1.0 - factor * left) * mean;
-                [own, mean].map(|part| twice * part)
+            let corrected = |power: f64, mean: f64| {
+                let power = factor * power + (1.0 - factor * left) * mean;
+                [power, mean].map(|part| twice * part)
             };
-            let [square, mean] = filled(own, around);
-            contribution.own += square;
-            contribution.around += mean;
+            let [square, mean] = corrected(own, around);
+            contribution.residual.at_motion += square;
+            contribution.residual.at_neighbours += mean;
             // With zero padding, `padding` frequencies carry one independent value. The fit removes
             // either of the two degrees of freedom of a frequency; a filled-in part does not vary.
             let varies = (factor * left).powi(2) * (1.0 / left.max(LEAST_LEFT));
-            contribution.squares += padding * mean.powi(2) * varies;
-            let [square, mean] = filled(drawn, drawn_around);
-            contribution.drawn.own += square;
-            contribution.drawn.around += mean;
+            contribution.variance += padding * mean.powi(2) * varies;
+            let [square, mean] = corrected(drawn, drawn_around);
+            contribution.random_signs.at_motion += square;
+            contribution.random_signs.at_neighbours += mean;
         }
     }
     contributions
 }
 
 /// H/N of all pairs of lines.
-fn taken(lines: &[Line], count: usize, bins: usize) -> Powers {
+fn leverages(lines: &[Line], count: usize, bins: usize) -> Powers {
     Powers::from_fn(lines.len(), bins, |j, k, bin| {
         lines[j].leverage(&lines[k], bin, count)
     })

@@ -15,7 +15,10 @@ use super::{
 
 /// Comparison tables; empty if there is nothing to compare.
 #[must_use]
-pub fn beside(identification: &Identification, published: Option<&Published>) -> String {
+pub fn compare_with_published(
+    identification: &Identification,
+    published: Option<&Published>,
+) -> String {
     let mut text = String::new();
     let source = published.map_or_else(String::new, |all| {
         format!(", compared with {}", all.source.trim_end_matches('.'))

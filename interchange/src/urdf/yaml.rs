@@ -7,7 +7,7 @@ use super::Tree;
 use crate::{
     account::YAML,
     files::{Files, Place},
-    model::{Body, Closure, ClosureKind, Joint, Kind, Model, Pose},
+    model::{Body, Closure, ClosureKind, Joint, JointType, Model, Pose},
     prune::record_key,
 };
 use nalgebra::{Point3, Vector3};
@@ -260,7 +260,7 @@ fn kinds(
             continue;
         };
         match kind.as_str() {
-            "SPHERICAL" => model.joints[joint].kind = Kind::Ball,
+            "SPHERICAL" => model.joints[joint].kind = JointType::Ball,
             "CARDAN" | "UJOINT_XY" => make_universal(files, joint, tree, model),
             "FIXED" => model.remove_joint(joint),
             other => {
@@ -291,7 +291,11 @@ fn make_universal(files: &Files, joint: usize, tree: &mut Tree, model: &mut Mode
     }
     let revolute = |suffix: &str, axis: Vector3<f64>| Joint {
         axis,
-        ..Joint::new(&format!("{name}_{suffix}"), Kind::Revolute, own.clone())
+        ..Joint::new(
+            &format!("{name}_{suffix}"),
+            JointType::Revolute,
+            own.clone(),
+        )
     };
     model.joints[joint] = revolute("X", Vector3::x());
     model.joints.push(revolute("Y", Vector3::y()));

@@ -6,7 +6,7 @@ use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, InternalErr
 /// The reason why a model cannot be derived in the requested form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Underivable {
+pub enum DerivationError {
     /// No rule solves this leg's joints from the pose in closed form.
     InverseKinematics {
         /// Name of the leg.
@@ -43,13 +43,13 @@ pub enum Underivable {
     Internal(InternalError),
 }
 
-impl From<InternalError> for Underivable {
+impl From<InternalError> for DerivationError {
     fn from(error: InternalError) -> Self {
         Self::Internal(error)
     }
 }
 
-impl Underivable {
+impl DerivationError {
     /// Diagnostics of the error, with the lines of the description that cause it.
     #[must_use]
     pub(crate) fn locate(&self, description: &Description) -> Diagnostics {
@@ -142,7 +142,7 @@ mod tests {
         let source = Source::new("emps.toml", toml);
         let description = overact_description::parse(&source).expect("a robot");
         let broken = "node 3 has lost its value".to_owned();
-        let errors = Underivable::from(InternalError::new("walk", broken)).locate(&description);
+        let errors = DerivationError::from(InternalError::new("walk", broken)).locate(&description);
         assert!(errors.internal().is_some());
         let text = errors.render_plain(&source);
         for part in [
@@ -154,10 +154,10 @@ mod tests {
         ] {
             assert!(text.contains(part), "no {part} in\n{text}");
         }
-        let other = Underivable::ForwardKinematics.locate(&description);
+        let other = DerivationError::ForwardKinematics.locate(&description);
         assert!(other.internal().is_none());
         let leg = String::new();
-        let home = Underivable::SingularHome { leg }.locate(&description);
+        let home = DerivationError::SingularHome { leg }.locate(&description);
         assert!(home.internal().is_none());
         assert!(
             home.render_plain(&source)
