@@ -7,6 +7,7 @@ mod defaults;
 mod equality;
 mod include;
 mod inertia;
+mod keyframe;
 #[cfg(test)]
 mod tests;
 
@@ -25,7 +26,7 @@ use std::collections::BTreeMap;
 
 /// Reads a robot; errors are recorded in `files`.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
-    let root = include::whole(files, file)?;
+    let (root, keyframe) = include::whole(files, file, options.include_outside)?;
     bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("model").unwrap_or("robot"));
     let reader = Reader {
@@ -33,6 +34,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         compiler: Compiler::new(files, &root),
         defaults: Defaults::new(files, &root)?,
         options,
+        has_closures: equality::has_closures(&root),
     };
     let mut has_gravity = true;
     for option in root.all("option") {
@@ -58,6 +60,9 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     // Springs given by time constants need all inertias, including rotor inertias.
     adjust::inertias(files, &root, &reader.compiler, &mut model);
     adjust::springs(files, &mut model, &springs);
+    if let Some(positions) = keyframe {
+        keyframe::apply(&positions, &mut model);
+    }
     files.is_clean().then_some(model)
 }
 
@@ -72,6 +77,8 @@ struct Reader<'r> {
     compiler: Compiler,
     defaults: Defaults,
     options: &'r Options,
+    /// Whether constraints close loops, which may hold free bodies.
+    has_closures: bool,
 }
 
 /// Body of each site and its pose there.
