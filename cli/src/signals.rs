@@ -1,4 +1,4 @@
-//! On Ctrl-C and SIGTERM, removes temporary files before the process ends.
+//! On Ctrl-C, SIGTERM and SIGHUP, removes temporary files before the process ends.
 
 use std::{
     collections::BTreeSet,
@@ -52,17 +52,17 @@ fn remove_all() {
     std::mem::forget(waiting);
 }
 
-/// Starts to remove temporary files on Ctrl-C and SIGTERM.
+/// Starts to remove temporary files on Ctrl-C, SIGTERM and SIGHUP.
 ///
 /// If no handler can be installed, signals end the process as usual.
 #[cfg(unix)]
 pub(crate) fn watch() {
     use signal_hook::{
-        consts::{SIGINT, SIGTERM},
+        consts::{SIGHUP, SIGINT, SIGTERM},
         iterator::Signals,
         low_level::emulate_default_handler,
     };
-    let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
+    let Ok(mut signals) = Signals::new([SIGINT, SIGTERM, SIGHUP]) else {
         return;
     };
     std::thread::spawn(move || {

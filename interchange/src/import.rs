@@ -3,8 +3,9 @@
 use crate::{
     account::Account,
     assembly::{
-        idle,
+        free_bodies, home, idle,
         layout::{self, Layout},
+        misfit,
         network::Network,
         simple,
     },
@@ -27,7 +28,7 @@ use overact_description::diagnostic::Diagnostics;
 use std::path::{Path, PathBuf};
 
 /// A description generated from a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// TOML text.
     pub text: String,
@@ -39,6 +40,36 @@ pub struct Imported {
     pub name: String,
     /// Summary of what was used of the files and what was not.
     pub account: Account,
+    /// Changes of closures and axes that close the loops.
+    pub misfits: Vec<ClosureMisfit>,
+    /// Rods between two ball joints, whose rotation about their own line is held.
+    pub spins: Vec<String>,
+}
+
+/// Change of a closure's frame or of a joint's axis that closes a loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClosureMisfit {
+    /// Path of the file.
+    pub file: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Name of the closure or joint.
+    pub name: String,
+    /// Displacement, m.
+    pub length: f64,
+    /// Rotation, rad.
+    pub angle: f64,
+}
+
+impl std::fmt::Display for ClosureMisfit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let amount = misfit::amount(self.length, self.angle);
+        write!(
+            f,
+            "`{}` is changed by {amount} to close the loops",
+            self.name
+        )
+    }
 }
 
 impl Imported {
@@ -66,12 +97,16 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, Errors> {
             name,
             text,
             origins,
+            misfits,
+            spins,
         }) => Ok(Imported {
             text,
             inputs: files.paths(),
             origins,
             name,
             account: files.account(),
+            misfits,
+            spins,
         }),
         None => Err(files.into_errors()),
     }
@@ -82,6 +117,8 @@ struct Described {
     name: String,
     text: String,
     origins: Origins,
+    misfits: Vec<ClosureMisfit>,
+    spins: Vec<String>,
 }
 
 fn described(files: &Files, path: &Path, options: &Options) -> Option<Described> {
@@ -94,7 +131,24 @@ fn described(files: &Files, path: &Path, options: &Options) -> Option<Described>
         name,
         text,
         origins: Origins::new(files, robot.network.model, joints),
+        misfits: misfits(files, robot.network.model),
+        spins: spins(&robot.network),
     })
+}
+
+fn spins(network: &Network<'_>) -> Vec<String> {
+    network.spins().into_iter().map(str::to_owned).collect()
+}
+
+fn misfits(files: &Files, model: &Model) -> Vec<ClosureMisfit> {
+    let each = model.misfits.iter().map(|own| ClosureMisfit {
+        file: files.name(own.place.file),
+        line: files.line(&own.place),
+        name: own.name.clone(),
+        length: own.length,
+        angle: own.angle,
+    });
+    each.collect()
 }
 
 /// Reads a model and applies the user's choices; `None` after an error.
@@ -104,8 +158,16 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
     bounds::check(files, &model)?;
     choose(files, &mut model, options)?;
     simple::drop_closures_on_one_body(&mut model);
+    free_bodies::check(files, &model)?;
+    if !model.closures.is_empty() && options.home.is_empty() {
+        home::choose(&mut model);
+    }
     if !model.closures.is_empty() {
         simple::join_balls(&mut model);
+    }
+    if !model.closures.is_empty() {
+        let tolerance = options.closure_tolerance.unwrap_or(misfit::TOLERANCE);
+        model = misfit::fitted(files, model, tolerance)?;
     }
     if !model.closures.is_empty() {
         model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
@@ -125,9 +187,9 @@ pub(crate) struct Robot<'m> {
 impl<'m> Robot<'m> {
     /// Computes skeleton, chains and legs; `None` after an error.
     pub(crate) fn new(files: &Files, model: &'m Model, options: &Options) -> Option<Self> {
-        let network = Network::new(files, model)?;
+        let mut network = Network::new(files, model)?;
         check_motors(files, &network)?;
-        let layout = layout::find(files, &network, options)?;
+        let layout = layout::find(files, &mut network, options)?;
         let plan = Plan::new(files, &network, &layout)?;
         Some(Self {
             network,

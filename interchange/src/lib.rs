@@ -43,5 +43,5 @@ pub use account::{Account, Entry};
 pub use export::{Exported, export};
 pub use files::Errors;
 pub use format::Format;
-pub use import::{Imported, import};
+pub use import::{ClosureMisfit, Imported, import};
 pub use options::Options;

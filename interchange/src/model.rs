@@ -1,7 +1,7 @@
 //! Model of a robot as files describe it: a tree of bodies and joints, and loop closures.
 
 use crate::files::Place;
-use nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
+use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Vector3};
 
 /// Pose of a frame in another one; rotations by right angles are exact.
 pub(crate) type Pose = IsometryMatrix3<f64>;
@@ -23,6 +23,8 @@ pub(crate) struct Model {
     pub(crate) says_motors: bool,
     /// Motors with a gear or that turn several joints, as far as the file describes them.
     pub(crate) motors: Vec<Motor>,
+    /// Closures and axes that were changed to close the loops.
+    pub(crate) misfits: Vec<Misfit>,
     /// Notes on what was omitted or assumed.
     pub(crate) notes: Vec<String>,
 }
@@ -85,6 +87,10 @@ pub(crate) struct Joint {
     pub(crate) reference: f64,
     /// Home position of the file.
     pub(crate) home: f64,
+    /// Rotation of a ball joint at home.
+    pub(crate) home_turn: Rotation3<f64>,
+    /// Position and rotation in the file's keyframe.
+    pub(crate) keyframe: Option<(f64, Rotation3<f64>)>,
     /// Lower and upper position limit.
     pub(crate) range: Option<[f64; 2]>,
     /// Speed limit, rad/s or m/s.
@@ -92,6 +98,8 @@ pub(crate) struct Joint {
     /// Coupling, if the joint is not independent.
     pub(crate) follow: Option<Follow>,
     pub(crate) actuated: bool,
+    /// Whether it only displaces a free body, which closures hold.
+    pub(crate) is_virtual: bool,
     pub(crate) damping: f64,
     pub(crate) friction: f64,
     pub(crate) armature: f64,
@@ -124,6 +132,18 @@ pub(crate) struct Closure {
     pub(crate) name: String,
     pub(crate) kind: ClosureKind,
     pub(crate) place: Place,
+}
+
+/// Change of a closure's frame or of a joint's axis that closes a loop.
+#[derive(Debug, Clone)]
+pub(crate) struct Misfit {
+    /// Name of the closure or joint.
+    pub(crate) name: String,
+    pub(crate) place: Place,
+    /// Displacement, m.
+    pub(crate) length: f64,
+    /// Rotation, rad.
+    pub(crate) angle: f64,
 }
 
 /// Constraint between two frames on two bodies.
@@ -171,6 +191,7 @@ impl Model {
             closures: Vec::new(),
             says_motors: false,
             motors: Vec::new(),
+            misfits: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -267,10 +288,13 @@ impl Joint {
             at: Point3::origin(),
             reference: 0.0,
             home: 0.0,
+            home_turn: Rotation3::identity(),
+            keyframe: None,
             range: None,
             speed: None,
             follow: None,
             actuated: false,
+            is_virtual: false,
             damping: 0.0,
             friction: 0.0,
             armature: 0.0,

@@ -298,15 +298,47 @@ fn what_is_nested_without_end_is_refused() {
 #[cfg(unix)]
 #[test]
 fn only_regular_files_are_included() {
+    let anywhere = Options {
+        include_outside: true,
+        ..Options::default()
+    };
     for device in ["/dev/zero", "."] {
-        let said = refused(
+        let said = refused_with(
             "robot.xml",
             &format!("<mujoco>\n<include file='{device}'/></mujoco>"),
+            &anywhere,
         );
         assert!(
             said.starts_with("2: ") && said.contains("not a regular file"),
             "{said}"
         );
+    }
+}
+
+/// Files outside the robot's folder may be secret; their contents must not be in messages.
+#[cfg(unix)]
+#[test]
+fn files_outside_the_folder_are_included_with_an_option_only() {
+    let outer = tempfile::tempdir().expect("a folder");
+    let inner = outer.path().join("robot");
+    fs::create_dir(&inner).expect("a folder");
+    let secret = outer.path().join("secret.xml");
+    fs::write(&secret, "not for others").expect("a file");
+    std::os::unix::fs::symlink(&secret, inner.join("link.xml")).expect("a link");
+    let absolute = secret.display().to_string();
+    for name in [
+        absolute.as_str(),
+        "../secret.xml",
+        "link.xml",
+        "/no/such.xml",
+    ] {
+        let file = inner.join("robot.xml");
+        fs::write(&file, format!("<mujoco><include file='{name}'/></mujoco>")).expect("a file");
+        let errors = import(&file, &Options::default()).expect_err("a file outside");
+        let each = errors.0.iter();
+        let said: String = each.map(|(source, own)| own.render_plain(source)).collect();
+        assert!(said.contains("is outside the folder"), "{said}");
+        assert!(!said.contains("not for others"), "{said}");
     }
 }
 

@@ -41,7 +41,7 @@ const SAID: [(&str, [usize; 4]); 10] = [
     ),
     (
         "example-parallel-robots/talos_like/robot.urdf",
-        [6, 6, 2, 9],
+        [6, 6, 3, 9],
     ),
     (
         "example-parallel-robots/cassie_like/robot.urdf",

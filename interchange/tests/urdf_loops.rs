@@ -92,7 +92,6 @@ fn joints_of_gazebo_close_loops() {
     for kind in ["revolute", "ball"] {
         let found = plain(read(&parallelogram(&gazebo(kind)), "", "a"));
         assert_eq!(found, plain(read(&parallelogram(&ends(kind)), "", "a")));
-        assert!(found.contains("type = \"point\""), "{found}");
     }
     let friction = gazebo("revolute").replace(
         "</xyz>",
@@ -140,7 +139,8 @@ fn closures_of_yaml_may_name_fixed_joints() {
     let yaml = |ends: &str| format!("closed_loop: [[{ends}]]\ntype: ['3d']\nname_mot: ['a']\n");
     let by_joints = plain(read(&parallelogram(&tips), &yaml("s, t"), ""));
     let by_links = plain(read(&parallelogram(&tips), &yaml("s_link, t_link"), ""));
-    assert_eq!(by_joints, by_links);
+    // The joint of the closure is called after its ends.
+    assert_eq!(by_joints, by_links.replace("s_link_and_t_link", "s_and_t"));
 }
 
 #[test]

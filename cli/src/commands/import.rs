@@ -6,7 +6,7 @@ use crate::{
     output::{self, check, emit, print},
 };
 use overact_codegen::diagnostic::visible;
-use overact_interchange::{Account, Entry, Imported, Options};
+use overact_interchange::{Account, ClosureMisfit, Entry, Imported, Options};
 use overact_robot::import;
 use serde::Serialize;
 use std::{
@@ -52,6 +52,12 @@ pub(super) struct Choices {
     /// Joint positions at the start of the search for a closed configuration, rad or m
     #[arg(long, value_delimiter = ',', value_name = "JOINT=POSITION", value_parser = position)]
     home: Vec<(String, f64)>,
+    /// Also read included MJCF files outside the folder of the file
+    #[arg(long)]
+    include_outside: bool,
+    /// Largest misfit of a closure, in rad and as a fraction of the loops' size [default: 0.002]
+    #[arg(long, value_name = "NUMBER", value_parser = tolerance)]
+    closure_tolerance: Option<f64>,
 }
 
 impl Choices {
@@ -65,7 +71,21 @@ impl Choices {
             coordinates: self.coordinates.clone(),
             values: self.values.clone(),
             home: self.home.clone(),
+            include_outside: self.include_outside,
+            closure_tolerance: self.closure_tolerance,
         }
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| format!("`{text}` is not a number"))?;
+    if (0.0..=0.1).contains(&value) {
+        Ok(value)
+    } else {
+        Err("write a number between 0 and 0.1".to_owned())
     }
 }
 
@@ -100,6 +120,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     check(&inputs, &output)?;
     if !as_json {
         print_notes(&imported.account);
+        print_misfits(&imported.misfits);
         return emit(&imported.text, written);
     }
     let document = output::json(&Document::new(&imported))?;
@@ -114,9 +135,24 @@ fn print_notes(account: &Account) {
     for entry in account.reported.iter().filter(|_| !is_quiet()) {
         let (subject, reason) = (entry.subject(), entry.counted_reason());
         let text = format!("{subject}: reported: {reason}");
-        let note = format!("{}:{}: {}", entry.file, entry.line, visible(&text));
+        let note = format!(
+            "{}:{}: {}",
+            visible(&entry.file),
+            entry.line,
+            visible(&text)
+        );
         // A closed stderr is ignored.
         let _ = writeln!(io::stderr(), "note: {note}");
+    }
+}
+
+/// Prints changes that close the loops, on stderr.
+fn print_misfits(misfits: &[ClosureMisfit]) {
+    for own in misfits.iter().filter(|_| !is_quiet()) {
+        let text = own.to_string();
+        let (file, text) = (visible(&own.file), visible(&text));
+        // A closed stderr is ignored.
+        let _ = writeln!(io::stderr(), "note: {file}:{}: {text}", own.line);
     }
 }
 
@@ -129,10 +165,34 @@ struct Document<'d> {
     honoured: Vec<Item<'d>>,
     ignored: Vec<Item<'d>>,
     reported: Vec<Item<'d>>,
-    /// Closures that the file's numbers violate; none are accepted yet.
-    misfits: [(); 0],
-    /// Idle spins; they are in the comments of the description.
-    spins: [(); 0],
+    /// Changes of closures and axes that close the loops.
+    misfits: Vec<MisfitItem<'d>>,
+    /// Rods whose rotation about their own line is held.
+    spins: &'d [String],
+}
+
+/// Change of a closure or axis.
+#[derive(Debug, Serialize)]
+struct MisfitItem<'d> {
+    file: &'d str,
+    line: usize,
+    name: &'d str,
+    /// Displacement, m.
+    length: f64,
+    /// Rotation, rad.
+    angle: f64,
+}
+
+impl<'d> MisfitItem<'d> {
+    fn new(own: &'d ClosureMisfit) -> Self {
+        Self {
+            file: &own.file,
+            line: own.line,
+            name: &own.name,
+            length: own.length,
+            angle: own.angle,
+        }
+    }
 }
 
 /// Equal elements or attributes of a file.
@@ -156,8 +216,8 @@ impl<'d> Document<'d> {
             honoured: items(&account.honoured),
             ignored: items(&account.ignored),
             reported: items(&account.reported),
-            misfits: [],
-            spins: [],
+            misfits: imported.misfits.iter().map(MisfitItem::new).collect(),
+            spins: &imported.spins,
         }
     }
 }

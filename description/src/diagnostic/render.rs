@@ -109,16 +109,17 @@ fn render_one(
     let title = Level::ERROR
         .primary_title(message.as_str())
         .id(code.as_str());
+    let path = visible(&source.name);
     let mut group = match &diagnostic.span {
         Some(span) => {
             let label = Some(label.as_str()).filter(|label| !label.is_empty());
             let annotation = AnnotationKind::Primary
                 .span(source.first_line(span))
                 .label(label);
-            let snippet = Snippet::source(source.text.as_str()).path(source.name.as_str());
+            let snippet = Snippet::source(source.text.as_str()).path(path.as_str());
             title.element(snippet.annotation(annotation))
         }
-        None => title.element(Origin::path(source.name.as_str())),
+        None => title.element(Origin::path(path.as_str())),
     };
     if let Some(help) = &help {
         group = group.element(Level::HELP.message(help.as_str()));
@@ -156,6 +157,19 @@ error[OA102]: unknown key `gammma`
   = help: did you mean `gamma`?";
         assert_eq!(errors.render_plain(&source), expected);
         assert!(errors.render_styled(&source).contains('\u{1b}'));
+    }
+
+    #[test]
+    fn names_of_files_have_no_control_characters_in_messages() {
+        let source = Source::new("a\u{1b}[31m.toml", "name = \"A\"");
+        let located = Diagnostic::new(Code::UNKNOWN_KEY, "unknown", 0..4);
+        for error in [located, Diagnostic::global(Code::UNKNOWN_KEY, "unknown")] {
+            let said = Diagnostics::from(error).render_plain(&source);
+            assert!(
+                !said.contains('\u{1b}') && said.contains("[31m.toml"),
+                "{said}"
+            );
+        }
     }
 
     #[test]

@@ -198,7 +198,7 @@ const RULES: &[Rule] = &[
     Rule {
         within: "mujoco",
         elements: "keyframe",
-        treatment: Irrelevant("home is the configuration of the joints' references"),
+        treatment: Irrelevant("its positions are a start for the home of robots with loops"),
         attributes: &[],
     },
     Rule {

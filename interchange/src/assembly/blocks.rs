@@ -56,6 +56,14 @@ impl Blocks {
     }
 }
 
+impl Blocks {
+    /// Block of an edge between two vertices; `None` if no block contains both.
+    pub(crate) fn of_edge(&self, [a, b]: [usize; 2]) -> Option<usize> {
+        let mut own = self.blocks[a].iter();
+        own.find(|block| self.blocks[b].contains(block)).copied()
+    }
+}
+
 struct Search<'s> {
     edges_at: &'s [Vec<usize>],
     ends: &'s [[usize; 2]],

@@ -27,7 +27,7 @@ pub(crate) fn without_idle_pins(network: &Network<'_>) -> Option<Model> {
                 .into_iter()
                 .find_map(|edge| match network.edges[edge].origin {
                     Origin::Joint(joint) => Some((edge, joint)),
-                    Origin::Closure(_) => None,
+                    Origin::Closure(_) | Origin::Platform => None,
                 })
         else {
             continue;

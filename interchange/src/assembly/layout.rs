@@ -10,6 +10,7 @@
 use super::{
     motion::{State, rank},
     network::{Network, Origin},
+    platform::platforms,
     solvable_chains::{SolvableChain, cheapest, follows, freedoms},
 };
 use crate::{files::Files, model::JointType, options::Options};
@@ -59,11 +60,64 @@ const PATHS: usize = 3_000_000;
 const LISTED: usize = 10;
 
 /// Finds skeleton and chains; `None` after an error.
-pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> Option<Layout> {
+///
+/// Preferred are motors as coordinates, then the joints with the cheapest chains, then the
+/// displacements of a platform.
+pub(crate) fn find(files: &Files, network: &mut Network<'_>, options: &Options) -> Option<Layout> {
     let wanted = match &options.coordinates {
         None => None,
         Some(names) => Some(wanted(files, network, names)?),
     };
+    let is_free = wanted.is_none() && !network.model.closures.is_empty();
+    if is_free && let Ok(found) = search(network, Some(driven(network))) {
+        return Some(found);
+    }
+    let failure = match search(network, wanted) {
+        Ok(found) => return Some(found),
+        Err(failure) => failure,
+    };
+    let candidates = if is_free {
+        platforms(network)
+    } else {
+        Vec::new()
+    };
+    for platform in candidates {
+        network.add_platform(platform);
+        let edge = network.edges.len() - 1;
+        match search(network, Some(vec![edge])) {
+            Ok(found) => return Some(found),
+            Err(_) => network.remove_platform(),
+        }
+    }
+    refuse(
+        files,
+        network,
+        &failure.furthest,
+        failure.is_exhausted,
+        options.coordinates.is_some(),
+    );
+    None
+}
+
+/// Edges of motors that do not follow other joints.
+fn driven(network: &Network<'_>) -> Vec<usize> {
+    let joints = &network.model.joints;
+    let is_driven = |edge: &usize| match network.edges[*edge].origin {
+        Origin::Joint(joint) => joints[joint].actuated && joints[joint].follow.is_none(),
+        Origin::Closure(_) | Origin::Platform => false,
+    };
+    (0..network.edges.len()).filter(is_driven).collect()
+}
+
+/// Reason why a search found no layout.
+struct Failure {
+    /// Solved groups of the partial layout that solved most.
+    furthest: Vec<bool>,
+    is_exhausted: bool,
+}
+
+/// Searches skeleton and chains whose coordinates are some of the wanted edges, if given.
+fn search(network: &Network<'_>, wanted: Option<Vec<usize>>) -> Result<Layout, Failure> {
     let mut search = Search {
         network,
         // Groups that alone connect others to the ground must be part of the skeleton, because the
@@ -86,17 +140,13 @@ pub(crate) fn find(files: &Files, network: &Network<'_>, options: &Options) -> O
     }
     let is_exhausted = search.is_exhausted();
     let Search { best, furthest, .. } = search;
-    if let Some((_, found)) = best {
-        return Some(found);
+    match best {
+        Some((_, found)) => Ok(found),
+        None => Err(Failure {
+            furthest,
+            is_exhausted,
+        }),
     }
-    refuse(
-        files,
-        network,
-        &furthest,
-        is_exhausted,
-        options.coordinates.is_some(),
-    );
-    None
 }
 
 fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<usize>> {
@@ -290,10 +340,34 @@ impl Search<'_, '_> {
         let coordinates: usize = skeleton_freedoms(self.network, &layout.coordinates())
             .iter()
             .sum();
-        if coordinates == self.network.mobility {
+        let is_complete = coordinates == self.network.mobility;
+        if is_complete && keeps_couplings(self.network, &layout) {
             self.best = Some((partial.cost, layout));
         }
     }
+}
+
+/// Whether each coupled joint is in the same tree as its leader.
+fn keeps_couplings(network: &Network<'_>, layout: &Layout) -> bool {
+    let branches = layout.pieces.iter().filter_map(|piece| match piece {
+        LayoutPiece::Branch(tree) => Some(tree),
+        LayoutPiece::Chain(_) => None,
+    });
+    let tree_of = |joint: usize| {
+        let mut trees = std::iter::once(&layout.skeleton).chain(branches.clone());
+        trees.position(|tree| {
+            let mut edges = tree.iter();
+            edges.any(|(edge, _)| network.edges[*edge].origin == Origin::Joint(joint))
+        })
+    };
+    let mut joints = network.model.joints.iter().enumerate();
+    joints.all(|(at, joint)| {
+        let leader = joint.follow.map(|follow| follow.joint);
+        leader.is_none_or(|leader| {
+            let own = tree_of(at);
+            own.is_none() || own == tree_of(leader)
+        })
+    })
 }
 
 /// Number of one-degree-of-freedom joints for each edge of a skeleton.
@@ -340,6 +414,10 @@ pub(crate) fn skeleton_rates(
         };
         let relative = &twists[to] - &twists[from];
         let axis = network.axis(edge, state);
+        if let (Origin::Platform, Some(platform)) = (edge.origin, &network.platform) {
+            rows.extend(platform.rates(&platform.at(network, state), &relative));
+            continue;
+        }
         let turning = |e: &Vector3<f64>| {
             (relative.rows(3, 3).transpose() * e)
                 .iter()
@@ -412,6 +490,7 @@ fn refuse(
     let place = first.map(|edge| match edge.origin {
         Origin::Joint(joint) => &network.model.joints[joint].place,
         Origin::Closure(closure) => &network.model.closures[closure].place,
+        Origin::Platform => &network.model.joints[0].place,
     });
     match place {
         Some(place) => files.report(place, message, help),

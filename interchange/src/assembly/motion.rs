@@ -18,6 +18,17 @@ pub(crate) struct State {
     pub(crate) poses: Vec<Pose>,
 }
 
+/// Result of a search for a closed configuration that found none.
+#[derive(Debug, Clone)]
+pub(crate) struct Open {
+    /// Configuration with the smallest residuals.
+    pub(crate) state: State,
+    /// Largest residual, m or rad.
+    pub(crate) gap: f64,
+    /// Row of the largest residual.
+    pub(crate) row: usize,
+}
+
 /// A coordinate of the tree: a joint, or one of the three rates of a ball joint.
 ///
 /// Ball rates are about the axes of the body's placement.
@@ -62,7 +73,8 @@ impl<'m> Motion<'m> {
     /// Home configuration of the file.
     pub(crate) fn start(&self) -> State {
         let positions = self.model.joints.iter().map(|joint| joint.home).collect();
-        let turns = vec![Rotation3::identity(); self.model.joints.len()];
+        let joints = self.model.joints.iter();
+        let turns = joints.map(|joint| joint.home_turn).collect();
         let mut state = State {
             positions,
             turns,
@@ -193,8 +205,8 @@ impl<'m> Motion<'m> {
 
     /// Projects a configuration onto the closures.
     ///
-    /// On failure: the largest residual and its row.
-    pub(crate) fn closed(&self, start: &State) -> Result<State, (f64, usize)> {
+    /// On failure: the configuration with the smallest residuals, the largest residual and its row.
+    pub(crate) fn closed(&self, start: &State) -> Result<State, Open> {
         let mut state = start.clone();
         let (mut best, mut since) = (f64::INFINITY, 0);
         for step in 0..300 {
@@ -210,12 +222,12 @@ impl<'m> Motion<'m> {
                 return if gap < 1e-10 {
                     Ok(state)
                 } else {
-                    Err((gap, row))
+                    Err(Open { state, gap, row })
                 };
             }
             let mut change = match solve(&jacobian, &DVector::from_vec(gaps)) {
                 Some(change) => -change,
-                None => return Err((gap, row)),
+                None => return Err(Open { state, gap, row }),
             };
             // Limit steps to half a radian, the range in which the linearisation is useful.
             let size = change.amax();
@@ -229,7 +241,7 @@ impl<'m> Motion<'m> {
         if gap < 1e-10 {
             Ok(state)
         } else {
-            Err((gap, row))
+            Err(Open { state, gap, row })
         }
     }
 }
@@ -344,6 +356,13 @@ fn ends(kind: &ClosureKind, state: &State) -> ([Point3<f64>; 2], Turn) {
             )
         }
     }
+}
+
+/// Distance between the points of a closure, m, and angle between its frames or axes, rad.
+pub(crate) fn gaps_of(kind: &ClosureKind, state: &State) -> (f64, f64) {
+    let (points, turn) = ends(kind, state);
+    let angle = turn.map_or(0.0, |(gap, _)| gap.norm());
+    ((points[1] - points[0]).norm(), angle)
 }
 
 /// Rotation vector, also accurate for small angles.

@@ -2,7 +2,8 @@
 
 use super::{
     blocks::Blocks,
-    motion::{Motion, State, null_space},
+    motion::{Motion, Open, State, null_space},
+    platform::Platform,
     simple::{is_free, is_weld},
 };
 use crate::{
@@ -21,8 +22,11 @@ pub(crate) struct Group {
     pub(crate) inertia: Option<Inertia>,
     /// Whether a body of the group has inertia of unknown value.
     pub(crate) has_unknown_inertia: bool,
-    /// Whether the group is a rod between two ball joints, with an idle spin about their line.
+    /// Whether the group is part of a rod between two ball joints, with an idle spin about their
+    /// line.
     pub(crate) spins: bool,
+    /// Ball joints at the ends of its rod.
+    pub(crate) rod_ends: Option<[usize; 2]>,
 }
 
 /// Origin of an edge in the model.
@@ -30,6 +34,8 @@ pub(crate) struct Group {
 pub(crate) enum Origin {
     Joint(usize),
     Closure(usize),
+    /// Displacement of the network's platform.
+    Platform,
 }
 
 /// A joint or closure between two groups.
@@ -66,6 +72,8 @@ pub(crate) struct Network<'m> {
     pub(crate) twists: Vec<Vec<DMatrix<f64>>>,
     /// Number of independent motions.
     pub(crate) mobility: usize,
+    /// Platform whose displacements are coordinates.
+    pub(crate) platform: Option<Platform>,
 }
 
 /// Number of sampled configurations in addition to home.
@@ -74,14 +82,19 @@ const SAMPLES: usize = 3;
 impl<'m> Network<'m> {
     /// Builds the network of a model; `None` after an error.
     pub(crate) fn new(files: &Files, model: &'m Model) -> Option<Self> {
-        let motion = Motion::new(model);
-        let home = match motion.closed(&motion.start()) {
-            Ok(home) => home,
-            Err((gap, row)) => {
-                not_closed(files, model, gap, row);
-                return None;
+        match Self::closed(model) {
+            Ok(network) => Some(network),
+            Err(open) => {
+                not_closed(files, model, open.gap, open.row);
+                None
             }
-        };
+        }
+    }
+
+    /// Builds the network of a model, or returns the configuration in which its loops stay open.
+    pub(crate) fn closed(model: &'m Model) -> Result<Self, Open> {
+        let motion = Motion::new(model);
+        let home = motion.closed(&motion.start())?;
         let of_body = grouped(model);
         let groups = groups(model, &of_body, &home);
         let edges = edges(model, &of_body);
@@ -97,20 +110,97 @@ impl<'m> Network<'m> {
             states: vec![home],
             twists: Vec::new(),
             mobility: 0,
+            platform: None,
         };
         network.find_spins();
         network.sample(&motion);
-        Some(network)
+        Ok(network)
     }
 
-    /// Marks groups whose only edges are two ball joints.
+    /// Names of the rods with an idle spin.
+    pub(crate) fn spins(&self) -> Vec<&str> {
+        let mut ends = Vec::new();
+        let mut names = Vec::new();
+        for (at, group) in self.groups.iter().enumerate() {
+            if let Some(own) = group.rod_ends.filter(|own| !ends.contains(own)) {
+                ends.push(own);
+                names.push(self.group_name(at));
+            }
+        }
+        names
+    }
+
+    /// Adds an edge for the displacements of a platform.
+    pub(crate) fn add_platform(&mut self, platform: Platform) {
+        let edge = self.edges.len();
+        let group = platform.group;
+        self.edges.push(Edge {
+            groups: [0, group],
+            kind: JointType::Ball,
+            origin: Origin::Platform,
+            is_free: true,
+        });
+        for end in [0, group] {
+            self.edges_at[end].push(edge);
+        }
+        self.blocks.is_bridge.push(false);
+        self.platform = Some(platform);
+    }
+
+    /// Removes the edge of the platform.
+    pub(crate) fn remove_platform(&mut self) {
+        let Some(platform) = self.platform.take() else {
+            return;
+        };
+        self.edges.pop();
+        self.blocks.is_bridge.pop();
+        for end in [0, platform.group] {
+            self.edges_at[end].pop();
+        }
+    }
+
+    /// Marks the groups of rods: paths of slides between two ball joints.
     fn find_spins(&mut self) {
-        for at in 1..self.groups.len() {
-            let own = &self.edges_at[at];
-            let all_balls = own
-                .iter()
-                .all(|&edge| self.edges[edge].kind == JointType::Ball);
-            self.groups[at].spins = all_balls && own.len() == 2;
+        for start in 0..self.edges.len() {
+            for end in self.edges[start].groups {
+                let Some((groups, last)) = self.rod(start, end) else {
+                    continue;
+                };
+                // Each rod is found from both ends.
+                if start < last {
+                    for group in groups {
+                        self.groups[group].spins = true;
+                        self.groups[group].rod_ends = Some([start, last]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Groups between a ball joint and the next one, and that joint; `None` if there is no rod.
+    fn rod(&self, start: usize, first: usize) -> Option<(Vec<usize>, usize)> {
+        if self.edges[start].kind != JointType::Ball {
+            return None;
+        }
+        let (mut groups, mut entry, mut at) = (Vec::new(), start, first);
+        loop {
+            let [a, b] = self.edges_at[at][..] else {
+                return None;
+            };
+            if at == 0 || groups.contains(&at) {
+                return None;
+            }
+            groups.push(at);
+            let exit = if a == entry { b } else { a };
+            match self.edges[exit].kind {
+                JointType::Ball => return (exit != start).then_some((groups, exit)),
+                JointType::Prismatic => {
+                    let ends = self.edges[exit].groups;
+                    at = ends[usize::from(ends[0] == at)];
+                    entry = exit;
+                }
+                JointType::Revolute => return None,
+            }
         }
     }
 
@@ -170,9 +260,10 @@ impl<'m> Network<'m> {
 
     /// Direction from one ball joint of a rod to the other.
     pub(crate) fn line(&self, group: usize, state: &State) -> Vector3<f64> {
-        let own = self.edges_at[group].iter().map(|&edge| &self.edges[edge]);
-        let centres: Vec<Point3<f64>> = own.map(|edge| self.axis(edge, state).point).collect();
-        let line = centres.last().zip(centres.first()).map(|(b, a)| b - a);
+        let line = self.groups[group].rod_ends.map(|ends| {
+            let [a, b] = ends.map(|edge| self.axis(&self.edges[edge], state).point);
+            b - a
+        });
         line.and_then(|line| line.try_normalize(1e-9))
             .unwrap_or_else(Vector3::x)
     }
@@ -181,6 +272,13 @@ impl<'m> Network<'m> {
     /// first.
     pub(crate) fn axis(&self, edge: &Edge, state: &State) -> Axis {
         match edge.origin {
+            Origin::Platform => Axis {
+                point: state.poses[self.groups[edge.groups[1]].bodies[0]]
+                    .translation
+                    .vector
+                    .into(),
+                direction: Vector3::z(),
+            },
             Origin::Joint(joint) => {
                 let own = &self.model.joints[joint];
                 let pose = state.poses[self.carried[joint]];
@@ -211,6 +309,7 @@ impl<'m> Network<'m> {
         match edge.origin {
             Origin::Joint(joint) => &self.model.joints[joint].name,
             Origin::Closure(closure) => &self.model.closures[closure].name,
+            Origin::Platform => self.group_name(edge.groups[1]),
         }
     }
 
@@ -234,8 +333,14 @@ impl Random {
     }
 }
 
+/// Whether a joint displaces a massless body that carries a free body.
+fn is_carrier(model: &Model, joint: usize) -> bool {
+    let joint = &model.joints[joint];
+    joint.is_virtual && joint.kind == JointType::Prismatic
+}
+
 /// Group of each body.
-fn grouped(model: &Model) -> Vec<usize> {
+pub(super) fn grouped(model: &Model) -> Vec<usize> {
     let mut of_body: Vec<usize> = (0..model.bodies.len()).collect();
     let root = |of: &[usize], mut at: usize| {
         while of[at] != at {
@@ -252,7 +357,7 @@ fn grouped(model: &Model) -> Vec<usize> {
         .bodies
         .iter()
         .enumerate()
-        .filter(|(_, body)| body.joint.is_none());
+        .filter(|(_, body)| body.joint.is_none_or(|joint| is_carrier(model, joint)));
     let fixed = fixed.map(|(at, body)| [at, body.parent]);
     for [a, b] in fixed.chain(welds).collect::<Vec<_>>() {
         let (a, b) = (root(&of_body, a), root(&of_body, b));
@@ -274,6 +379,7 @@ fn groups(model: &Model, of_body: &[usize], home: &State) -> Vec<Group> {
         inertia: None,
         has_unknown_inertia: false,
         spins: false,
+        rod_ends: None,
     };
     let mut groups = vec![empty; count];
     for (at, body) in model.bodies.iter().enumerate() {
@@ -291,7 +397,7 @@ fn groups(model: &Model, of_body: &[usize], home: &State) -> Vec<Group> {
     groups
 }
 
-fn edges(model: &Model, of_body: &[usize]) -> Vec<Edge> {
+pub(super) fn edges(model: &Model, of_body: &[usize]) -> Vec<Edge> {
     let joints = model
         .bodies
         .iter()
@@ -299,6 +405,9 @@ fn edges(model: &Model, of_body: &[usize]) -> Vec<Edge> {
         .skip(1)
         .filter_map(|(at, body)| {
             let joint = body.joint?;
+            if model.joints[joint].is_virtual {
+                return None;
+            }
             Some(Edge {
                 groups: [of_body[body.parent], of_body[at]],
                 kind: model.joints[joint].kind,
@@ -331,7 +440,7 @@ fn edges(model: &Model, of_body: &[usize]) -> Vec<Edge> {
 }
 
 /// Edges of each group.
-fn edges_at(groups: usize, edges: &[Edge]) -> Vec<Vec<usize>> {
+pub(super) fn edges_at(groups: usize, edges: &[Edge]) -> Vec<Vec<usize>> {
     let mut at = vec![Vec::new(); groups];
     for (index, edge) in edges.iter().enumerate() {
         for group in edge.groups {

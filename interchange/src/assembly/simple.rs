@@ -3,6 +3,7 @@
 //! Three passive revolute joints with intersecting axes and massless bodies between them are a ball
 //! joint. Two revolute joints on one axis are one.
 
+use crate::geometry::exact;
 use crate::model::{ClosureKind, Inertia, Joint, JointType, Model};
 use nalgebra::Matrix3;
 
@@ -22,8 +23,16 @@ pub(crate) fn join_balls(model: &mut Model) {
             "`{outer}`, `{middle}` and `{inner}` meet in a point: spherical joint `{name}` here."
         ));
         let place = model.joints[own].place.clone();
+        let turn = [first, second, third].map(|body| {
+            let joint = &model.joints[model.bodies[body].joint.unwrap_or(0)];
+            exact::turn(&joint.axis, joint.home - joint.reference)
+        });
+        let [second_in, third_in] =
+            [second, third].map(|body| model.bodies[body].placement.rotation);
+        let turned = turn[0] * second_in * turn[1] * third_in * turn[2];
         model.joints[own] = Joint {
             at: centre,
+            home_turn: exact::cleaned(&(between.rotation.inverse() * turned)),
             ..Joint::new(&name, JointType::Ball, place)
         };
         let (placement, parent) = (

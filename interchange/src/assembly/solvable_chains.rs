@@ -3,6 +3,7 @@
 use super::{
     motion::rank,
     network::{Network, Origin},
+    platform::Platform,
 };
 use crate::model::JointType;
 use nalgebra::{DMatrix, Vector3};
@@ -48,6 +49,9 @@ const WAYS: usize = 20_000;
 pub(crate) fn freedoms(network: &Network<'_>, edge: usize, to: usize, is_first: bool) -> usize {
     match network.edges[edge].kind {
         _ if follows(network, edge) => 0,
+        _ if network.edges[edge].origin == Origin::Platform => {
+            network.platform.as_ref().map_or(0, Platform::count)
+        }
         JointType::Revolute | JointType::Prismatic => 1,
         JointType::Ball if network.groups[to].spins && is_first => 2,
         JointType::Ball => 3,
@@ -58,7 +62,7 @@ pub(crate) fn freedoms(network: &Network<'_>, edge: usize, to: usize, is_first: 
 pub(crate) fn follows(network: &Network<'_>, edge: usize) -> bool {
     match network.edges[edge].origin {
         Origin::Joint(joint) => network.model.joints[joint].follow.is_some(),
-        Origin::Closure(_) => false,
+        Origin::Closure(_) | Origin::Platform => false,
     }
 }
 
@@ -104,7 +108,8 @@ impl Search<'_, '_> {
         }
         for &index in &self.network.edges_at[at] {
             let edge = &self.network.edges[index];
-            if self.used[index] || edges.contains(&index) {
+            let is_platform = edge.origin == Origin::Platform;
+            if self.used[index] || edges.contains(&index) || is_platform {
                 continue;
             }
             let next = edge.groups[usize::from(edge.groups[0] == at)];
@@ -175,7 +180,7 @@ impl super::network::Edge {
     /// Whether the edge is a ball joint without torques.
     fn is_free_ball(&self, network: &Network<'_>) -> bool {
         match self.origin {
-            Origin::Closure(_) => true,
+            Origin::Closure(_) | Origin::Platform => true,
             Origin::Joint(joint) => {
                 let joint = &network.model.joints[joint];
                 !joint.actuated && joint.damping == 0.0 && joint.friction == 0.0

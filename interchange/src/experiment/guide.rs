@@ -6,6 +6,7 @@ use crate::{
         layout::{Layout, skeleton_rates},
         motion::{Motion, State},
         network::{Network, Origin},
+        platform::Platform,
         solvable_chains::freedoms,
     },
     model::JointType,
@@ -124,6 +125,16 @@ impl<'g, 'm> Guide<'g, 'm> {
     fn own_rates(&self, state: &State, groups: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for step in &self.layout.coordinates() {
+            if let Some(platform) = self.platform(step.0) {
+                let at = platform.at(self.network, state);
+                let mut own = platform.rates(&at, &groups[platform.group]);
+                if let Some((_, ball)) = self.balls.iter().find(|(edge, _)| *edge == step.0) {
+                    own.truncate(platform.translations.len());
+                    own.extend(ball.rates(self.network, state, groups)?);
+                }
+                rows.extend(own);
+                continue;
+            }
             match self.balls.iter().find(|(edge, _)| *edge == step.0) {
                 Some((_, ball)) => rows.extend(ball.rates(self.network, state, groups)?),
                 None => {
@@ -139,6 +150,27 @@ impl<'g, 'm> Guide<'g, 'm> {
         Some(DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]))
     }
 
+    /// Platform whose displacements an edge stands for.
+    fn platform(&self, edge: usize) -> Option<&Platform> {
+        let platform = self.network.platform.as_ref();
+        platform.filter(|_| self.network.edges[edge].origin == Origin::Platform)
+    }
+
+    /// Displacements of a platform from home: along its translations, then its angles.
+    ///
+    /// `None` for a single angle, which is not needed.
+    fn displacements(&self, edge: usize, platform: &Platform, state: &State) -> Vec<Option<f64>> {
+        let home = platform.at(self.network, &self.network.states[0]);
+        let moved = platform.at(self.network, state) - home;
+        let along = platform.translations.iter().map(|axis| moved.dot(axis));
+        let mut all: Vec<Option<f64>> = along.map(Some).collect();
+        match self.balls.iter().find(|(own, _)| *own == edge) {
+            Some((_, ball)) => all.extend(ball.angles(self.network, state).into_iter().map(Some)),
+            None => all.extend(platform.rotations.iter().map(|_| None)),
+        }
+        all
+    }
+
     /// Configuration after a step of the coordinates; `None` if the loops do not close.
     pub(super) fn step(&self, state: &State, rates: &Rates, by: &DVector<f64>) -> Option<State> {
         let moved = self.motion.moved_by(state, &(&rates.tree * by));
@@ -149,6 +181,9 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// file.
     pub(super) fn positions(&self, state: &State) -> Vec<Option<f64>> {
         let of = |&(index, from): &(usize, usize)| {
+            if let Some(platform) = self.platform(index) {
+                return self.displacements(index, platform, state);
+            }
             if let Some((_, ball)) = self.balls.iter().find(|(edge, _)| *edge == index) {
                 return ball
                     .angles(self.network, state)
@@ -164,7 +199,7 @@ impl<'g, 'm> Guide<'g, 'm> {
                     let home = self.network.states[0].positions[joint];
                     vec![Some(state.positions[joint] - home); count]
                 }
-                Origin::Closure(_) => vec![None; count],
+                Origin::Closure(_) | Origin::Platform => vec![None; count],
             }
         };
         self.layout.coordinates().iter().flat_map(of).collect()
@@ -219,7 +254,13 @@ fn balls(network: &Network<'_>, layout: &Layout, plan: &Plan) -> Option<Vec<(usi
             1
         };
         let own: Vec<_> = axes.by_ref().take(count).copied().collect();
-        if edge.kind == JointType::Ball {
+        if let (Origin::Platform, Some(platform)) = (edge.origin, &network.platform) {
+            let turning = &own[platform.translations.len()..];
+            if turning.len() == 3 {
+                let ball = Ball::new(network, from, to, turning, &balls)?;
+                balls.push((index, ball));
+            }
+        } else if edge.kind == JointType::Ball {
             let ball = Ball::new(network, from, to, &own, &balls)?;
             balls.push((index, ball));
         }

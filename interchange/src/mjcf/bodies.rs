@@ -102,6 +102,12 @@ fn body(
         if own.name == "joint" {
             tree.compensation.joint(files, own);
         }
+        if is_free(own) && reader.has_closures && !reader.options.fix_base {
+            parent = carriers(own, parent, placement, model);
+            placement = Pose::identity();
+            push_free(own, &name, element, parent, model);
+            continue;
+        }
         let Some(mut joint) = joint(reader, own, model) else {
             continue;
         };
@@ -149,6 +155,67 @@ fn body(
     model.bodies[own].inertia = inertia;
     model.bodies[own].has_unknown_inertia = is_unknown;
     inside(reader, element, own, &Pose::identity(), class, tree);
+}
+
+/// Whether a joint lets its body move freely.
+fn is_free(joint: &Element) -> bool {
+    joint.name == "freejoint" || joint.get("type") == Some("free")
+}
+
+/// Name of a free joint.
+fn free_name(joint: &Element, model: &Model) -> String {
+    let given = joint.get("name").map(str::to_owned);
+    given.unwrap_or_else(|| format!("joint{}", model.joints.len() + 1))
+}
+
+/// Adds massless bodies that translate along x, y and z, and returns the last one.
+fn carriers(joint: &Element, parent: usize, placement: Pose, model: &mut Model) -> usize {
+    let name = free_name(joint, model);
+    let (mut parent, mut placement) = (parent, placement);
+    for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+        model.joints.push(Joint {
+            axis: Vector3::ith(axis, 1.0),
+            is_virtual: true,
+            ..Joint::new(
+                &format!("{name} {letter}"),
+                JointType::Prismatic,
+                joint.place.clone(),
+            )
+        });
+        model.bodies.push(Body {
+            name: String::new(),
+            parent,
+            placement,
+            place: None,
+            joint: Some(model.joints.len() - 1),
+            inertia: None,
+            has_unknown_inertia: false,
+        });
+        parent = model.bodies.len() - 1;
+        placement = Pose::identity();
+    }
+    parent
+}
+
+/// Adds a body that rotates freely about its parent's origin.
+fn push_free(joint: &Element, name: &str, element: &Element, parent: usize, model: &mut Model) {
+    model.joints.push(Joint {
+        is_virtual: true,
+        ..Joint::new(
+            &free_name(joint, model),
+            JointType::Ball,
+            joint.place.clone(),
+        )
+    });
+    model.bodies.push(Body {
+        name: name.to_owned(),
+        parent,
+        placement: Pose::identity(),
+        place: Some(element.place.clone()),
+        joint: Some(model.joints.len() - 1),
+        inertia: None,
+        has_unknown_inertia: false,
+    });
 }
 
 /// Joints of a body in file order, with their enclosing frames' pose in the body.

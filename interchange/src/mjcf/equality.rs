@@ -65,6 +65,15 @@ pub(super) fn read(
     couplings.resolve(reader.files, model);
 }
 
+/// Whether constraints close loops.
+pub(super) fn has_closures(root: &Element) -> bool {
+    let mut sections = root.all("equality");
+    sections.any(|section| {
+        let mut children = section.children.iter();
+        children.any(|child| ["connect", "weld"].contains(&child.name.as_str()))
+    })
+}
+
 /// Name of a constraint, or of the elements that it connects.
 fn name_of(element: &Element) -> String {
     let ends = [["site1", "site2"], ["body1", "body2"], ["joint1", "joint2"]];

@@ -1,33 +1,70 @@
 //! Expands the includes of a file.
 
+use super::keyframe;
 use crate::{
     account::MJCF,
     files::Files,
     prune::keep_honoured,
     xml::{self, Element},
 };
-use std::path::PathBuf;
+use std::path::{Component, Path, PathBuf};
 
 /// Largest depth of nested includes.
 const DEPTH: usize = 30;
 /// Largest number of files; a file counts as often as it is included.
 const FILES: usize = 500;
 
-/// File with its includes, as one element; `None` after an error.
-pub(super) fn whole(files: &Files, file: usize) -> Option<Element> {
+/// File with its includes, as one element, and its keyframe; `None` after an error.
+///
+/// Unless `may_leave`, included files must be in the file's folder or below.
+pub(super) fn whole(
+    files: &Files,
+    file: usize,
+    may_leave: bool,
+) -> Option<(Element, Option<Vec<f64>>)> {
     let mut root = xml::parse(files, file)?;
-    let folder = files.folder(file);
+    let folder = Folder {
+        path: files.folder(file),
+        may_leave,
+    };
     let mut open = vec![files.path(file)];
     expand(files, &mut root, &folder, &mut open, 0)?;
+    let keyframe = keyframe::positions(&root);
     keep_honoured(files, &MJCF, &mut root);
-    files.is_clean().then_some(root)
+    files.is_clean().then_some((root, keyframe))
+}
+
+/// Folder of the first file.
+struct Folder {
+    path: PathBuf,
+    /// Whether files outside it may be included.
+    may_leave: bool,
+}
+
+impl Folder {
+    /// Whether a name means a file in the folder or below, also after symbolic links.
+    fn contains(&self, name: &str, path: &Path) -> bool {
+        let mut components = Path::new(name).components();
+        let is_plain =
+            components.all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        let own = if self.path.as_os_str().is_empty() {
+            Path::new(".").canonicalize()
+        } else {
+            self.path.canonicalize()
+        };
+        match (own, path.canonicalize()) {
+            (Ok(own), Ok(path)) => path.starts_with(own),
+            // A missing file is reported when it is opened.
+            _ => is_plain,
+        }
+    }
 }
 
 /// Replaces includes by the elements of the included files; `depth` is the element's depth.
 fn expand(
     files: &Files,
     of: &mut Element,
-    folder: &PathBuf,
+    folder: &Folder,
     open: &mut Vec<PathBuf>,
     depth: usize,
 ) -> Option<()> {
@@ -46,12 +83,16 @@ fn expand(
             files.report(&child.place, "<include> names no file", "write file=\"…\"");
             continue;
         };
-        let path = folder.join(name);
+        let path = folder.path.join(name);
         let same = |other: &PathBuf| match (path.canonicalize(), other.canonicalize()) {
             (Ok(a), Ok(b)) => a == b,
             _ => *other == path,
         };
-        let problem = if open.iter().any(same) {
+        let problem = if !folder.may_leave && !folder.contains(name, &path) {
+            let message = format!("`{name}` is outside the folder of the file and is not read");
+            let help = "copy it into the folder, or give `--include-outside` if you trust the file";
+            Some((message, help))
+        } else if open.iter().any(same) {
             Some((
                 format!("`{name}` includes itself"),
                 "remove one of the includes",

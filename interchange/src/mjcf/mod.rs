@@ -8,6 +8,7 @@ mod defaults;
 mod equality;
 mod include;
 mod inertia;
+mod keyframe;
 mod mesh;
 mod tendons;
 #[cfg(test)]
@@ -29,7 +30,7 @@ use tendons::Tendons;
 
 /// Reads a robot; errors are recorded in `files`.
 pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Model> {
-    let root = include::whole(files, file)?;
+    let (root, keyframe) = include::whole(files, file, options.include_outside)?;
     bounds::check_elements(files, &root)?;
     let mut model = Model::new(root.get("model").unwrap_or("robot"));
     let mut reader = Reader {
@@ -38,6 +39,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         defaults: Defaults::new(files, &root)?,
         meshes: mesh::Meshes::new(),
         options,
+        has_closures: equality::has_closures(&root),
     };
     reader.meshes = mesh::read(&reader, &root, &files.folder(file));
     let mut has_gravity = true;
@@ -67,6 +69,9 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     adjust::inertias(files, &root, &reader.compiler, &mut model);
     compensation.apply(files, &mut model);
     adjust::springs(files, &mut model, &springs);
+    if let Some(positions) = keyframe {
+        keyframe::apply(&positions, &mut model);
+    }
     files.is_clean().then_some(model)
 }
 
@@ -82,6 +87,8 @@ struct Reader<'r> {
     defaults: Defaults,
     meshes: mesh::Meshes,
     options: &'r Options,
+    /// Whether constraints close loops, which may hold free bodies.
+    has_closures: bool,
 }
 
 /// Body of each site and its pose there.

@@ -4,6 +4,7 @@ use super::{Joint, names::Names};
 use crate::{
     assembly::{
         network::{Edge, Network, Origin},
+        platform::Platform,
         solvable_chains::{Ending, SolvableChain},
     },
     files::Files,
@@ -52,9 +53,13 @@ impl<'d, 'm> Draft<'d, 'm> {
             // The variable of a coupled joint excludes the constant, which is part of the joint's
             // expression.
             Origin::Joint(joint) => home.positions[joint] - self.constant(joint),
-            Origin::Closure(_) => 0.0,
+            Origin::Closure(_) | Origin::Platform => 0.0,
         };
         let name = self.network.edge_name(edge).to_owned();
+        if let (Origin::Platform, Some(platform)) = (edge.origin, &self.network.platform) {
+            self.push_platform(index, to, platform);
+            return;
+        }
         if edge.kind != JointType::Ball {
             self.nodes.push(Node {
                 antecedent,
@@ -88,6 +93,25 @@ impl<'d, 'm> Draft<'d, 'm> {
                 home: 0.0,
             };
             self.nodes.push(node);
+            let group = (at + 1 == axes.len()).then_some(to);
+            self.finish(index, at, group, &format!("{name}_{}", at + 1));
+        }
+    }
+
+    /// Adds the displacements of a platform as joints.
+    fn push_platform(&mut self, index: usize, to: usize, platform: &Platform) {
+        let name = self.network.group_name(to).to_owned();
+        let point = platform.at(self.network, &self.network.states[0]);
+        let axes = platform.axes();
+        for (at, (kind, direction)) in axes.iter().enumerate() {
+            self.nodes.push(Node {
+                antecedent: (at > 0).then(|| self.nodes.len() - 1),
+                is_prismatic: *kind == JointType::Prismatic,
+                is_screw: false,
+                point,
+                direction: *direction,
+                home: 0.0,
+            });
             let group = (at + 1 == axes.len()).then_some(to);
             self.finish(index, at, group, &format!("{name}_{}", at + 1));
         }
@@ -229,6 +253,12 @@ impl<'d, 'm> Draft<'d, 'm> {
             Origin::Joint(joint) => self.files.line(&self.network.model.joints[joint].place),
             Origin::Closure(closure) => {
                 self.files.line(&self.network.model.closures[closure].place)
+            }
+            Origin::Platform => {
+                return format!(
+                    "Displacements of the platform `{}` from home, in the world",
+                    self.network.group_name(edge.groups[1])
+                );
             }
         };
         let kind = match edge.kind {

@@ -8,6 +8,7 @@ mod screws;
 use crate::{
     assembly::{
         layout::{Layout, LayoutPiece, Tree},
+        misfit,
         network::Network,
         solvable_chains::{Ending, SolvableChain},
     },
@@ -294,6 +295,13 @@ fn chain(
 
 fn notes(network: &Network<'_>, layout: &Layout) -> Vec<String> {
     let mut notes = network.model.notes.clone();
+    for own in &network.model.misfits {
+        let amount = misfit::amount(own.length, own.angle);
+        notes.push(format!(
+            "Misfit of the loops: `{}` is changed by {amount} here.",
+            own.name
+        ));
+    }
     for (at, group) in network.groups.iter().enumerate() {
         let others: Vec<String> = group.bodies[1..]
             .iter()
@@ -308,6 +316,11 @@ fn notes(network: &Network<'_>, layout: &Layout) -> Vec<String> {
                 "One body here, fixed together: `{own}` and {list}."
             ));
         }
+    }
+    for name in network.spins() {
+        notes.push(format!(
+            "`{name}` can rotate about the line between its ball joints without effect; by convention it does not."
+        ));
     }
     for &edge in &layout.redundant {
         let name = network.edge_name(&network.edges[edge]);

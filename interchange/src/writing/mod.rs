@@ -115,6 +115,9 @@ fn given(options: &Options) -> Option<String> {
             words.push(format!("{key} {}", pairs.join(",")));
         }
     }
+    if let Some(tolerance) = options.closure_tolerance {
+        words.push(format!("--closure-tolerance {tolerance:?}"));
+    }
     (!words.is_empty()).then(|| format!("`{}`", words.join(" ")))
 }
 

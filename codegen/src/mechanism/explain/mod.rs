@@ -183,16 +183,23 @@ fn open(
         Reach::Turned => error(format!("{name} cannot take {carriers} orientation at the home pose"))
             .label("its end reaches the position, but not the orientation")
             .help("check `alpha`, `base` and `end.rotation`; an end that is a spherical or universal joint has type = \"point\""),
+        Reach::Away(distance) if distance < NEARLY_CLOSED => error(format!("{name} misses its place on {carrier} at the home pose by {}", length(distance)))
+            .label(format!("it does not close: its end stays at least {} away", length(distance)))
+            .help(format!("rounded angles or lengths leave such a misfit: write angles exactly (`alpha = \"90 deg\"` instead of 1.5708), and check its `base` and `end` and {carriers} `home`")),
         Reach::Away(distance) => error(format!("{name} never reaches its place on {carrier} at the home pose"))
             .label(format!("its end stays at least {} away", length(distance)))
             .help(format!("check the lengths of its links, its `base` and `end`, and {carriers} `home`")),
     }
 }
 
+/// Distance of a chain's end below which rounded numbers are the likely cause, m.
+const NEARLY_CLOSED: f64 = 1e-3;
+
 /// Formats a distance with a suitable unit.
 fn length(distance: f64) -> String {
     match distance {
         d if !d.is_finite() => "any distance".to_owned(),
+        d if d < 1e-5 => format!("{:.1e} mm", 1e3 * d),
         d if d < 0.1 => format!("{:.3} mm", 1e3 * d),
         d => format!("{d:.3} m"),
     }

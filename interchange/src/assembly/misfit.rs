@@ -1,0 +1,178 @@
+//! Closes loops that a file's rounded numbers leave open by a small misfit.
+//!
+//! Nearly parallel axes of a loop are made parallel if the loop cannot move otherwise. Frames of
+//! closures are then shifted by the remaining misfit. Both changes are at most the tolerance, and
+//! each is reported.
+
+use super::{
+    blocks::Blocks,
+    motion::{Motion, Open, State, gaps_of},
+    network::{Network, edges, edges_at, grouped},
+    parallel::parallel_axes,
+};
+use crate::{
+    files::Files,
+    model::{ClosureKind, Misfit, Model},
+};
+
+/// Largest misfit by default: rad, and as a fraction of the mechanism's size.
+pub(crate) const TOLERANCE: f64 = 2e-3;
+
+/// Residuals below this are rounding errors, m or rad.
+const ROUNDING: f64 = 1e-9;
+
+/// Model whose loops close and move; `None` after an error.
+pub(crate) fn fitted(files: &Files, model: Model, tolerance: f64) -> Option<Model> {
+    let as_given = closable(&model, tolerance);
+    let straight = parallel_axes(&model, tolerance);
+    let straightened = straight.and_then(|model| {
+        let adjusted = closable(&model, tolerance).ok()?;
+        Some(adjusted.unwrap_or(model))
+    });
+    match (as_given, straightened) {
+        (Ok(adjusted), Some(straight)) => {
+            let own = adjusted.unwrap_or(model);
+            let is_better = motions(&straight) > motions(&own);
+            Some(if is_better { straight } else { own })
+        }
+        (Ok(adjusted), None) => Some(adjusted.unwrap_or(model)),
+        (Err(_), Some(straight)) => Some(straight),
+        (Err(worst), None) => {
+            refuse(files, &model, &worst, tolerance);
+            None
+        }
+    }
+}
+
+/// Number of independent motions, and number of configurations in which they were counted.
+fn motions(model: &Model) -> (usize, usize) {
+    Network::closed(model).map_or((0, 0), |network| (network.mobility, network.states.len()))
+}
+
+/// Misfit of a closure that is too large.
+struct Worst {
+    closure: usize,
+    length: f64,
+    angle: f64,
+    size: f64,
+}
+
+/// Model with frames of closures shifted by their misfits; `None` if its loops close as given.
+fn closable(model: &Model, tolerance: f64) -> Result<Option<Model>, Worst> {
+    let motion = Motion::new(model);
+    let Err(Open { state, .. }) = motion.closed(&motion.start()) else {
+        return Ok(None);
+    };
+    let size = size(model, &state);
+    let mut worst: Option<(f64, Worst)> = None;
+    for (closure, own) in model.closures.iter().enumerate() {
+        let (length, angle) = gaps_of(&own.kind, &state);
+        let ratio = (length / size).max(angle);
+        if !ratio.is_finite() || worst.as_ref().is_none_or(|(largest, _)| ratio > *largest) {
+            let own = Worst {
+                closure,
+                length,
+                angle,
+                size,
+            };
+            worst = Some((ratio, own));
+        }
+    }
+    match worst {
+        Some((ratio, _)) if ratio <= tolerance => Ok(Some(shifted(model, &state))),
+        Some((_, worst)) => Err(worst),
+        None => Ok(None),
+    }
+}
+
+/// Model whose closures are satisfied in a configuration.
+fn shifted(model: &Model, state: &State) -> Model {
+    let mut model = model.clone();
+    for closure in &mut model.closures {
+        let (length, angle) = gaps_of(&closure.kind, state);
+        if length.max(angle) < 1e-13 {
+            continue;
+        }
+        match &mut closure.kind {
+            ClosureKind::Point { bodies, at } => {
+                let point = state.poses[bodies[0]] * at[0];
+                at[1] = state.poses[bodies[1]].inverse_transform_point(&point);
+            }
+            ClosureKind::Weld { bodies, at } | ClosureKind::Pin { bodies, at } => {
+                let frame = state.poses[bodies[0]] * at[0];
+                at[1] = state.poses[bodies[1]].inv_mul(&frame);
+            }
+        }
+        if length.max(angle) > ROUNDING {
+            model.misfits.push(Misfit {
+                name: closure.name.clone(),
+                place: closure.place.clone(),
+                length,
+                angle,
+            });
+        }
+    }
+    model
+}
+
+/// Largest extent of the joints and closures of all loops, m.
+fn size(model: &Model, state: &State) -> f64 {
+    let of_body = grouped(model);
+    let edges = edges(model, &of_body);
+    let count = of_body.iter().copied().max().unwrap_or(0) + 1;
+    let ends: Vec<[usize; 2]> = edges.iter().map(|edge| edge.groups).collect();
+    let blocks = Blocks::new(&edges_at(count, &edges), &ends);
+    let carried = model.carried();
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for (at, edge) in edges.iter().enumerate() {
+        if blocks.is_bridge[at] {
+            continue;
+        }
+        let point = match edge.origin {
+            super::network::Origin::Platform => continue,
+            super::network::Origin::Joint(joint) => {
+                state.poses[carried[joint]] * model.joints[joint].at
+            }
+            super::network::Origin::Closure(closure) => match &model.closures[closure].kind {
+                ClosureKind::Point { bodies, at } => state.poses[bodies[0]] * at[0],
+                ClosureKind::Weld { bodies, at } | ClosureKind::Pin { bodies, at } => {
+                    (state.poses[bodies[0]] * at[0]).translation.vector.into()
+                }
+            },
+        };
+        for axis in 0..3 {
+            low[axis] = low[axis].min(point[axis]);
+            high[axis] = high[axis].max(point[axis]);
+        }
+    }
+    let squares = low.iter().zip(high).map(|(low, high)| (high - low).powi(2));
+    squares.sum::<f64>().sqrt().max(1e-9)
+}
+
+fn refuse(files: &Files, model: &Model, worst: &Worst, tolerance: f64) {
+    let closure = &model.closures[worst.closure];
+    let Worst {
+        length,
+        angle,
+        size,
+        ..
+    } = *worst;
+    let message = format!(
+        "the loop of `{}` can't close: at best {} remain open, and the tolerance is {}",
+        closure.name,
+        amount(length, angle),
+        amount(tolerance * size, tolerance),
+    );
+    let help = "check the frames of the closure, start closer with `--home JOINT=POSITION`, or accept the misfit with `--closure-tolerance NUMBER` (rad, and fraction of the loops' size)";
+    files.report(&closure.place, message, help);
+}
+
+/// A length and an angle in words.
+pub(crate) fn amount(length: f64, angle: f64) -> String {
+    match (length > 1e-13, angle > 1e-13) {
+        (true, false) => format!("{length:.2e} m"),
+        (false, true) => format!("{angle:.2e} rad"),
+        _ => format!("{length:.2e} m and {angle:.2e} rad"),
+    }
+}
