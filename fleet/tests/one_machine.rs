@@ -15,7 +15,10 @@ use overact_fleet::{
     robots::Robots,
     session::{Fleet, Options},
 };
-use overact_identification::{Stage, factors::{Pooled, write_factors}};
+use overact_identification::{
+    Stage,
+    factors::{Pooled, write_factors},
+};
 use overact_logs::write_parquet;
 use overact_robot::Identifier;
 use std::{collections::BTreeMap, fs, path::Path};

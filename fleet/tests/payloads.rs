@@ -8,7 +8,10 @@ use overact_fleet::{
     robots::Robots,
     session::{Fleet, Options},
 };
-use overact_identification::{Log, factors::{Pool, Record}};
+use overact_identification::{
+    Log,
+    factors::{Pool, Record},
+};
 use overact_logs::write_parquet;
 use overact_robot::Robot;
 use std::{
