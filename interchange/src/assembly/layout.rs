@@ -10,7 +10,7 @@
 use super::{
     motion::{State, rank},
     network::{Network, Origin},
-    platform::platforms,
+    platform_search::platforms,
     solvable_chains::{SolvableChain, cheapest, follows, freedoms},
 };
 use crate::{files::Files, model::JointType, options::Options};

@@ -10,5 +10,6 @@ pub(crate) mod motion;
 pub(crate) mod network;
 mod parallel;
 pub(crate) mod platform;
+mod platform_search;
 pub(crate) mod simple;
 pub(crate) mod solvable_chains;

@@ -85,13 +85,10 @@ impl Dialect {
             skipped_bytes: preamble.bytes,
             instants: Vec::new(),
             first_day: None,
-            groups: groups::of(
-                records
-                    .iter()
-                    .skip(usize::from(has_header))
-                    .map(|(_, cells)| cells),
-            ),
+            groups: Vec::new(),
         };
+        let samples = records.iter().skip(usize::from(has_header));
+        dialect.groups = groups::of(samples.map(|(_, cells)| cells), dialect.most);
         if has_header {
             let (_, header) = &records[0];
             dialect.names = header.iter().map(str::to_owned).collect();

@@ -10,10 +10,12 @@ const FEWEST: usize = 2;
 
 /// Groups of columns by the rows in which they have cells; empty if all rows have the same.
 ///
-/// Columns that every row has are in no group.
-pub(super) fn of<'r>(rows: impl Iterator<Item = &'r StringRecord>) -> Vec<Vec<usize>> {
+/// Columns that every row has are in no group, and neither are those beyond the first `columns`.
+pub(super) fn of<'r>(
+    rows: impl Iterator<Item = &'r StringRecord>,
+    columns: usize,
+) -> Vec<Vec<usize>> {
     let rows: Vec<&StringRecord> = rows.collect();
-    let columns = rows.iter().map(|row| row.len()).max().unwrap_or(0);
     let mut groups: Vec<(Vec<bool>, Vec<usize>)> = Vec::new();
     for column in 0..columns {
         let filled: Vec<bool> = { rows.iter() }
@@ -54,7 +56,7 @@ mod tests {
 
     fn groups(rows: &[[&str; 4]]) -> Vec<Vec<usize>> {
         let rows: Vec<StringRecord> = rows.iter().map(|row| row.iter().collect()).collect();
-        of(rows.iter())
+        of(rows.iter(), 4)
     }
 
     #[test]
