@@ -220,8 +220,10 @@ fn a_free_base_without_closures_to_the_ground_is_rejected() {
 fn hexapod(leg: &str) -> String {
     let (mut legs, mut connects, mut motors) = (String::new(), String::new(), String::new());
     for at in 0..6 {
-        let base = 1.0472 * f64::from(at / 2 * 2) + [0.2, 1.9][at as usize % 2] - 0.5;
-        let top = 1.0472 * f64::from(at / 2 * 2) + [0.7, 1.3][at as usize % 2] - 0.5;
+        let base =
+            std::f64::consts::FRAC_PI_3 * f64::from(at / 2 * 2) + [0.2, 1.9][at as usize % 2] - 0.5;
+        let top =
+            std::f64::consts::FRAC_PI_3 * f64::from(at / 2 * 2) + [0.7, 1.3][at as usize % 2] - 0.5;
         let [x, y] = [0.4 * base.cos(), 0.4 * base.sin()];
         let [u, v] = [0.2 * top.cos() - x, 0.2 * top.sin() - y];
         let first = leg.replace('#', &at.to_string());

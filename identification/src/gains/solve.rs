@@ -108,7 +108,7 @@ fn iterated(
         }
     }
     // A small change between two updates of the noise is accepted.
-    if !(last < CONVERGED) {
+    if last.is_nan() || last >= CONVERGED {
         return Err(not_converged());
     }
     let noise = Noise::new(equations, selection, &values);
@@ -223,7 +223,7 @@ impl Criterion<'_> {
                     break Some(next);
                 }
                 damping *= 4.0;
-                if !(damping < LARGEST_DAMPING) {
+                if damping >= LARGEST_DAMPING {
                     break None;
                 }
             };

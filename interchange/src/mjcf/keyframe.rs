@@ -37,11 +37,11 @@ pub(super) fn apply(positions: &[f64], model: &mut Model) {
     let mut rest = positions;
     // Axes and origin in which a free joint's displacement is given.
     let mut start = (Rotation3::identity(), Vector3::zeros());
-    for at in 0..model.joints.len() {
+    for (at, &body) in carried.iter().enumerate() {
         let joint = &model.joints[at];
         let (own, after) = rest.split_at(count(joint.kind));
         rest = after;
-        let body = &model.bodies[carried[at]];
+        let body = &model.bodies[body];
         let is_first = joint.is_virtual && joint.axis == Vector3::x() && body.parent == 0;
         if is_first {
             start = (body.placement.rotation, body.placement.translation.vector);
