@@ -1,6 +1,6 @@
 //! Lines before the samples that are not samples: settings of the recorder, names and units.
 //!
-//! LabVIEW (`.lvm`), TwinCAT Scope and many test benches write such lines. The samples are the last
+//! LabVIEW (`.lvm`) and many test benches write such lines. The samples are the last
 //! lines of the beginning whose cells fit the last line. The names of their columns are in the
 //! nearest line above with a different word for each column. A text with lines of numbers above
 //! these names is not touched, so that a broken line in the middle of samples stays an error.
@@ -161,30 +161,31 @@ fn is_sample(cells: &[String], last: &[String]) -> bool {
 }
 
 /// Names of columns from the lines above the samples.
+///
+/// The nearest line of different words; if there is none, one whose words repeat, as those of times.
 fn names(above: &[&Line<'_>], last: &[String]) -> Vec<String> {
-    let near = above.iter().rev().take(BETWEEN);
-    let are_names = |line: &&&Line<'_>| {
-        let cells = filled(&line.cells);
-        let differ = cells
-            .iter()
-            .enumerate()
-            .all(|(place, cell)| !cells[..place].contains(cell));
-        cells.len() >= last.len().min(filled(last).len())
-            && cells.len() > 1
-            && differ
+    let near = above
+        .iter()
+        .rev()
+        .take(BETWEEN)
+        .map(|line| filled(&line.cells));
+    let are_names = |cells: &&[String]| {
+        cells.len() > 1
+            && cells.len() >= filled(last).len()
             && cells.iter().all(|cell| !cell.is_empty() && !is_value(cell))
             && !cells.iter().all(|cell| is_unit(cell))
     };
-    let found = near.clone().find(are_names).or_else(|| {
-        // Names may repeat, as those of times.
-        near.clone().find(|line| {
-            let cells = filled(&line.cells);
-            cells.len() >= filled(last).len()
-                && cells.iter().all(|cell| !cell.is_empty() && !is_value(cell))
-                && !cells.iter().all(|cell| is_unit(cell))
-        })
-    });
-    found.map_or_else(Vec::new, |line| filled(&line.cells).to_vec())
+    let differ = |cells: &&[String]| {
+        let mut all = cells.iter().enumerate();
+        all.all(|(place, cell)| !cells[..place].contains(cell))
+    };
+    let lines: Vec<&[String]> = near.filter(are_names).collect();
+    let found = lines
+        .iter()
+        .copied()
+        .find(differ)
+        .or(lines.first().copied());
+    found.unwrap_or_default().to_vec()
 }
 
 /// Cells up to the last that is not empty.
@@ -197,7 +198,7 @@ fn filled(cells: &[String]) -> &[String] {
 }
 
 /// Whether a cell is a unit, possibly in brackets, or empty.
-pub(super) fn is_unit(cell: &str) -> bool {
+fn is_unit(cell: &str) -> bool {
     let inner = cell
         .trim()
         .trim_matches(|c| matches!(c, '[' | ']' | '(' | ')' | '"'));
