@@ -70,7 +70,7 @@ pub use error::{Error, Problem};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
     essential::{Drift, Essential, Removal, essential},
-    estimate::{Estimation, LineError, estimate},
+    estimate::{Estimation, LineError, LineNorms, estimate},
     instruments::regressor::{
         Agreement, ErrorsInRegressor, RegressorError, RepeatedRun, SimulatedRun,
     },

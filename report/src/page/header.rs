@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::{Contents, markup::paragraph, verdict};
 use crate::{
     choice::{answers, case_heading, stage_name},
+    line_errors::relative_words,
     text::escape,
 };
 use overact_identification::{Stage, significant};
@@ -59,10 +60,15 @@ fn facts(contents: &Contents<'_>) -> String {
         };
         let _ = writeln!(
             html,
-            "<div><dt>{}</dt><dd><b>{}</b> {what}, relative error <b>{}\u{a0}%</b></dd></div>",
+            "<div><dt>{}</dt><dd><b>{}</b> {what}, relative error <b>{}</b></dd></div>",
             case_heading(estimate.model),
             estimate.parameters.len(),
-            escape(&significant(estimate.relative_error_percent, 3))
+            escape(&relative_words(
+                &estimate.lines,
+                estimate.relative_error_percent,
+                3
+            ))
+            .replace(" %", "\u{a0}%")
         );
     }
     let samples: usize = identification.runs.iter().map(|run| run.samples).sum();

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     choice::stage_name,
-    judgement::{grade_words, passed},
+    judgement::{grade_words, other_warnings, passed},
     text::escape,
 };
 use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict, failed_checks};
@@ -150,13 +150,7 @@ fn others(verdict: &Verdict) -> String {
 
 /// Warnings that do not belong to a check.
 fn warnings(identification: &Identification) -> String {
-    let failed = identification.checks.iter().filter(|check| !check.passed);
-    let told: Vec<&str> = failed.map(|check| check.words.as_str()).collect();
-    let rest: Vec<&String> = identification
-        .warnings
-        .iter()
-        .filter(|warning| !told.iter().any(|words| warning.contains(words)))
-        .collect();
+    let rest = other_warnings(identification);
     if rest.is_empty() {
         return String::new();
     }

@@ -16,6 +16,7 @@ use super::{
 use crate::{
     choice::{answers, case_heading, of_stage, stage_name},
     intervals::{half_width_percent, is_outside, misses_truth},
+    line_errors::relative_words,
 };
 use overact_identification::{Estimate, Identification, ParameterEstimate, Stage, significant};
 
@@ -93,7 +94,7 @@ fn table(identification: &Identification, estimates: &[&Estimate]) -> String {
     let rows = names.iter().map(|name| {
         let first = estimates.iter().find_map(|one| find(one, name));
         let mut row = vec![
-            Cell::text(name),
+            regroupings::named(identification, name),
             Cell::text(first.map_or("", |one| &one.unit)).class("unit"),
         ];
         if truth {
@@ -195,16 +196,16 @@ fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
             let answer = answers.iter().find(|answer| answer.model == one.model);
             let beside = answer.map_or_else(String::new, |answer| {
                 format!(
-                    " (the {} recommended ones: {} %)",
+                    " (the {} recommended ones: {})",
                     answer.parameters.len(),
-                    significant(answer.relative_error_percent, 3)
+                    relative_words(&answer.lines, answer.relative_error_percent, 3)
                 )
             });
             format!(
-                "{}: {} parameters, relative residual {} %{beside}.",
+                "{}: {} parameters, relative residual {}{beside}.",
                 case_heading(one.model),
                 one.parameters.len(),
-                significant(one.relative_error_percent, 3),
+                relative_words(&one.lines, one.relative_error_percent, 3),
             )
         })
         .collect();
@@ -227,9 +228,9 @@ fn base(identification: &Identification) -> String {
         .iter()
         .map(|one| {
             format!(
-                "{} {} %",
+                "{} {}",
                 one.model.label(),
-                significant(one.relative_error_percent, 3)
+                relative_words(&one.lines, one.relative_error_percent, 3)
             )
         })
         .collect();

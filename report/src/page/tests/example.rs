@@ -8,10 +8,10 @@ use overact::{Info, Sizes};
 use overact_identification::{
     About, Axis, BaseParameter, Check, CheckKind, ConditionSeries, Consistent, ConsistentBody,
     ConsistentParameter, CrossValidation, Curve, Drift, Estimate, Estimator, Evidence, Figures,
-    Grade, Identification, Instruments, LineError, LineResidual, ModelKind, Normalisation,
-    ParameterEstimate, PartitionCondition, PredictionFigures, Prior, Regrouping, Removal,
-    ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, StageVerdict,
-    Thresholds, TorqueComparison, TrackingError, Verdict,
+    Grade, Identification, Instruments, LineError, LineNorms, LineResidual, ModelKind,
+    Normalisation, ParameterEstimate, PartitionCondition, PredictionFigures, Prior, Regrouping,
+    Removal, ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage,
+    StageVerdict, Thresholds, TorqueComparison, TrackingError, Verdict,
 };
 
 /// Name that breaks unescaped output.
@@ -93,7 +93,7 @@ fn estimate(model: ModelKind, stage: Stage) -> Estimate {
         condition_number: f64::INFINITY,
         equations: 1000,
         residual_deviation: 1.0,
-        lines: vec![LineError::new("x", 1.0, 40.0, 1000)],
+        lines: vec![line_error("x", "N", [1.0, 40.0], 1000)],
         weights: vec![1.0],
         partition: Some(PartitionCondition {
             crossings: 0,
@@ -120,8 +120,8 @@ fn cross_validation(model: ModelKind) -> CrossValidation {
         residual_norm: 1.0,
         relative_error_percent: 3.0,
         lines: Vec::new(),
-        torques: vec![LineError::new("leg1", 1.0, 20.0, 100)],
-        projected_torques: vec![LineError::new("leg1", 0.9, 20.0, 100)],
+        torques: vec![line_error("leg1", "N m", [1.0, 20.0], 100)],
+        projected_torques: vec![line_error("leg1", "N m", [0.9, 20.0], 100)],
         table: vec![TorqueComparison {
             actuator: String::from("leg1"),
             least_norm_percent: 5.0,
@@ -430,4 +430,14 @@ pub(super) fn units() -> Units {
         home_joints: &[],
         kept_actuators: &[],
     })
+}
+
+/// Error of a line; norms are `[residual, measured]`.
+fn line_error(name: &str, unit: &'static str, norms: [f64; 2], equations: usize) -> LineError {
+    let norms = LineNorms {
+        residual: norms[0],
+        measured: norms[1],
+        variation: norms[1],
+    };
+    LineError::new(name, unit, &norms, equations)
 }
