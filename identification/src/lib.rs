@@ -80,7 +80,7 @@ pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
     BaseParameter, Identification, Prepared, PriorStage, Progress, ProjectionEstimates,
     RankedProjection, Study, estimate_projection,
-    figures::{Figures, PredictionFigures, ResidualFigures},
+    figures::{ActuatorRange, CorrelationFigures, Figures, PredictionFigures, ResidualFigures},
     identify, identify_after, prepare, study,
     tracking::TrackingError,
 };
@@ -97,7 +97,9 @@ pub use result::{
     CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, ParameterEstimate,
     Regrouping, RunSummary, Stage,
 };
-pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
+pub use series::{
+    ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series, VelocitySeries,
+};
 pub use settings::{Instruments, Normalisation, Settings};
 pub use significant::significant;
 pub use thresholds::Thresholds;

@@ -1,17 +1,20 @@
 //! HTML page of an identification: one self-contained file for engineers.
 //!
-//! The verdict comes first, then the parameters. Each plot has a caption on how to read it. Each
-//! section is a file: `verdict`, `checks`, `calibration`, `gravity`, `gains`, `parameters`,
-//! `motors`, `estimators`, `limits`, `validation`, `inputs`, `residuals`, `elimination`,
-//! `conditioning`, `trajectories`, `tracking`, `data`. Empty sections are omitted.
+//! The verdict comes first with a plot of measured and predicted torque, then the parameters. Each
+//! plot has a caption on how to read it. Each section is a file: `verdict`, `parameters`, `checks`,
+//! `calibration`, `gravity`, `gains`, `motors`, `estimators`, `limits`, `validation`, `inputs`,
+//! `residuals`, `friction`, `correlation`, `elimination`, `conditioning`, `ranges`, `trajectories`,
+//! `tracking`, `data`. Empty sections are omitted.
 
 mod calibration;
 mod checks;
 mod conditioning;
 mod consistent;
+mod correlation;
 mod data;
 mod elimination;
 mod estimators;
+mod friction;
 mod gains;
 mod gravity;
 mod header;
@@ -20,6 +23,7 @@ mod limits;
 pub(super) mod markup;
 mod motors;
 mod parameters;
+mod ranges;
 mod residuals;
 mod select;
 mod table;
@@ -76,11 +80,12 @@ pub struct Attachment<'a> {
 pub fn page(contents: &Contents<'_>) -> String {
     let sections: Vec<Section> = [
         verdict::section(contents),
+        parameters::section(contents),
+        verdict::assumptions(contents),
         checks::section(contents),
         calibration::section(contents),
         gravity::section(contents),
         gains::section(contents),
-        parameters::section(contents),
         motors::section(contents),
         consistent::section(contents),
         estimators::section(contents),
@@ -88,8 +93,11 @@ pub fn page(contents: &Contents<'_>) -> String {
         validation::section(contents),
         inputs::section(contents),
         residuals::section(contents),
+        friction::section(contents),
+        correlation::section(contents),
         elimination::section(contents),
         conditioning::section(contents),
+        ranges::section(contents),
         trajectories::section(contents),
         tracking::section(contents),
         data::section(contents),

@@ -1,7 +1,7 @@
 //! Section on the motion of every run (Fig. 7 of the paper).
 
 use super::{
-    Contents,
+    Contents, header, inputs,
     markup::{Section, figure, key},
 };
 use crate::{
@@ -15,7 +15,11 @@ use overact_identification::RunFigures;
 /// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let runs = &contents.identification.figures.runs;
-    let mut body = String::new();
+    // The head of the page has the drawing if there is no plot.
+    let mut body = match inputs::first(contents) {
+        Some(_) => header::drawing(contents),
+        None => String::new(),
+    };
     for identified in [true, false] {
         let plots: Vec<String> = runs
             .iter()

@@ -6,12 +6,13 @@ use crate::{
 };
 use overact::{Info, Sizes};
 use overact_identification::{
-    About, Axis, BaseParameter, Check, CheckKind, ConditionSeries, Consistent, ConsistentBody,
-    ConsistentParameter, CrossValidation, Curve, Drift, Estimate, Estimator, Evidence, Figures,
-    Grade, Identification, Instruments, LineError, LineNorms, LineResidual, ModelKind,
-    Normalisation, ParameterEstimate, PartitionCondition, PredictionFigures, Prior, Regrouping,
-    Removal, ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage,
-    StageVerdict, Thresholds, TorqueComparison, TrackingError, Verdict,
+    About, ActuatorRange, Axis, BaseParameter, Check, CheckKind, ConditionSeries, Consistent,
+    ConsistentBody, ConsistentParameter, CorrelationFigures, CrossValidation, Curve, Drift,
+    Estimate, Estimator, Evidence, Figures, Grade, Identification, Instruments, LineError,
+    LineNorms, LineResidual, ModelKind, Normalisation, ParameterEstimate, PartitionCondition,
+    PredictionFigures, Prior, Regrouping, Removal, ResidualFigures, ResidualSeries, RunFigures,
+    RunSummary, Series, Settings, Stage, StageVerdict, Thresholds, TorqueComparison, TrackingError,
+    VelocitySeries, Verdict,
 };
 
 /// Name that breaks unescaped output.
@@ -140,6 +141,12 @@ fn figures() -> Figures {
         time: vec![0.0, 1.0, 2.0],
         coordinates: vec![String::from("x"), String::from("phi")],
         pose: vec![vec![0.0, 0.1, 0.0], vec![0.0, f64::NAN, 1.0]],
+        velocities: vec![VelocitySeries {
+            actuator: HOSTILE.to_owned(),
+            velocity: vec![0.0, f64::NAN, -0.5],
+            largest_velocity: 0.5,
+            largest_acceleration: 3.0,
+        }],
         conditions: vec![
             ConditionSeries {
                 kept_actuators: Vec::new(),
@@ -161,11 +168,11 @@ fn figures() -> Figures {
         lines: vec![series("x"), series("phi")],
         torques: vec![series("leg1")],
     };
-    let residual = |model| ResidualFigures {
+    let residual = |model, name: &str| ResidualFigures {
         model,
         stage: Stage::Recommended,
         lines: vec![LineResidual {
-            name: String::from("x"),
+            name: name.to_owned(),
             runs: vec![ResidualSeries {
                 run: HOSTILE.to_owned(),
                 time: vec![0.0, 1.0],
@@ -187,9 +194,25 @@ fn figures() -> Figures {
             prediction(HOSTILE, true, ModelKind::Actuators),
         ],
         residuals: vec![
-            residual(ModelKind::Platform),
-            residual(ModelKind::Actuators),
+            residual(ModelKind::Platform, "x"),
+            residual(ModelKind::Actuators, HOSTILE),
         ],
+        correlations: vec![CorrelationFigures {
+            model: ModelKind::Platform,
+            stage: Stage::Recommended,
+            names: vec![HOSTILE.to_owned(), String::from("m_platformR")],
+            correlation: vec![vec![1.0, -0.87], vec![-0.87, 1.0]],
+        }],
+        ranges: vec![ActuatorRange {
+            actuator: HOSTILE.to_owned(),
+            unit: "rad",
+            position: [-0.5, 1.5],
+            velocity: 0.5,
+            acceleration: 3.0,
+            position_limits: Some([-2.0, 2.0]),
+            velocity_limit: Some(4.0),
+            acceleration_limit: None,
+        }],
     }
 }
 

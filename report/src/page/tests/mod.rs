@@ -225,6 +225,37 @@ fn a_regrouped_parameter_has_its_sum_beside_it() {
 }
 
 #[test]
+fn friction_correlation_and_range_have_plots() {
+    let identification = identification();
+    let html = full(&identification);
+    let document = parsed(&html);
+    let ids: Vec<&str> = { document.descendants() }
+        .filter_map(|node| node.attribute("id"))
+        .collect();
+    for id in [
+        "figure-first",
+        "figure-friction-actuators",
+        "figure-correlation-platform",
+        "figure-ranges",
+    ] {
+        assert!(ids.contains(&id), "{id}");
+    }
+    let place = |id: &str| ids.iter().position(|one| *one == id);
+    assert!(place("figure-first") < place("verdict"));
+    assert!(place("verdict") < place("parameters") && place("parameters") < place("checks"));
+    assert!(html.contains("Strongest: ") && html.contains("−0.87"));
+    let dots = { document.descendants() }
+        .find(|node| node.attribute("id") == Some("figure-friction-actuators"))
+        .map(|figure| {
+            let all = figure.descendants();
+            all.filter(|node| node.tag_name().name() == "circle")
+                .count()
+        });
+    // One residual has no velocity.
+    assert_eq!(dots, Some(1));
+}
+
+#[test]
 fn every_line_has_its_errors_in_one_unit() {
     let identification = identification();
     let text = summary(&identification, None, Extent::Whole);
