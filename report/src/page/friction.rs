@@ -12,6 +12,9 @@ use crate::{
 };
 use overact_identification::{LineResidual, ModelKind, ResidualFigures};
 
+/// Largest number of points of a drive.
+const DOTS: usize = 600;
+
 /// Section; empty for a model whose lines are not drives.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
@@ -66,6 +69,9 @@ fn drive(contents: &Contents<'_>, line: &LineResidual) -> Option<String> {
     if velocity.is_empty() {
         return None;
     }
+    let step = velocity.len().div_ceil(DOTS);
+    let [velocity, residual] = [velocity, residual]
+        .map(|all: Vec<f64>| all.into_iter().step_by(step).collect::<Vec<f64>>());
     let unit = match contents.units.position(name) {
         "" => String::new(),
         unit => format!("{unit}/s"),
