@@ -10,7 +10,7 @@ use crate::{
     intervals::{excludes_zero, half_width_percent},
     judgement::{grade_words, other_warnings, passed},
     layout::{line, paragraph},
-    line_errors::{base_words, relative_words, worst_of_validation},
+    line_errors::{base_words, is_mixed, relative, relative_words, worst_of_validation},
     terminal::{calibration, gains, gravity, motors},
 };
 use overact_identification::{
@@ -160,7 +160,7 @@ fn model(
         "  ",
         &format!(
             "{own}: relative residual {} (training){}.{}",
-            relative_words(&estimate.lines, estimate.relative_error_percent, 4),
+            training_words(estimate),
             held_out(identification, estimate),
             sureness(estimate)
         ),
@@ -204,13 +204,20 @@ fn other_stages(identification: &Identification, shown: &Estimate) -> Option<Str
     ))
 }
 
-/// Prediction errors on validation runs.
+/// Relative residual of the training runs, with four decimals.
+fn training_words(estimate: &Estimate) -> String {
+    let percent = relative(&estimate.lines, estimate.relative_error_percent);
+    if is_mixed(&estimate.lines) {
+        format!("at most {percent:.4} % of a torque")
+    } else {
+        format!("{percent:.4} %")
+    }
+}
+
+/// Largest prediction error of a torque on the validation runs.
 fn held_out(identification: &Identification, estimate: &Estimate) -> String {
     worst_of_validation(identification, estimate).map_or_else(String::new, |worst| {
-        format!(
-            ", at most {} % of a torque (validation)",
-            significant(worst, 3)
-        )
+        format!(", at most {} % (validation)", significant(worst, 3))
     })
 }
 

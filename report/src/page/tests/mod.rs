@@ -288,7 +288,7 @@ fn every_line_has_its_errors_in_one_unit() {
     lines.push(LineError::new("phi", "N m", &norms, 1000));
     let text = summary(&mixed, None, Extent::Whole);
     assert!(
-        text.contains("at most 30 % of a torque (training)"),
+        text.contains("at most 30.0000 % of a torque (training)"),
         "{text}"
     );
 }
