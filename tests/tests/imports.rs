@@ -141,6 +141,7 @@ const LAYER_ORDERS: [LayerOrder; 9] = [
             "published",
             "judgement",
             "layout",
+            "line_errors",
             "terminal",
             "parameters_file",
             "summary",
