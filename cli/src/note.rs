@@ -54,10 +54,37 @@ pub(crate) fn print_note(file: &str, note: Option<&str>, as_json: bool) {
     }
 }
 
-/// Prints warnings of a result on stderr, unless the result is shown on the same terminal.
+/// Prints warnings of a result on stderr, unless the result with them goes to the same place.
 pub(crate) fn print_result_warnings(warnings: &[String], is_written: bool, as_json: bool) {
-    let seen = !is_written && io::stdout().is_terminal() && io::stderr().is_terminal();
-    if !seen {
+    if is_written || !is_same_output() {
         print_warnings(warnings, as_json);
     }
+}
+
+/// Whether stdout and stderr are one terminal, pipe or file, as after `2>&1`.
+fn is_same_output() -> bool {
+    let is_terminal = io::stdout().is_terminal() && io::stderr().is_terminal();
+    is_terminal || is_same_file()
+}
+
+/// Whether stdout and stderr are one open file.
+#[cfg(unix)]
+fn is_same_file() -> bool {
+    use std::os::{
+        fd::{AsFd, BorrowedFd},
+        unix::fs::MetadataExt,
+    };
+    let identity = |stream: BorrowedFd<'_>| {
+        let file = std::fs::File::from(stream.try_clone_to_owned().ok()?);
+        let about = file.metadata().ok()?;
+        Some((about.dev(), about.ino()))
+    };
+    let out = identity(io::stdout().as_fd());
+    out.is_some() && out == identity(io::stderr().as_fd())
+}
+
+/// Whether stdout and stderr are one open file, which other systems do not say.
+#[cfg(not(unix))]
+const fn is_same_file() -> bool {
+    false
 }

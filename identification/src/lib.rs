@@ -61,7 +61,7 @@ pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
 pub use estimation::{
     base::{BaseParameters, PayloadUse, base_parameters},
     essential::{Drift, Essential, Removal, essential},
-    estimate::{Estimation, LineError, estimate},
+    estimate::{Estimation, LineError, LineNorms, estimate},
     instruments::regressor::{
         Agreement, ErrorsInRegressor, RegressorError, RepeatedRun, SimulatedRun,
     },
@@ -71,7 +71,7 @@ pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
     BaseParameter, Identification, PreparedSystem, PriorStage, Progress, ProjectionEstimates,
     RankedProjection, Study, estimate_projection,
-    figures::{Figures, PredictionFigures, ResidualFigures},
+    figures::{ActuatorRange, CorrelationFigures, Figures, PredictionFigures, ResidualFigures},
     identify, identify_after, prepare, study,
     tracking::TrackingError,
 };
@@ -92,7 +92,9 @@ pub use result::{
     CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, ParameterEstimate,
     Regrouping, RunSummary, Stage,
 };
-pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
+pub use series::{
+    ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series, VelocitySeries,
+};
 pub use settings::{Instruments, Normalisation, Settings};
 pub use thresholds::Thresholds;
 pub use validation::{TorqueComparison, Validation};

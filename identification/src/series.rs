@@ -33,8 +33,23 @@ pub struct RunFigures {
     pub coordinates: Vec<String>,
     /// For each pose coordinate, its values (m, rad; a quaternion w, x, y, z for free rotation).
     pub pose: Vec<Vec<f64>>,
+    /// Velocity of each actuator's joint at the points.
+    pub velocities: Vec<VelocitySeries>,
     /// Condition numbers along the path, for each projection that has one.
     pub conditions: Vec<ConditionSeries>,
+}
+
+/// Velocity of an actuator's joint along a run.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct VelocitySeries {
+    /// Name of the actuator.
+    pub actuator: String,
+    /// Velocities at [`RunFigures::time`] (m/s, rad/s).
+    pub velocity: Vec<f64>,
+    /// Largest speed of all samples (m/s, rad/s).
+    pub largest_velocity: f64,
+    /// Largest acceleration of all samples, from differences of the velocity (m/s², rad/s²).
+    pub largest_acceleration: f64,
 }
 
 /// Conditioning of the kept actuators along a run.

@@ -21,6 +21,21 @@ pub(crate) fn passed(identification: &Identification, model: ModelKind, stage: S
         .count()
 }
 
+/// Warnings that belong to no failed check, each once.
+#[must_use]
+pub fn other_warnings(identification: &Identification) -> Vec<&String> {
+    let failed = identification.checks.iter().filter(|check| !check.passed);
+    let failed: Vec<&str> = failed.map(|check| check.words.as_str()).collect();
+    let mut all: Vec<&String> = Vec::new();
+    for warning in &identification.warnings {
+        let is_of_check = failed.iter().any(|words| warning.contains(words));
+        if !is_of_check && !all.contains(&warning) {
+            all.push(warning);
+        }
+    }
+    all
+}
+
 /// Heading of a check.
 pub(crate) const fn title(kind: CheckKind) -> &'static str {
     match kind {

@@ -12,6 +12,7 @@ mod choice;
 mod intervals;
 mod judgement;
 pub mod layout;
+mod line_errors;
 pub mod numbers;
 pub mod page;
 mod parameters_file;
@@ -25,6 +26,7 @@ mod text;
 pub mod units;
 
 pub use chart_sheet::{Plot, chart_sheet};
+pub use judgement::other_warnings;
 pub use numbers::numbers;
 pub use page::{Attachment, Contents, page};
 pub use parameters_file::parameters_file;

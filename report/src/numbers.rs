@@ -197,6 +197,9 @@ fn add_lines<'a>(rows: &mut Rows<'a>, table: &'static str, lines: &'a [LineError
         rows.add(table, &line.name, "relative_error_percent", error);
         rows.add(table, &line.name, "residual_norm", line.residual_norm);
         rows.add(table, &line.name, "measured_norm", line.measured_norm);
+        rows.add(table, &line.name, "rms", line.rms);
+        let fit = line.nrmse_fit_percent;
+        rows.add_known(table, &line.name, "nrmse_fit_percent", fit);
     }
 }
 

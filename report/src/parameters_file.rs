@@ -1,7 +1,10 @@
 //! Physically consistent parameters as a file for commands and generator.
 
-use crate::text::visible;
-use overact_identification::{Consistent, Identification, significant};
+use crate::{
+    line_errors::{base_words, relative_words},
+    text::visible,
+};
+use overact_identification::{Consistent, Identification};
 use std::fmt::Write;
 
 /// TOML file of the first model's consistent parameters, if there are any.
@@ -9,14 +12,14 @@ use std::fmt::Write;
 pub fn parameters_file(identification: &Identification) -> Option<String> {
     let consistent: &Consistent = identification.consistent.first()?;
     let mut text = format!(
-        "# Physically consistent standard parameters of {}, SI units.\n# Relative residual of {2}: {1} %, with the base parameters {3} %.\nrobot = \"{4}\"\n\n[parameters]\n",
+        "# Physically consistent standard parameters of {}, SI units.\n# Relative residual of {2}: {1}, with the base parameters {3}.\nrobot = \"{4}\"\n\n[parameters]\n",
         visible(&identification.robot),
-        significant(consistent.relative_error_percent, 4),
+        relative_words(&consistent.lines, consistent.relative_error_percent, 4),
         match identification.runs.len() {
             1 => String::from("a run"),
             count => format!("{count} runs"),
         },
-        significant(consistent.base_relative_error_percent, 4),
+        base_words(identification, consistent),
         visible(&identification.robot)
     );
     for one in &consistent.parameters {

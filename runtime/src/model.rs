@@ -150,6 +150,14 @@ pub trait Model: Sync {
     /// Names and sizes.
     fn info(&self) -> Info<'_>;
 
+    /// Names of the standard parameters that the functions of base parameters keep.
+    ///
+    /// An identification keeps the same ones, so that one name means one sum of standard
+    /// parameters. Empty if unknown; the identification then chooses.
+    fn base_columns(&self) -> &[&'static str] {
+        &[]
+    }
+
     /// Evaluates `function` at `output.len() / (rows * columns)` samples.
     ///
     /// `inputs` are those of [`Function::inputs`], each with one row of numbers per sample. An

@@ -157,6 +157,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "published",
             "judgement",
             "layout",
+            "line_errors",
             "terminal",
             "parameters_file",
             "summary",

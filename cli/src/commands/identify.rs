@@ -188,16 +188,23 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// Failed checks of the result, and other warnings.
+/// Reasons of the verdicts and other warnings, each once; a reason names the models that have it.
 fn warnings(result: &Identification) -> Vec<String> {
-    let verdicts = result.verdicts.iter().filter(|one| !one.trusted);
-    let reasons = verdicts.flat_map(|one| {
-        let reasons = one.reasons.iter();
-        reasons.map(move |reason| format!("{}: {reason}", one.subject))
-    });
-    let mut all: Vec<String> = reasons.collect();
-    for warning in &result.warnings {
-        if !all.iter().any(|shown| shown.ends_with(warning.as_str())) {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for verdict in result.verdicts.iter().filter(|one| !one.trusted) {
+        for reason in &verdict.reasons {
+            match reasons.iter_mut().find(|(own, _)| own == reason) {
+                Some((_, subjects)) => subjects.push(&verdict.subject),
+                None => reasons.push((reason, vec![&verdict.subject])),
+            }
+        }
+    }
+    let reasons = reasons.iter();
+    let mut all: Vec<String> = reasons
+        .map(|(reason, subjects)| format!("{}: {reason}", subjects.join(", ")))
+        .collect();
+    for warning in overact_report::other_warnings(result) {
+        if !all.contains(warning) {
             all.push(warning.clone());
         }
     }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::evidence::Evidence;
 use crate::{regression::projection::ModelKind, result::Stage};
-use overact_logs::titled;
+use overact_logs::{called, titled};
 
 /// Result of one check.
 ///
@@ -264,6 +264,20 @@ impl CheckKind {
 }
 
 impl CheckKind {
+    /// Whether a failure of this check is the effect of a fault, and does not name the fault.
+    pub(crate) const fn is_consequence(self) -> bool {
+        matches!(
+            self,
+            Self::Consistency
+                | Self::Outliers
+                | Self::NegativeParameter
+                | Self::RelativeError
+                | Self::ResidualCorrelation
+                | Self::HeldOut
+                | Self::RegressorErrors
+        )
+    }
+
     /// Whether a failure of this check is certain, whatever the model.
     pub(crate) const fn is_certain(self) -> bool {
         matches!(
@@ -400,15 +414,44 @@ impl Check {
             && (self.stages.is_empty() || self.stages.contains(&stage))
     }
 
-    /// The words, prefixed by the run and the actuator.
+    /// The words, prefixed by the run and by the actuator unless the words name it.
     #[must_use]
     pub fn located(&self) -> String {
-        let actuator = self.actuator.iter().map(|name| titled(name));
-        // Skip the actuator's name if the words mention it, unless it has a space (`joint 1`).
-        let actuator = actuator.filter(|name| !self.words.contains(name) || !name.contains(' '));
-        let place = self.run.iter().cloned().chain(actuator);
+        let actuator = self.actuator.as_deref();
+        let actuator = actuator.filter(|name| !names(&self.words, &called(name)));
+        let place = self.run.iter().cloned().chain(actuator.map(titled));
         let mut text: String = place.map(|part| format!("{part}: ")).collect();
         text.push_str(&self.words);
         text
+    }
+}
+
+/// Whether words contain a name, not followed by a letter or digit.
+fn names(words: &str, name: &str) -> bool {
+    let mut places = words.match_indices(name);
+    places.any(|(place, _)| {
+        let next = words[place + name.len()..].chars().next();
+        !next.is_some_and(char::is_alphanumeric)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{About, Check, CheckKind};
+
+    #[test]
+    fn a_message_names_its_drive_once() {
+        let located = |name: &str, words: &str| {
+            let check = Check::new(CheckKind::StuckEncoder, About::Data, words);
+            check.of_actuator(name).located()
+        };
+        let still = "the position of `c` does not change";
+        assert_eq!(located("c", still), still);
+        assert_eq!(located("d", still), format!("d: {still}"));
+        assert_eq!(
+            located("1", "joint 12 is still"),
+            "joint 1: joint 12 is still"
+        );
+        assert_eq!(located("12", "joint 12 is still"), "joint 12 is still");
     }
 }

@@ -23,7 +23,7 @@ pub struct Verdict {
     pub trusted: bool,
     /// Usable parameters, if not all are usable.
     pub listed: Vec<String>,
-    /// Reasons in sentences: failed checks, most serious first; else the passed ones.
+    /// Reasons in sentences: failed checks in the order of [`FailedChecks`]; else the passed ones.
     pub reasons: Vec<String>,
     /// Assumptions of a usable result that these data cannot test, as a sentence.
     ///
@@ -125,7 +125,7 @@ const WORTH_TELLING: f64 = 0.5;
 pub struct FailedChecks<'a> {
     /// Checks to report in full, with their indices among all checks.
     ///
-    /// Most serious first, then by the explained fraction.
+    /// Causes before consequences, then the most serious first, then by the explained fraction.
     pub reported: Vec<(usize, &'a Check)>,
     /// Names of the other failed checks.
     ///
@@ -148,10 +148,11 @@ pub fn failed_checks(checks: &[Check], model: ModelKind, stage: Stage) -> Failed
         parts.fold(0.0, f64::max)
     };
     let explained = |check: &Check| check.explained.unwrap_or(f64::INFINITY);
-    // A stable sort keeps the order of checks of equal grade and explained fraction.
+    // A stable sort keeps the order of checks that are equal in all three.
     found.sort_by(|(_, a), (_, b)| {
-        let grade = b.grade.cmp(&a.grade);
-        grade.then(explained(b).total_cmp(&explained(a)))
+        let causes = a.kind.is_consequence().cmp(&b.kind.is_consequence());
+        let causes = causes.then(b.grade.cmp(&a.grade));
+        causes.then(explained(b).total_cmp(&explained(a)))
     });
     let (reported, named_only): (Vec<_>, Vec<_>) = found
         .into_iter()

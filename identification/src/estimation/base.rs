@@ -1,8 +1,10 @@
 //! Base parameters, by QR without pivoting in the symmetric order (43), section 4.1 of the paper.
 //!
 //! Columns are ordered platform first, then by body and symbol for all legs together, so that equal
-//! legs keep equal parameters. The rank is determined on random states without noise: it is a
-//! property of the robot, not of the data.
+//! legs keep equal parameters. Columns that the functions of base parameters keep
+//! ([`Model::base_columns`]) precede all others. The base parameters are then the inputs of these
+//! functions, and one name means one sum. The rank is determined on random states without noise: it
+//! is a property of the robot, not of the data.
 //!
 //! With loaded and unloaded runs, the payload columns are an independent block (49). With loaded
 //! runs only, they are regrouped into the platform's.
@@ -159,7 +161,7 @@ pub fn base_parameters(
 ) -> Result<BaseParameters, Error> {
     let regressor = random_regressor(model, columns, seed)?;
     let mut base = BaseParameters::default();
-    for order in blocks(columns, payload) {
+    for order in blocks(model, columns, payload) {
         let found = eliminate(&regressor, &order, RANK_TOLERANCE);
         collect(&mut base, columns, found);
     }
@@ -201,7 +203,7 @@ pub(crate) fn base_parameters_with_known(
     let mut base = BaseParameters::default();
     let mut combinations = vec![Some(Vec::new()); known.len()];
     let several = payload == PayloadUse::Regrouped && columns.loads().len() > 1;
-    for order in blocks(columns, payload) {
+    for order in blocks(model, columns, payload) {
         let (own, mut unknown): (Vec<usize>, Vec<usize>) =
             order.into_iter().partition(|column| known.contains(column));
         let found = eliminate(&regressor, &unknown, RANK_TOLERANCE);
@@ -234,9 +236,18 @@ pub(crate) fn base_parameters_with_known(
     Ok((base, combinations))
 }
 
-/// Columns in the symmetric order, in blocks that are independent of each other.
-fn blocks(columns: &ColumnSet, payload: PayloadUse) -> Vec<Vec<usize>> {
+/// Columns in the order of elimination, in blocks that are independent of each other.
+///
+/// Columns of the robot are in the symmetric order, those of the base functions first.
+fn blocks(model: &dyn Model, columns: &ColumnSet, payload: PayloadUse) -> Vec<Vec<usize>> {
     let robot = symmetric_order(columns, columns.indices(false));
+    let of_functions = model.base_columns();
+    let is_of_functions = |index: &usize| {
+        let column = columns.as_slice().get(*index);
+        column.is_some_and(|own| of_functions.contains(&own.standard.as_str()))
+    };
+    let (first, others): (Vec<usize>, Vec<usize>) = robot.into_iter().partition(is_of_functions);
+    let robot = [first, others].concat();
     let loads = columns.loads().into_iter();
     let mut loads: Vec<Vec<usize>> = loads.map(|own| symmetric_order(columns, own)).collect();
     if payload == PayloadUse::Regrouped {
@@ -290,7 +301,7 @@ pub(crate) fn payload_names(runs: &[Log]) -> Vec<String> {
 
 /// Adds the result of one block to the base parameters.
 fn collect(base: &mut BaseParameters, columns: &ColumnSet, found: Elimination) {
-    for kept in found.kept {
+    for kept in symmetric_order(columns, found.kept) {
         let regrouping: Vec<(usize, f64)> = found
             .dependent
             .iter()

@@ -72,27 +72,78 @@ impl Estimation {
 pub struct LineError {
     /// Name of the coordinate or actuator.
     pub name: String,
+    /// Unit of the residual, `N` or `N m`; empty if unknown.
+    pub unit: &'static str,
     /// ||ρ_j|| (N or N m).
     pub residual_norm: f64,
     /// ||Y_j|| (N or N m).
     pub measured_norm: f64,
     /// 100 ||ρ_j||/||Y_j||.
     pub relative_error_percent: f64,
-    /// Number of equations.
+    /// Root mean square of the residual, ||ρ_j||/√N (N or N m).
+    pub rms: f64,
+    /// Fit 100 (1 - ||ρ_j||/||Y_j - mean||); `None` if the measurement is constant.
+    pub nrmse_fit_percent: Option<f64>,
+    /// Number of equations, N.
     pub equations: usize,
 }
 
-impl LineError {
-    /// Computes the relative residual from the norms.
+/// Norms of one line, all in its unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineNorms {
+    /// Norm of the residual, ||ρ_j||.
+    pub residual: f64,
+    /// Norm of the measurement, ||Y_j||.
+    pub measured: f64,
+    /// Norm of the measurement without its mean.
+    pub variation: f64,
+}
+
+/// Part of a measurement's norm below which its variation is rounding.
+const CONSTANT: f64 = 1e-7;
+
+impl LineNorms {
+    /// Norms from the sums of the squared residual, the squared measurement and the measurement.
     #[must_use]
-    pub fn new(name: &str, residual_norm: f64, measured_norm: f64, equations: usize) -> Self {
+    pub fn of_sums(residual: f64, measured: f64, sum: f64, equations: usize) -> Self {
+        let of_mean = sum * sum / equations.max(1) as f64;
+        Self {
+            residual: residual.sqrt(),
+            measured: measured.sqrt(),
+            variation: (measured - of_mean).max(0.0).sqrt(),
+        }
+    }
+}
+
+impl LineError {
+    /// Computes relative residual, root mean square and fit from the norms.
+    #[must_use]
+    pub fn new(name: &str, unit: &'static str, norms: &LineNorms, equations: usize) -> Self {
+        let varies = norms.variation > CONSTANT * norms.measured;
         Self {
             name: name.to_owned(),
-            residual_norm,
-            measured_norm,
-            relative_error_percent: percent(residual_norm, measured_norm),
+            unit,
+            residual_norm: norms.residual,
+            measured_norm: norms.measured,
+            relative_error_percent: percent(norms.residual, norms.measured),
+            rms: norms.residual / (equations.max(1) as f64).sqrt(),
+            nrmse_fit_percent: varies.then(|| 100.0 * (1.0 - norms.residual / norms.variation)),
             equations,
         }
+    }
+
+    /// Largest relative residual of several lines, with its line.
+    ///
+    /// Unlike a norm over all lines, it does not mix N and N m.
+    #[must_use]
+    pub fn worst(lines: &[Self]) -> Option<&Self> {
+        let known = lines
+            .iter()
+            .filter(|one| !one.relative_error_percent.is_nan());
+        known.max_by(|a, b| {
+            a.relative_error_percent
+                .total_cmp(&b.relative_error_percent)
+        })
     }
 }
 
@@ -111,10 +162,14 @@ pub(crate) fn line_errors(system: &System, selected: &[usize], values: &[f64]) -
     system
         .lines
         .iter()
-        .zip(&system.line_names)
-        .map(|(line, name)| {
-            let residual = line.residual_norm(selected, values);
-            LineError::new(name, residual, line.measured_norm(), line.equations())
+        .zip(system.line_names.iter().zip(&system.line_units))
+        .map(|(line, (name, unit))| {
+            let norms = LineNorms {
+                residual: line.residual_norm(selected, values),
+                measured: line.measured_norm(),
+                variation: line.measured_variation(),
+            };
+            LineError::new(name, unit, &norms, line.equations())
         })
         .collect()
 }

@@ -4,13 +4,13 @@ use overact::Code;
 use overact::{Function, Model};
 
 use super::{
-    figures::{Figures, PredictionFigures, ResidualFigures},
+    figures::{ActuatorRange, CorrelationFigures, Figures, PredictionFigures, ResidualFigures},
     prepare::PreparedSystem,
 };
 use crate::{
     estimation::correlation::line_residual,
     kinematics::distribution::{least_norm, product},
-    regression::{projection::Projection, system::System},
+    regression::{factor::Factor, projection::Projection, system::System},
     result::{CrossValidation, Estimate},
     series::{LineResidual, ResidualSeries, RunFigures, Series},
     settings::Settings,
@@ -56,11 +56,70 @@ pub(super) fn figures(
         Some(residual(prepared, *projection, system, estimate, settings))
     });
     let residuals = residuals.collect();
+    let correlations = estimates.iter().filter_map(|(projection, estimate)| {
+        let system = prepared.systems[*projection].as_ref().ok()?;
+        correlation(system, estimate)
+    });
     Ok(Figures {
         runs: own.chain(others).collect(),
         predictions,
         residuals,
+        correlations: correlations.collect(),
+        ranges: ranges(model, prepared),
     })
+}
+
+/// Correlation of an estimate's parameters; `None` for dependent columns.
+///
+/// The covariance of weighted least squares is σ² R^-1 R^-T (47).
+fn correlation(system: &System, estimate: &Estimate) -> Option<CorrelationFigures> {
+    let selected = estimate.columns();
+    let reduced = Factor::reduced_together(&system.lines, &estimate.weights, &selected);
+    let inverse = reduced.triangle.try_inverse()?;
+    let covariance = &inverse * inverse.transpose();
+    let deviation = |index: usize| covariance[(index, index)].sqrt();
+    let row = |i: usize| -> Vec<f64> {
+        let row = covariance.row(i);
+        let pairs = row.iter().enumerate();
+        pairs
+            .map(|(j, value)| value / (deviation(i) * deviation(j)))
+            .collect()
+    };
+    let names = estimate.parameters.iter().map(|one| one.name.clone());
+    Some(CorrelationFigures {
+        model: estimate.model,
+        stage: estimate.stage,
+        names: names.collect(),
+        correlation: (0..selected.len()).map(row).collect(),
+    })
+}
+
+/// Motion of each actuator in the training runs, without limits.
+fn ranges(model: &dyn Model, prepared: &PreparedSystem) -> Vec<ActuatorRange> {
+    let info = model.info();
+    let units = info.actuator_is_revolute.iter();
+    let units = units.map(|is_revolute| if *is_revolute { "rad" } else { "m" });
+    let actuators = info.actuators.iter().zip(units).enumerate();
+    let range = |(place, (name, unit)): (usize, (&&str, &'static str))| {
+        let mut range = ActuatorRange {
+            actuator: (*name).to_owned(),
+            unit,
+            position: [f64::INFINITY, f64::NEG_INFINITY],
+            ..ActuatorRange::default()
+        };
+        for observation in &prepared.observations {
+            if let Some((low, high)) = observation.monitor.bounds().get(place) {
+                let [lowest, highest] = range.position;
+                range.position = [lowest.min(*low), highest.max(*high)];
+            }
+            if let Some(own) = observation.figures.velocities.get(place) {
+                range.velocity = range.velocity.max(own.largest_velocity);
+                range.acceleration = range.acceleration.max(own.largest_acceleration);
+            }
+        }
+        range
+    };
+    actuators.map(range).collect()
 }
 
 /// Residual of an estimate over time, with autocorrelation and spectrum.

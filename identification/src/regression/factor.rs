@@ -165,6 +165,14 @@ impl Factor {
         self.r.column(self.parameters()).norm()
     }
 
+    /// Norm of Y without its mean.
+    #[must_use]
+    pub fn measured_variation(&self) -> f64 {
+        let sum = self.sums[self.parameters()];
+        let of_mean = sum * sum / self.equations.max(1) as f64;
+        (self.measured_norm().powi(2) - of_mean).max(0.0).sqrt()
+    }
+
     /// ||Y - W χ|| for the parameters `values` of the columns `selected`.
     #[must_use]
     pub fn residual_norm(&self, selected: &[usize], values: &[f64]) -> f64 {

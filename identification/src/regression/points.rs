@@ -5,7 +5,7 @@ use crate::{
     blocks::BLOCK,
     filters::Decimator,
     kinematics::{Motion, conditioning::Condition},
-    series::{ConditionSeries, RunFigures},
+    series::{ConditionSeries, RunFigures, VelocitySeries},
     settings::Settings,
 };
 use overact_logs::Log;
@@ -24,6 +24,8 @@ pub(crate) struct Points<'a> {
     last: usize,
     settings: &'a Settings,
     frequency: f64,
+    /// Velocities of the last sample.
+    before: Vec<f64>,
 }
 
 /// Conditioning of one projection along a run.
@@ -68,6 +70,12 @@ impl<'a> Points<'a> {
                 payload: log.payload(),
                 coordinates: pose_names(info.coordinates, info.sizes.pose),
                 pose: vec![Vec::new(); info.sizes.pose],
+                velocities: { info.actuators.iter() }
+                    .map(|name| VelocitySeries {
+                        actuator: (*name).to_owned(),
+                        ..VelocitySeries::default()
+                    })
+                    .collect(),
                 ..RunFigures::default()
             },
             tracks: tracks.collect(),
@@ -76,6 +84,7 @@ impl<'a> Points<'a> {
             last: plan.points().saturating_sub(1),
             settings: observer.settings,
             frequency: log.sampling_frequency(),
+            before: Vec::new(),
         }
     }
 
@@ -83,6 +92,7 @@ impl<'a> Points<'a> {
     pub(crate) fn take(&mut self, motion: &Motion, blocks: &[Vec<Vec<Condition>>]) {
         let poses = motion.pose.chunks_exact(self.figures.pose.len().max(1));
         let start = motion.first_sample - self.settings.skip_start;
+        self.take_velocities(motion, start);
         for (index, pose) in poses.enumerate() {
             let sample = start + index;
             if sample >= self.first && (sample - self.first).is_multiple_of(self.stride) {
@@ -101,6 +111,29 @@ impl<'a> Points<'a> {
                 let point = sample.saturating_sub(self.first) / self.stride;
                 track.take(sample, point.min(self.last), *condition);
             }
+        }
+    }
+
+    /// Adds the velocities of the next samples, the first of which has the number `start`.
+    fn take_velocities(&mut self, motion: &Motion, start: usize) {
+        let width = self.figures.velocities.len().max(1);
+        for (index, now) in motion.velocities.chunks_exact(width).enumerate() {
+            let sample = start + index;
+            let is_point =
+                sample >= self.first && (sample - self.first).is_multiple_of(self.stride);
+            for (actuator, (series, value)) in
+                self.figures.velocities.iter_mut().zip(now).enumerate()
+            {
+                if is_point {
+                    series.velocity.push(*value);
+                }
+                series.largest_velocity = series.largest_velocity.max(value.abs());
+                if let Some(before) = self.before.get(actuator) {
+                    let acceleration = (value - before).abs() * self.frequency;
+                    series.largest_acceleration = series.largest_acceleration.max(acceleration);
+                }
+            }
+            now.clone_into(&mut self.before);
         }
     }
 

@@ -87,6 +87,29 @@ impl Projection {
         }
     }
 
+    /// Units of the lines of Γ, `N` or `N m`; empty if the model does not say.
+    #[must_use]
+    pub fn line_units(&self, info: &Info<'_>) -> Vec<&'static str> {
+        let units = actuator_units(info);
+        let of_coordinate = |line: usize| match info.coordinates.get(line).copied() {
+            Some("x" | "y" | "z") => "N",
+            Some("phi" | "rx" | "ry" | "rz" | "qw" | "qx" | "qy" | "qz") => "N m",
+            // A coordinate of a robot without a platform is a joint.
+            Some(name) => {
+                let place = info.actuators.iter().position(|own| *own == name);
+                place.map_or("", |place| units[place])
+            }
+            None => "",
+        };
+        match self.kept(info) {
+            None => (0..info.sizes.dof).map(of_coordinate).collect(),
+            Some(kept) => {
+                let unit = |actuator: &usize| units.get(*actuator).copied().unwrap_or_default();
+                kept.iter().map(unit).collect()
+            }
+        }
+    }
+
     /// Names of the lines of Γ.
     #[must_use]
     pub fn line_names(&self, info: &Info<'_>) -> Vec<String> {
@@ -105,4 +128,10 @@ impl Projection {
                 .collect(),
         }
     }
+}
+
+/// Units of the torques of all actuators, `N` or `N m`.
+pub(crate) fn actuator_units(info: &Info<'_>) -> Vec<&'static str> {
+    let unit = |is_revolute: &bool| if *is_revolute { "N m" } else { "N" };
+    info.actuator_is_revolute.iter().map(unit).collect()
 }

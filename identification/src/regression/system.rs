@@ -64,6 +64,8 @@ pub struct System {
     pub projection: Projection,
     /// Names of the lines of Γ.
     pub line_names: Vec<String>,
+    /// Unit of each line, `N` or `N m`; empty if unknown.
+    pub line_units: Vec<&'static str>,
     /// R factor of each line.
     pub lines: Vec<Factor>,
     /// Parts of the runs, for cross-validation.
@@ -106,6 +108,7 @@ impl System {
     pub fn new(projection: Projection, info: &Info<'_>, parameters: usize) -> Self {
         Self {
             line_names: projection.line_names(info),
+            line_units: projection.line_units(info),
             lines: vec![Factor::new(parameters); info.sizes.dof],
             projection,
             parts: Vec::new(),

@@ -4,7 +4,17 @@ use std::ops::Range;
 
 use overact::Sizes;
 
-use crate::{estimation::estimate::LineError, series::Series};
+use crate::{
+    estimation::estimate::{LineError, LineNorms},
+    series::Series,
+};
+
+/// Name and unit of a line or torque.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Label<'a> {
+    pub(super) name: &'a str,
+    pub(super) unit: &'static str,
+}
 
 /// Indices of measured and predicted values of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,13 +133,23 @@ impl Layout {
     }
 }
 
-/// Sums of squares over decimated rows, and the rows at the plotted points.
+/// Sums over the rows of a pair.
+#[derive(Debug, Clone, Copy, Default)]
+struct PairSums {
+    /// Squares of the differences.
+    residual: f64,
+    /// Squares of the measured values.
+    measured: f64,
+    /// Measured values.
+    sum: f64,
+}
+
+/// Sums over decimated rows, and the rows at the plotted points.
 #[derive(Debug)]
 pub(super) struct Sums<'a> {
     layout: &'a Layout,
     pairs: Vec<Pair>,
-    /// Squares of the differences and of the measured values of each pair.
-    squares: Vec<(f64, f64)>,
+    sums: Vec<PairSums>,
     taken: usize,
     stride: usize,
     points: Vec<f64>,
@@ -140,7 +160,7 @@ impl<'a> Sums<'a> {
     pub(super) fn new(layout: &'a Layout, stride: usize) -> Self {
         let pairs = layout.pairs();
         Self {
-            squares: vec![(0.0, 0.0); pairs.len()],
+            sums: vec![PairSums::default(); pairs.len()],
             layout,
             pairs,
             taken: 0,
@@ -161,19 +181,21 @@ impl<'a> Sums<'a> {
                 self.points.extend_from_slice(row);
             }
             self.taken += 1;
-            for (pair, (residual, measured)) in self.pairs.iter().zip(&mut self.squares) {
+            for (pair, sums) in self.pairs.iter().zip(&mut self.sums) {
                 let value = row[pair.measured];
-                *residual += (value - row[pair.predicted]).powi(2);
-                *measured += value * value;
+                sums.residual += (value - row[pair.predicted]).powi(2);
+                sums.measured += value * value;
+                sums.sum += value;
             }
         }
     }
 
     /// Error of a pair.
-    pub(super) fn error(&self, name: &str, pair: Pair) -> LineError {
+    pub(super) fn error(&self, label: Label<'_>, pair: Pair) -> LineError {
         let place = self.pairs.iter().position(|other| *other == pair);
-        let (residual, measured) = place.map_or((0.0, 0.0), |place| self.squares[place]);
-        LineError::new(name, residual.sqrt(), measured.sqrt(), self.taken)
+        let sums = place.map_or_else(PairSums::default, |place| self.sums[place]);
+        let norms = LineNorms::of_sums(sums.residual, sums.measured, sums.sum, self.taken);
+        LineError::new(label.name, label.unit, &norms, self.taken)
     }
 
     /// Values of a pair at the plotted points.

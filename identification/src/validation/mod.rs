@@ -21,12 +21,18 @@ use crate::{
         Motion, Motions,
         distribution::{least_multipliers, least_norm, product, transposed_product},
     },
-    regression::{Chunk, observer::Observer, points::Points, projection::Projection, sink::Plan},
+    regression::{
+        Chunk,
+        observer::Observer,
+        points::Points,
+        projection::{Projection, actuator_units},
+        sink::Plan,
+    },
     series::{RunFigures, Series},
 };
 use overact_logs::{Error, Log, monitor::Monitor};
 
-use layout::{Layout, Pair, Sums};
+use layout::{Label, Layout, Pair, Sums};
 
 /// Entry of one actuator in Table 3.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -167,18 +173,21 @@ pub(crate) fn validate(
     let time = |point: usize| {
         (first + point * stride * decimator.factor()) as f64 / log.sampling_frequency()
     };
+    let actuators = labels(info.actuators.iter().copied(), actuator_units(&info));
     let of_candidate = |(number, candidate): (usize, &Candidate<'_>)| {
         let projection = &observer.projections[candidate.projection];
         if let Some(error) = &failed[candidate.projection] {
             return Err(error.clone());
         }
-        let (run, names) = (log.name(), projection.line_names(&info));
+        let names = projection.line_names(&info);
+        let names = names.iter().map(String::as_str);
+        let lines = labels(names, projection.line_units(&info));
         Ok(validation(
             &sums,
             number,
-            run,
-            info.actuators,
-            &names,
+            log.name(),
+            &actuators,
+            &lines,
             &time,
         ))
     };
@@ -192,13 +201,19 @@ pub(crate) fn validate(
     })
 }
 
+/// Names with their units.
+fn labels<'a>(names: impl Iterator<Item = &'a str>, units: Vec<&'static str>) -> Vec<Label<'a>> {
+    let pairs = names.zip(units);
+    pairs.map(|(name, unit)| Label { name, unit }).collect()
+}
+
 /// Comparison of one candidate.
 fn validation(
     sums: &Sums<'_>,
     candidate: usize,
     run: &str,
-    actuators: &[&str],
-    names: &[String],
+    actuators: &[Label<'_>],
+    names: &[Label<'_>],
     time: &dyn Fn(usize) -> f64,
 ) -> Validation {
     let layout = sums.layout();
@@ -211,18 +226,19 @@ fn validation(
             .collect()
     };
     let torque_pairs = torques(|layout, c, actuator| Some(layout.torque(c, actuator)));
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let errors = |pairs: &[Pair], names: &[&str]| -> Vec<LineError> {
-        let named = pairs.iter().zip(names);
-        named.map(|(pair, name)| sums.error(name, *pair)).collect()
-    };
-    let series = |pairs: &[Pair], names: &[&str]| -> Vec<Series> {
+    let errors = |pairs: &[Pair], names: &[Label<'_>]| -> Vec<LineError> {
         let named = pairs.iter().zip(names);
         named
-            .map(|(pair, name)| sums.series(name, *pair, time))
+            .map(|(pair, label)| sums.error(*label, *pair))
             .collect()
     };
-    let line_errors = errors(&lines, &names);
+    let series = |pairs: &[Pair], names: &[Label<'_>]| -> Vec<Series> {
+        let named = pairs.iter().zip(names);
+        named
+            .map(|(pair, label)| sums.series(label.name, *pair, time))
+            .collect()
+    };
+    let line_errors = errors(&lines, names);
     let (residual_norm, measured_norm) = overall(&line_errors);
     let torque_errors = errors(&torque_pairs, actuators);
     Validation {
@@ -237,11 +253,11 @@ fn validation(
                 least_norm_percent: error.relative_error_percent,
                 closure_percent: layout
                     .closure_torque(candidate, actuator)
-                    .map(|pair| sums.error(&error.name, pair).relative_error_percent),
+                    .map(|pair| sums.error(actuators[actuator], pair).relative_error_percent),
             })
             .collect(),
         projected_torques: errors(&torques(Layout::projected_torque), actuators),
-        line_series: series(&lines, &names),
+        line_series: series(&lines, names),
         torque_series: series(&torque_pairs, actuators),
         lines: line_errors,
         torques: torque_errors,

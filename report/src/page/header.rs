@@ -1,10 +1,11 @@
-//! Head of the page: robot, drawing and main results.
+//! Head of the page: robot, verdict, main results and one plot of measured and predicted torque.
 
 use std::fmt::Write;
 
-use super::{Contents, elements::markup::paragraph, verdict};
+use super::{Contents, elements::markup::paragraph, fit::inputs, verdict};
 use crate::{
     choice::{answers, case_heading, stage_name},
+    line_errors::relative_words,
     text::escape,
 };
 use overact_identification::{Stage, significant};
@@ -34,17 +35,21 @@ pub(super) fn header(contents: &Contents<'_>) -> String {
     }
     html.push_str(&facts(contents));
     html.push_str("</div>\n");
-    if let Some(drawing) = contents.drawing {
-        let _ = writeln!(
-            html,
-            "<figure id=\"figure-robot\" class=\"robot\"><img alt=\"Drawing of {} at its home configuration: links, joints, actuators and platform\" src=\"data:image/svg+xml;base64,{}\"/><figcaption>{} at its home configuration.</figcaption></figure>",
-            escape(&identification.robot),
-            base64(drawing.as_bytes()),
-            escape(&identification.robot)
-        );
-    }
+    // A page without torques has the drawing here.
+    html.push_str(&inputs::first(contents).unwrap_or_else(|| drawing(contents)));
     html.push_str("</header>\n");
     html
+}
+
+/// Drawing of the robot; empty without one.
+pub(super) fn drawing(contents: &Contents<'_>) -> String {
+    let robot = escape(&contents.identification.robot);
+    contents.drawing.map_or_else(String::new, |drawing| {
+        format!(
+            "<figure id=\"figure-robot\" class=\"robot\"><img alt=\"Drawing of {robot} at its home configuration: links, joints, actuators and platform\" src=\"data:image/svg+xml;base64,{}\"/><figcaption>{robot} at its home configuration.</figcaption></figure>\n",
+            base64(drawing.as_bytes())
+        )
+    })
 }
 
 /// Main results with their units.
@@ -59,10 +64,15 @@ fn facts(contents: &Contents<'_>) -> String {
         };
         let _ = writeln!(
             html,
-            "<div><dt>{}</dt><dd><b>{}</b> {what}, relative error <b>{}\u{a0}%</b></dd></div>",
+            "<div><dt>{}</dt><dd><b>{}</b> {what}, relative error <b>{}</b></dd></div>",
             case_heading(estimate.model),
             estimate.parameters.len(),
-            escape(&significant(estimate.relative_error_percent, 3))
+            escape(&relative_words(
+                &estimate.lines,
+                estimate.relative_error_percent,
+                3
+            ))
+            .replace(" %", "\u{a0}%")
         );
     }
     let samples: usize = identification.runs.iter().map(|run| run.samples).sum();

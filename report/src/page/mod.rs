@@ -1,8 +1,9 @@
 //! HTML page of an identification: one self-contained file for engineers.
 //!
-//! The verdict comes first, then the parameters. Each plot has a caption on how to read it. Each
-//! section is a file: `verdict`, `checks`, and those in the folders `calibrations`, `estimates`,
-//! `fit` and `runs`. `elements` has what sections consist of. Empty sections are omitted.
+//! The verdict comes first with a plot of measured and predicted torque, then the parameters. Each
+//! plot has a caption on how to read it. Each section is a file: `verdict`, `checks`, and those in
+//! the folders `calibrations`, `estimates`, `fit` and `runs`. `elements` has what sections consist
+//! of. Empty sections are omitted.
 
 mod calibrations;
 mod checks;
@@ -61,11 +62,12 @@ pub struct Attachment<'a> {
 pub fn page(contents: &Contents<'_>) -> String {
     let sections: Vec<Section> = [
         verdict::section(contents),
+        estimates::parameters::section(contents),
+        verdict::assumptions(contents),
         checks::section(contents),
         calibrations::calibration::section(contents),
         calibrations::gravity::section(contents),
         calibrations::gains::section(contents),
-        estimates::parameters::section(contents),
         estimates::motors::section(contents),
         estimates::consistent::section(contents),
         estimates::estimators::section(contents),
@@ -73,8 +75,11 @@ pub fn page(contents: &Contents<'_>) -> String {
         fit::validation::section(contents),
         fit::inputs::section(contents),
         fit::residuals::section(contents),
+        fit::friction::section(contents),
+        fit::correlation::section(contents),
         fit::elimination::section(contents),
         fit::conditioning::section(contents),
+        runs::ranges::section(contents),
         runs::trajectories::section(contents),
         runs::tracking::section(contents),
         runs::data::section(contents),

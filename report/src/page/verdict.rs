@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     choice::stage_name,
-    judgement::{grade_words, passed},
+    judgement::{grade_words, other_warnings, passed},
     text::escape,
 };
 use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict, failed_checks};
@@ -18,14 +18,21 @@ use overact_identification::{Check, Grade, Identification, StageVerdict, Verdict
 /// Section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
     let identification = contents.identification;
-    let mut body = paragraph(&summary(identification));
-    body.push_str(&cards(identification));
+    let mut body = cards(identification);
     body.push_str(&warnings(identification));
-    body.push_str(&assumptions(identification));
     Section {
         id: "verdict",
         title: "Verdict",
         body,
+    }
+}
+
+/// Section on detection limits and assumptions.
+pub(super) fn assumptions(contents: &Contents<'_>) -> Section {
+    Section {
+        id: "scope",
+        title: "Detection limits and assumptions",
+        body: lists(contents.identification),
     }
 }
 
@@ -150,13 +157,7 @@ fn others(verdict: &Verdict) -> String {
 
 /// Warnings that do not belong to a check.
 fn warnings(identification: &Identification) -> String {
-    let failed = identification.checks.iter().filter(|check| !check.passed);
-    let stated: Vec<&str> = failed.map(|check| check.words.as_str()).collect();
-    let rest: Vec<&String> = identification
-        .warnings
-        .iter()
-        .filter(|warning| !stated.iter().any(|words| warning.contains(words)))
-        .collect();
+    let rest = other_warnings(identification);
     if rest.is_empty() {
         return String::new();
     }
@@ -167,8 +168,8 @@ fn warnings(identification: &Identification) -> String {
     format!("<h3 id=\"warnings\">Warnings</h3>\n<ul class=\"warnings\">\n{items}</ul>\n")
 }
 
-/// Assumptions of every result.
-fn assumptions(identification: &Identification) -> String {
+/// Lists of detection limits and of assumptions of every result.
+fn lists(identification: &Identification) -> String {
     let list = |id: &str, title: &str, words: &str, all: &[String]| {
         if all.is_empty() {
             return String::new();

@@ -7,10 +7,12 @@
 mod axis;
 mod chart;
 mod forest;
+mod heatmap;
 
 pub(super) use axis::{Axis, power_of_ten};
 pub(super) use chart::{Chart, Line, Look, Rule};
 pub(super) use forest::{Bar, Forest};
+pub(super) use heatmap::Heatmap;
 
 /// Width of every plot in SVG units.
 const WIDTH: f64 = 400.0;

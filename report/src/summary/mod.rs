@@ -2,13 +2,15 @@
 //!
 //! All tables are in `terminal`.
 
+mod errors;
 mod parameters;
 
 use crate::{
     choice::{answers, of, projection, stage_name},
     intervals::{excludes_zero, half_width_percent},
-    judgement::{grade_words, passed},
+    judgement::{grade_words, other_warnings, passed},
     layout::{line, paragraph},
+    line_errors::{base_words, is_mixed, relative, relative_words, worst_of_validation},
     terminal::{calibration, gains, gravity, motors},
 };
 use overact_identification::{
@@ -46,10 +48,12 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
     }
     above.push_str(&gravity::gravity(identification.gravity.as_ref()));
     above.push_str(&gains::gains(&identification.gains));
+    let mut reported = Vec::new();
     for estimate in answers(identification) {
         above.push('\n');
-        above.push_str(&model(identification, estimate, extent));
+        above.push_str(&model(identification, estimate, extent, &mut reported));
     }
+    above.push_str(&errors::errors(identification));
     let below = consistent(identification) + &unseen(identification) + &next(identification, page);
     let rows = parameters::rows(identification);
     let motors = motors::motors(&identification.motors);
@@ -98,9 +102,9 @@ fn consistent(identification: &Identification) -> String {
     let mut text = String::new();
     if let Some(one) = identification.consistent.first() {
         let words = format!(
-            "Physically consistent standard parameters: relative residual {} % (base parameters {} %); --parameters FILE writes them for controllers and simulators.",
-            significant(one.relative_error_percent, 4),
-            significant(one.base_relative_error_percent, 4)
+            "Physically consistent standard parameters: relative residual {} (base parameters {}); --parameters FILE writes them for controllers and simulators.",
+            relative_words(&one.lines, one.relative_error_percent, 4),
+            base_words(identification, one)
         );
         text.push('\n');
         paragraph(&mut text, "", &words);
@@ -124,8 +128,13 @@ fn unseen(identification: &Identification) -> String {
     text
 }
 
-/// Verdict on one model with its reasons.
-fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -> String {
+/// Verdict on one model with its reasons; `reported` are the checks that models above reported.
+fn model(
+    identification: &Identification,
+    estimate: &Estimate,
+    extent: Extent,
+    reported: &mut Vec<usize>,
+) -> String {
     let mut text = String::new();
     let mut verdicts = identification.verdicts.iter();
     let verdict = verdicts.find(|one| one.model == estimate.model);
@@ -150,8 +159,8 @@ fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -
         &mut text,
         "  ",
         &format!(
-            "{own}: relative residual {:.4} % (training){}.{}",
-            estimate.relative_error_percent,
+            "{own}: relative residual {} (training){}.{}",
+            training_words(estimate),
             held_out(identification, estimate),
             sureness(estimate)
         ),
@@ -160,14 +169,14 @@ fn model(identification: &Identification, estimate: &Estimate, extent: Extent) -
         paragraph(&mut text, "  ", &others);
     }
     if let Some(verdict) = verdict {
-        text.push_str(&reasons(identification, verdict, extent));
+        text.push_str(&reasons(identification, verdict, extent, reported));
     }
     text
 }
 
 /// Line on all base parameters (weighted and ordinary least squares) and on the essential ones.
 fn other_stages(identification: &Identification, shown: &Estimate) -> Option<String> {
-    let percent = |one: &Estimate| format!("{} %", significant(one.relative_error_percent, 4));
+    let percent = |one: &Estimate| relative_words(&one.lines, one.relative_error_percent, 4);
     let base = of(identification, shown.model, Stage::Base)?;
     if base.stage == shown.stage {
         return None;
@@ -195,14 +204,19 @@ fn other_stages(identification: &Identification, shown: &Estimate) -> Option<Str
     ))
 }
 
-/// Prediction errors on validation runs.
+/// Relative residual of the training runs, with four decimals.
+fn training_words(estimate: &Estimate) -> String {
+    let percent = relative(&estimate.lines, estimate.relative_error_percent);
+    if is_mixed(&estimate.lines) {
+        format!("at most {percent:.4} % of a torque")
+    } else {
+        format!("{percent:.4} %")
+    }
+}
+
+/// Largest prediction error of a torque on the validation runs.
 fn held_out(identification: &Identification, estimate: &Estimate) -> String {
-    let errors = identification
-        .cross_validation
-        .iter()
-        .filter(|one| one.model == estimate.model && one.stage == estimate.stage)
-        .map(|one| one.relative_error_percent);
-    errors.reduce(f64::max).map_or_else(String::new, |worst| {
+    worst_of_validation(identification, estimate).map_or_else(String::new, |worst| {
         format!(", at most {} % (validation)", significant(worst, 3))
     })
 }
@@ -239,7 +253,14 @@ fn list(names: &[&str], extent: Extent) -> String {
 }
 
 /// Failed checks of an estimate, or that there are none.
-fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -> String {
+///
+/// Checks in `reported` were reported above and are only named.
+fn reasons(
+    identification: &Identification,
+    verdict: &Verdict,
+    extent: Extent,
+    reported: &mut Vec<usize>,
+) -> String {
     let mut text = String::new();
     if verdict.grade == Grade::UseListed {
         let listed: Vec<&str> = verdict.listed.iter().map(String::as_str).collect();
@@ -258,8 +279,17 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
         }
     }
     let found = failed_checks(&identification.checks, verdict.model, verdict.stage);
-    for (_, check) in &found.reported {
+    let all = found.reported.iter().copied();
+    let (again, new): (Vec<_>, Vec<_>) = all.partition(|(number, _)| reported.contains(number));
+    for (number, check) in new {
+        reported.push(number);
         paragraph(&mut text, "  - ", &check.located());
+    }
+    if !again.is_empty() {
+        let mut names: Vec<&str> = again.iter().map(|(_, check)| check.kind.name()).collect();
+        names.dedup();
+        let words = format!("as reported above: {}", names.join(", "));
+        paragraph(&mut text, "  - ", &words);
     }
     if let Some(rest) = found.rest() {
         paragraph(&mut text, "  - ", &rest);
@@ -278,14 +308,7 @@ fn reasons(identification: &Identification, verdict: &Verdict, extent: Extent) -
 /// Warnings that belong to no check, and next steps.
 fn next(identification: &Identification, page: Option<&str>) -> String {
     let mut text = String::new();
-    let sentence: Vec<&str> = identification
-        .checks
-        .iter()
-        .filter(|check| !check.passed)
-        .map(|check| check.words.as_str())
-        .collect();
-    let is_told = |warning: &&String| sentence.iter().any(|words| warning.contains(words));
-    for warning in identification.warnings.iter().filter(|one| !is_told(one)) {
+    for warning in other_warnings(identification) {
         text.push('\n');
         paragraph(&mut text, "", &format!("warning: {warning}"));
     }

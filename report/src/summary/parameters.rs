@@ -3,10 +3,12 @@
 use crate::{
     choice::{answers, stage_name},
     intervals::{half_width_percent, is_outside},
-    layout::{WIDTH, paragraph, table},
+    layout::{WIDTH, definitions, paragraph, table},
+    terminal::sum,
 };
 use overact_identification::{
-    Estimate, Grade, Identification, ModelKind, ParameterEstimate, Verdict, significant,
+    BaseParameter, Estimate, Grade, Identification, ModelKind, ParameterEstimate, Verdict,
+    significant,
 };
 
 /// Results and the names of their parameters.
@@ -16,6 +18,7 @@ pub(super) struct Rows<'a> {
     names: Vec<&'a str>,
     /// Indices of the names in order of priority.
     ranked: Vec<usize>,
+    base: &'a [BaseParameter],
 }
 
 /// Parameters of the results.
@@ -48,6 +51,7 @@ pub(super) fn rows(identification: &Identification) -> Rows<'_> {
         answers,
         names,
         ranked,
+        base,
     }
 }
 
@@ -106,6 +110,7 @@ impl Rows<'_> {
                 "* outside its own interval: cancelling other parameters moved this estimate to a value that the data contradict",
             );
         }
+        text.push_str(&self.sums(&names));
         if !left.is_empty() {
             let best = left
                 .iter()
@@ -123,6 +128,14 @@ impl Rows<'_> {
             paragraph(&mut text, "", &sentence);
         }
         text
+    }
+
+    /// Sums of standard parameters that the named parameters are; empty if none is regrouped.
+    fn sums(&self, names: &[&str]) -> String {
+        let base = self.base.iter().filter(|one| !one.regrouping.is_empty());
+        let shown = base.filter(|one| names.contains(&one.name.as_str()));
+        let rows: Vec<(String, String)> = shown.map(|one| (one.name.clone(), sum(one))).collect();
+        definitions(&rows, " = ")
     }
 
     fn side_by_side(&self, names: &[&str], with_truth: bool) -> String {

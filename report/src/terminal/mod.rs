@@ -8,6 +8,7 @@ pub(crate) mod motors;
 use crate::{
     intervals::{half_width_percent, is_outside},
     layout::{definitions, paragraph, table},
+    line_errors::{base_words, cells, is_mixed, relative, relative_words},
 };
 use overact_identification::{
     BaseParameter, Consistent, CrossValidation, Estimate, Estimator, Identification, LineError,
@@ -41,7 +42,7 @@ pub fn tables(identification: &Identification) -> String {
     }
     for one in &identification.consistent {
         text.push('\n');
-        text.push_str(&consistent(one));
+        text.push_str(&consistent(identification, one));
     }
     if !identification.cross_validation.is_empty() {
         text.push('\n');
@@ -51,7 +52,7 @@ pub fn tables(identification: &Identification) -> String {
 }
 
 /// Table of physically consistent standard parameters.
-fn consistent(one: &Consistent) -> String {
+fn consistent(identification: &Identification, one: &Consistent) -> String {
     let rows = one.parameters.iter().map(|own| {
         vec![
             own.name.clone(),
@@ -63,10 +64,10 @@ fn consistent(one: &Consistent) -> String {
     });
     let header = ["parameter", "value", "unit", "prior", "from data %"];
     format!(
-        "Physically consistent parameters, {}: error {:.4} % (base parameters {:.4} %)\n{}",
+        "Physically consistent parameters, {}: error {} (base parameters {})\n{}",
         one.model.label(),
-        one.relative_error_percent,
-        one.base_relative_error_percent,
+        relative_words(&one.lines, one.relative_error_percent, 5),
+        base_words(identification, one),
         table(&header, rows.collect())
     )
 }
@@ -95,13 +96,7 @@ pub fn base_parameters(parameters: &[BaseParameter]) -> String {
         .partition(|base| base.regrouping.is_empty());
     let rows: Vec<(String, String)> = regrouped
         .iter()
-        .map(|base| {
-            let mut sum = base.parameter.clone();
-            for term in &base.regrouping {
-                sum.push_str(&signed_term(term));
-            }
-            (base.name.clone(), sum)
-        })
+        .map(|base| (base.name.clone(), sum(base)))
         .collect();
     let mut text = format!(
         "\nBase parameters ({})\n{}",
@@ -115,8 +110,14 @@ pub fn base_parameters(parameters: &[BaseParameter]) -> String {
     text
 }
 
+/// Sum of standard parameters that a base parameter is: `zz_1 + ia_1 + 0.16 m_2`.
+pub(crate) fn sum(base: &BaseParameter) -> String {
+    let terms: String = base.regrouping.iter().map(signed_term).collect();
+    format!("{}{terms}", base.parameter)
+}
+
 /// ` + 0.0784 m_2_leg1`; a coefficient of 1 is omitted.
-pub(super) fn signed_term(term: &Regrouping) -> String {
+fn signed_term(term: &Regrouping) -> String {
     let sign = if term.coefficient < 0.0 { '-' } else { '+' };
     match coefficient(term.coefficient.abs()).as_str() {
         "1" => format!(" {sign} {}", term.parameter),
@@ -232,26 +233,31 @@ fn interval(parameter: &ParameterEstimate) -> String {
 /// Errors, condition number and elimination path of an estimate.
 fn quality(estimate: &Estimate) -> String {
     let mut text = String::new();
+    // A norm over N and N m has no unit.
+    let residual_norm = if is_mixed(&estimate.lines) {
+        String::new()
+    } else {
+        format!(" residual norm {},", significant(estimate.residual_norm, 7))
+    };
     paragraph(
         &mut text,
         "",
         &format!(
-            "relative error {:.4} %, residual norm {}, condition number {}, {} equations{}",
-            estimate.relative_error_percent,
-            significant(estimate.residual_norm, 7),
+            "relative error {},{} condition number {}, {} equations{}",
+            relative_words(&estimate.lines, estimate.relative_error_percent, 5),
+            residual_norm,
             significant(estimate.condition_number, 6),
             estimate.equations,
             if estimate.weighted { ", weighted" } else { "" },
         ),
     );
-    if estimate.lines.len() > 1 {
-        let lines: Vec<String> = estimate
-            .lines
-            .iter()
-            .map(|line| format!("{} {:.3} %", line.name, line.relative_error_percent))
-            .collect();
-        paragraph(&mut text, "", &format!("by line: {}", lines.join(", ")));
-    }
+    let header = ["residual of", "unit", "rms", "error %", "fit %"];
+    let rows = estimate.lines.iter().map(|line| {
+        let mut row = vec![line.name.clone(), line.unit.to_owned()];
+        row.extend(cells(Some(line)));
+        row
+    });
+    text.push_str(&table(&header, rows.collect()));
     if let Some(partition) = &estimate.partition
         && estimate.model == ModelKind::Actuators
     {
@@ -326,8 +332,12 @@ pub fn cross_validation(all: &[CrossValidation]) -> String {
             one.run.clone(),
             one.model.name().to_owned(),
             one.stage.name().to_owned(),
-            significant(one.residual_norm, 7),
-            format!("{:.4}", one.relative_error_percent),
+            if is_mixed(&one.lines) {
+                String::from("-")
+            } else {
+                significant(one.residual_norm, 7)
+            },
+            format!("{:.4}", relative(&one.lines, one.relative_error_percent)),
             list(&one.torques),
         ];
         if redundant {

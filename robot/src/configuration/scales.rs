@@ -6,7 +6,7 @@ use overact_codegen::{
     description::Experiment,
     mechanism::{Joint, JointKind, Leg},
 };
-use overact_identification::Scales;
+use overact_identification::{ActuatorRange, Scales};
 use std::f64::consts::TAU;
 
 impl Robot {
@@ -30,6 +30,27 @@ impl Robot {
                 excitation.and_then(|one| one.velocity.as_ref()),
                 swept.velocity,
             ),
+        }
+    }
+}
+
+impl Robot {
+    /// Enters the described limits of the motion: those of the table `excitation`.
+    pub(crate) fn set_limits(&self, ranges: &mut [ActuatorRange]) {
+        let Some(table) = &self.description().excitation else {
+            return;
+        };
+        let info = self.model().info();
+        let at = |values: &Option<Vec<f64>>, place: usize| values.as_ref()?.get(place).copied();
+        for (place, range) in ranges.iter_mut().enumerate() {
+            let joint = info.actuated_joints.get(place);
+            let home = joint.and_then(|joint| info.home_joints.get(*joint));
+            let travel = at(&table.travel, place);
+            range.position_limits = home
+                .zip(travel)
+                .map(|(home, travel)| [home - travel, home + travel]);
+            range.velocity_limit = at(&table.velocity, place);
+            range.acceleration_limit = at(&table.acceleration, place);
         }
     }
 }

@@ -306,6 +306,7 @@ impl<'a> Identifier<'a> {
             without_essential(&mut result);
         }
         result.settings = settings;
+        self.robot.set_limits(&mut result.figures.ranges);
         result.motors = at_motors(self.robot.description(), &result.estimates);
         result.functions_base = functions_base(self.robot.model().model(), &result);
         Ok(result)

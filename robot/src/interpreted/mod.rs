@@ -352,6 +352,10 @@ impl Model for InterpretedRobot {
         self.names.info(&self.model)
     }
 
+    fn base_columns(&self) -> &[&'static str] {
+        &self.names.base_columns
+    }
+
     fn evaluate(
         &self,
         function: Function,

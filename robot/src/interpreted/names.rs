@@ -16,6 +16,8 @@ pub(super) struct Names {
     coordinates: Vec<&'static str>,
     parameters: Vec<Parameter>,
     payload_parameters: Vec<Parameter>,
+    /// Standard parameters that the functions of base parameters keep.
+    pub(super) base_columns: Vec<&'static str>,
 }
 
 impl Names {
@@ -47,6 +49,9 @@ impl Names {
             coordinates,
             parameters: parameters(model, &model.selection.standard),
             payload_parameters: parameters(model, &model.selection.payload),
+            base_columns: { model.base.iter() }
+                .map(|base| leaked(model.parameter_name(base.parameter)))
+                .collect(),
         }
     }
 

@@ -72,6 +72,7 @@ fn system(kind: DrawOptions, samples: usize, seed: u64) -> System {
     System {
         projection: Projection::Platform,
         line_names: vec![String::from("x"), String::from("y")],
+        line_units: vec!["N"; 2],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
         phase_sums: Vec::new(),

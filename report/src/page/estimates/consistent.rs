@@ -2,6 +2,7 @@
 
 use crate::{
     choice::case_heading,
+    line_errors::{base_words, relative_words},
     page::{
         Contents,
         elements::{
@@ -10,7 +11,7 @@ use crate::{
         },
     },
 };
-use overact_identification::{Consistent, ConsistentBody, ConsistentParameter, significant};
+use overact_identification::{Consistent, ConsistentBody, ConsistentParameter, Identification};
 
 /// Section; empty without a consistent estimate.
 pub(crate) fn section(contents: &Contents<'_>) -> Section {
@@ -20,7 +21,7 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
         body.push_str(&paragraph(
             "Base parameters are sums of masses and inertias of single bodies. Noise can give them values that no robot has. Here the pseudo-inertia of every body is positive definite, and friction and rotor inertia are positive. Among such parameters these fit the torques best. Where the data do not determine them, they stay close to the prior: values and bounds of the table `prior` of the description, otherwise bodies filled uniformly between their joints.",
         ));
-        body.extend(all.iter().map(of_model));
+        body.extend(all.iter().map(|one| of_model(contents.identification, one)));
     }
     Section {
         id: "consistent",
@@ -29,12 +30,12 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-fn of_model(one: &Consistent) -> String {
+fn of_model(identification: &Identification, one: &Consistent) -> String {
     let cost = format!(
-        "{}: relative residual {} %, with the base parameters {} %.",
+        "{}: relative residual {}, with the base parameters {}.",
         case_heading(one.model),
-        significant(one.relative_error_percent, 4),
-        significant(one.base_relative_error_percent, 4)
+        relative_words(&one.lines, one.relative_error_percent, 4),
+        base_words(identification, one)
     );
     let mut html = paragraph(&cost);
     html.push_str(&bodies(&one.bodies));

@@ -2,6 +2,7 @@
 
 use crate::{
     choice::{case_heading, projection, stage_name},
+    line_errors::relative,
     page::{
         Contents,
         elements::{
@@ -78,7 +79,7 @@ fn table(identification: &Identification) -> String {
             Cell::text(&projection(one)),
             Cell::number(one.parameters.len().to_string()),
             Cell::number(one.equations.to_string()),
-            Cell::digits(Some(one.relative_error_percent), 3),
+            Cell::digits(Some(relative(&one.lines, one.relative_error_percent)), 3),
             Cell::digits(Some(one.condition_number), 3),
             Cell::digits(partition.map(|partition| partition.largest), 3),
             Cell::text(&partition.map_or_else(String::new, |partition| {

@@ -62,6 +62,31 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
+/// Plot of the torque with the largest relative error of the first model, on a validation run if
+/// there is one; `None` without torques.
+pub(crate) fn first(contents: &Contents<'_>) -> Option<String> {
+    let identification = contents.identification;
+    let model = answers(identification).first()?.model;
+    let all = identification.figures.predictions.iter().filter(|one| {
+        one.model == model
+            && !one.torques.is_empty()
+            && is_answer(identification, one.model, one.stage)
+    });
+    let all: Vec<&PredictionFigures> = all.collect();
+    let held_out = all.iter().find(|one| !one.identified);
+    let shown = held_out.or_else(|| all.first())?;
+    let error = |one: &&Series| relative_error(one).unwrap_or(0.0);
+    let worst = shown.torques.iter();
+    let worst = worst.max_by(|a, b| error(a).total_cmp(&error(b)))?;
+    Some(compared(
+        "figure-first",
+        shown,
+        std::slice::from_ref(worst),
+        "τ",
+        contents.units,
+    ))
+}
+
 /// Torque plots of one run, validation runs first.
 pub(crate) fn torques(contents: &Contents<'_>) -> String {
     let identification = contents.identification;

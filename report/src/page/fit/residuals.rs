@@ -2,18 +2,22 @@
 
 use crate::{
     choice::{case_heading, is_answer, stage_name},
+    line_errors::{ErrorRow, cells, rows},
     page::{
         Contents,
         elements::{
-            markup::{Section, details, figure, paragraph},
+            markup::{Section, details, figure, note, paragraph},
             select::look,
+            table::{Cell, Table},
         },
     },
     plot::{Axis, Chart, Line, Look, Rule},
     text::{escape, last_part},
     units::Units,
 };
-use overact_identification::{LineResidual, ResidualFigures, ResidualSeries, significant};
+use overact_identification::{
+    Identification, LineResidual, ResidualFigures, ResidualSeries, significant,
+};
 
 /// Fraction of autocorrelations within the 95 % bound from which a residual counts as white.
 const WHITE: f64 = 0.9;
@@ -37,11 +41,46 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
         let introduction = "Measured minus predicted torques. A residual of noise alone is white: not autocorrelated, with equal power at all frequencies. Effects that the model lacks appear here: other friction, ripple of the drives, flexibility. The intervals of the parameters allow for autocorrelation.";
         body = paragraph(introduction) + &body;
     }
+    body = table(identification) + &body;
     Section {
         id: "residuals",
         title: "Residuals",
         body,
     }
+}
+
+/// Root mean square, relative error and fit of every line and drive.
+fn table(identification: &Identification) -> String {
+    let rows = rows(identification);
+    if rows.is_empty() {
+        return String::new();
+    }
+    let row = |one: &ErrorRow<'_>| {
+        let mut row = vec![
+            Cell::text(one.name),
+            Cell::text(one.model.unwrap_or_default()),
+            Cell::text(one.unit).class("unit"),
+        ];
+        for error in [one.training, one.validation] {
+            row.extend(cells(error).map(Cell::number));
+        }
+        row
+    };
+    let groups = [("", 3), ("training runs", 3), ("worst validation run", 3)];
+    let groups = groups.map(|(title, columns)| Cell::text(title).over(columns).class("group"));
+    let titles = ["residual of", "case", "unit"].map(Cell::text).to_vec();
+    let figures = ["RMS", "relative error (%)", "NRMSE fit (%)"];
+    let figures = [figures, figures].concat();
+    let figures = figures.iter().map(|title| Cell::text(title).class("n"));
+    let table = Table {
+        caption: String::from("Residual of every line and drive"),
+        header: vec![groups.to_vec(), titles.into_iter().chain(figures).collect()],
+        rows: rows.iter().map(row).collect(),
+    };
+    table.html()
+        + &note(
+            "RMS: root mean square of measured minus predicted, after filters and decimation. Relative error: its norm divided by that of the measurement. NRMSE fit: 100 (1 − ‖e‖/‖y − ȳ‖).",
+        )
 }
 
 /// Figure of one estimate.

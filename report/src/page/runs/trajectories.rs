@@ -4,6 +4,8 @@ use crate::{
     page::{
         Contents,
         elements::markup::{Section, figure, key},
+        fit::inputs,
+        header,
     },
     plot::{Axis, Chart, Line, Look},
     text::{escape, last_part},
@@ -14,7 +16,11 @@ use overact_identification::RunFigures;
 /// Section.
 pub(crate) fn section(contents: &Contents<'_>) -> Section {
     let runs = &contents.identification.figures.runs;
-    let mut body = String::new();
+    // The head of the page has the drawing if there is no plot.
+    let mut body = match inputs::first(contents) {
+        Some(_) => header::drawing(contents),
+        None => String::new(),
+    };
     for identified in [true, false] {
         let plots: Vec<String> = runs
             .iter()

@@ -6,12 +6,13 @@ use crate::{
 };
 use overact::{Info, Sizes};
 use overact_identification::{
-    About, Axis, BaseParameter, Check, CheckKind, ConditionSeries, Consistent, ConsistentBody,
-    ConsistentParameter, CrossValidation, Curve, Drift, Estimate, Estimator, Evidence, Figures,
-    Grade, Identification, Instruments, LineError, LineResidual, ModelKind, Normalisation,
-    ParameterEstimate, PartitionCondition, PredictionFigures, Prior, Regrouping, Removal,
-    ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, StageVerdict,
-    Thresholds, TorqueComparison, TrackingError, Verdict,
+    About, ActuatorRange, Axis, BaseParameter, Check, CheckKind, ConditionSeries, Consistent,
+    ConsistentBody, ConsistentParameter, CorrelationFigures, CrossValidation, Curve, Drift,
+    Estimate, Estimator, Evidence, Figures, Grade, Identification, Instruments, LineError,
+    LineNorms, LineResidual, ModelKind, Normalisation, ParameterEstimate, PartitionCondition,
+    PredictionFigures, Prior, Regrouping, Removal, ResidualFigures, ResidualSeries, RunFigures,
+    RunSummary, Series, Settings, Stage, StageVerdict, Thresholds, TorqueComparison, TrackingError,
+    VelocitySeries, Verdict,
 };
 
 /// Name that breaks unescaped output.
@@ -93,7 +94,7 @@ fn estimate(model: ModelKind, stage: Stage) -> Estimate {
         condition_number: f64::INFINITY,
         equations: 1000,
         residual_deviation: 1.0,
-        lines: vec![LineError::new("x", 1.0, 40.0, 1000)],
+        lines: vec![line_error("x", "N", [1.0, 40.0], 1000)],
         weights: vec![1.0],
         partition: Some(PartitionCondition {
             crossings: 0,
@@ -120,8 +121,8 @@ fn cross_validation(model: ModelKind) -> CrossValidation {
         residual_norm: 1.0,
         relative_error_percent: 3.0,
         lines: Vec::new(),
-        torques: vec![LineError::new("leg1", 1.0, 20.0, 100)],
-        projected_torques: vec![LineError::new("leg1", 0.9, 20.0, 100)],
+        torques: vec![line_error("leg1", "N m", [1.0, 20.0], 100)],
+        projected_torques: vec![line_error("leg1", "N m", [0.9, 20.0], 100)],
         table: vec![TorqueComparison {
             actuator: String::from("leg1"),
             least_norm_percent: 5.0,
@@ -140,6 +141,12 @@ fn figures() -> Figures {
         time: vec![0.0, 1.0, 2.0],
         coordinates: vec![String::from("x"), String::from("phi")],
         pose: vec![vec![0.0, 0.1, 0.0], vec![0.0, f64::NAN, 1.0]],
+        velocities: vec![VelocitySeries {
+            actuator: HOSTILE.to_owned(),
+            velocity: vec![0.0, f64::NAN, -0.5],
+            largest_velocity: 0.5,
+            largest_acceleration: 3.0,
+        }],
         conditions: vec![
             ConditionSeries {
                 kept_actuators: Vec::new(),
@@ -161,11 +168,11 @@ fn figures() -> Figures {
         lines: vec![series("x"), series("phi")],
         torques: vec![series("leg1")],
     };
-    let residual = |model| ResidualFigures {
+    let residual = |model, name: &str| ResidualFigures {
         model,
         stage: Stage::Recommended,
         lines: vec![LineResidual {
-            name: String::from("x"),
+            name: name.to_owned(),
             runs: vec![ResidualSeries {
                 run: HOSTILE.to_owned(),
                 time: vec![0.0, 1.0],
@@ -187,9 +194,25 @@ fn figures() -> Figures {
             prediction(HOSTILE, true, ModelKind::Actuators),
         ],
         residuals: vec![
-            residual(ModelKind::Platform),
-            residual(ModelKind::Actuators),
+            residual(ModelKind::Platform, "x"),
+            residual(ModelKind::Actuators, HOSTILE),
         ],
+        correlations: vec![CorrelationFigures {
+            model: ModelKind::Platform,
+            stage: Stage::Recommended,
+            names: vec![HOSTILE.to_owned(), String::from("m_platformR")],
+            correlation: vec![vec![1.0, -0.87], vec![-0.87, 1.0]],
+        }],
+        ranges: vec![ActuatorRange {
+            actuator: HOSTILE.to_owned(),
+            unit: "rad",
+            position: [-0.5, 1.5],
+            velocity: 0.5,
+            acceleration: 3.0,
+            position_limits: Some([-2.0, 2.0]),
+            velocity_limit: Some(4.0),
+            acceleration_limit: None,
+        }],
     }
 }
 
@@ -430,4 +453,14 @@ pub(super) fn units() -> Units {
         home_joints: &[],
         kept_actuators: &[],
     })
+}
+
+/// Error of a line; norms are `[residual, measured]`.
+fn line_error(name: &str, unit: &'static str, norms: [f64; 2], equations: usize) -> LineError {
+    let norms = LineNorms {
+        residual: norms[0],
+        measured: norms[1],
+        variation: norms[1],
+    };
+    LineError::new(name, unit, &norms, equations)
 }

@@ -8,8 +8,8 @@ use super::{Attachment, Contents, page};
 use crate::{Extent, Units, compare_with_published, numbers, summary, tables};
 use example::{HOSTILE, identification, published, series, settings, units};
 use overact_identification::{
-    CalibratedParameter, Calibration, CalibrationScope, Estimate, Figures, HeldParameter,
-    Identification, ParameterEstimate, ParameterKind, Thresholds,
+    CalibratedParameter, Calibration, CalibrationScope, Estimate, Figures, Grade, HeldParameter,
+    Identification, LineError, LineNorms, ParameterEstimate, ParameterKind, Stage, Thresholds,
 };
 use roxmltree::{Document, ParsingOptions};
 
@@ -201,6 +201,114 @@ fn a_short_summary_has_fifty_lines_and_what_may_be_used() {
 }
 
 #[test]
+fn a_regrouped_parameter_has_its_sum_beside_it() {
+    let mut identification = identification();
+    let base = &mut identification.base_parameters[0];
+    base.name = String::from("m_platformR");
+    base.parameter = String::from("m_platform");
+    base.regrouping.truncate(1);
+    base.regrouping[0].parameter = String::from("ia_1");
+    let text = summary(&identification, None, Extent::Whole);
+    let sum = "m_platform + 0.0784 ia_1";
+    assert!(text.contains(&format!("\nm_platformR = {sum}\n")), "{text}");
+    let html = page(&Contents {
+        identification: &identification,
+        units: &Units::default(),
+        summary: None,
+        source: None,
+        drawing: None,
+        published: None,
+        attachments: &[],
+    });
+    let cell = format!("m_platformR<span class=\"sum\">= {sum}</span>");
+    assert!(html.contains(&cell));
+}
+
+#[test]
+fn friction_correlation_and_range_have_plots() {
+    let identification = identification();
+    let html = full(&identification);
+    let document = parsed(&html);
+    let ids: Vec<&str> = { document.descendants() }
+        .filter_map(|node| node.attribute("id"))
+        .collect();
+    for id in [
+        "figure-first",
+        "figure-friction-actuators",
+        "figure-correlation-platform",
+        "figure-ranges",
+    ] {
+        assert!(ids.contains(&id), "{id}");
+    }
+    let place = |id: &str| ids.iter().position(|one| *one == id);
+    assert!(place("figure-first") < place("verdict"));
+    assert!(place("verdict") < place("parameters") && place("parameters") < place("checks"));
+    assert!(html.contains("Strongest: ") && html.contains("−0.87"));
+    let dots = { document.descendants() }
+        .find(|node| node.attribute("id") == Some("figure-friction-actuators"))
+        .map(|figure| {
+            let all = figure.descendants();
+            all.filter(|node| node.tag_name().name() == "circle")
+                .count()
+        });
+    // One residual has no velocity.
+    assert_eq!(dots, Some(1));
+}
+
+#[test]
+fn every_line_has_its_errors_in_one_unit() {
+    let identification = identification();
+    let text = summary(&identification, None, Extent::Whole);
+    let row = |name: &str| {
+        let mut lines = text.lines();
+        let line = lines.find(|line| line.starts_with(name));
+        let words = line.map(|line| line.split_whitespace().map(str::to_owned));
+        words.into_iter().flatten().collect::<Vec<String>>()
+    };
+    let line = row("x (platform)");
+    assert_eq!(
+        line[..6],
+        ["x", "(platform)", "N", "0.0316", "2.5", "97.50"],
+        "{text}"
+    );
+    let torque = row("leg1 (torque)");
+    assert_eq!(torque[7..], ["0.1", "5", "95.00"], "{torque:?}");
+    // The largest error of a line, since forces and moments have no common norm.
+    let mut mixed = identification;
+    let platform = mixed
+        .estimates
+        .iter_mut()
+        .find(|one| one.stage == Stage::Recommended);
+    let lines = &mut platform.expect("an estimate").lines;
+    let norms = LineNorms {
+        residual: 3.0,
+        measured: 10.0,
+        variation: 10.0,
+    };
+    lines.push(LineError::new("phi", "N m", &norms, 1000));
+    let text = summary(&mixed, None, Extent::Whole);
+    assert!(
+        text.contains("at most 30.0000 % of a torque (training)"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_reason_of_two_models_is_reported_once() {
+    let mut identification = identification();
+    let check = &mut identification.checks[0];
+    (check.passed, check.grade) = (false, Grade::DoNotUse);
+    (check.models, check.stages) = (Vec::new(), Vec::new());
+    check.words = String::from("the torques are late");
+    let name = check.kind.name();
+    identification.warnings.push(check.words.clone());
+    let text = summary(&identification, None, Extent::Whole);
+    assert_eq!(text.matches("the torques are late").count(), 1, "{text}");
+    let again = text.lines().find(|line| line.contains("as reported above"));
+    assert!(again.is_some_and(|line| line.contains(name)), "{text}");
+}
+
+#[test]
 fn what_there_is_not_is_not_spoken_of() {
     let mut identification = identification();
     let of = |identification: &Identification, units: &Units| {
@@ -240,16 +348,22 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
         .filter(|node| node.tag_name().name() == "section")
         .filter_map(|node| node.attribute("id"))
         .collect();
-    assert_eq!(sections[..3], ["verdict", "checks", "parameters"]);
-    assert_eq!(sections.len(), 14, "{sections:?}");
+    assert_eq!(sections[..3], ["verdict", "parameters", "scope"]);
+    assert_eq!(sections.len(), 18, "{sections:?}");
+    let summary = "Platform projection, recommended parameters: use it for what is listed. Actuator projection, recommended parameters: do not use it.";
+    let header = document
+        .descendants()
+        .find(|node| node.tag_name().name() == "header");
+    let header = text(header.expect("a head"));
+    assert!(header.contains(summary), "{header}");
+    let scope = text(element(&document, "scope"));
+    assert!(scope.contains("The gains are right"), "{scope}");
     let verdict = text(element(&document, "verdict"));
     for words in [
-        "Platform projection, recommended parameters: use it for what is listed. Actuator projection, recommended parameters: do not use it.",
         "Usable if the named fault is the cause: m_platformR.",
         "One parameter is biased. Details.",
         "leg1: clipped. Details.",
         "All base parameters: use it.",
-        "The gains are right",
     ] {
         assert!(verdict.contains(words), "{words} in {verdict}");
     }

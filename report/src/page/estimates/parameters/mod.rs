@@ -11,6 +11,7 @@ mod regroupings;
 use crate::{
     choice::{answers, case_heading, of_stage, stage_name},
     intervals::{half_width_percent, is_outside, misses_truth},
+    line_errors::relative_words,
     page::{
         Contents,
         elements::{
@@ -95,7 +96,7 @@ fn table(identification: &Identification, estimates: &[&Estimate]) -> String {
     let rows = names.iter().map(|name| {
         let first = estimates.iter().find_map(|one| find(one, name));
         let mut row = vec![
-            Cell::text(name),
+            regroupings::named(identification, name),
             Cell::text(first.map_or("", |one| &one.unit)).class("unit"),
         ];
         if truth {
@@ -197,16 +198,16 @@ fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
             let answer = answers.iter().find(|answer| answer.model == one.model);
             let recommended = answer.map_or_else(String::new, |answer| {
                 format!(
-                    " (the {} recommended ones: {} %)",
+                    " (the {} recommended ones: {})",
                     answer.parameters.len(),
-                    significant(answer.relative_error_percent, 3)
+                    relative_words(&answer.lines, answer.relative_error_percent, 3)
                 )
             });
             format!(
-                "{}: {} parameters, relative residual {} %{recommended}.",
+                "{}: {} parameters, relative residual {}{recommended}.",
                 case_heading(one.model),
                 one.parameters.len(),
-                significant(one.relative_error_percent, 3),
+                relative_words(&one.lines, one.relative_error_percent, 3),
             )
         })
         .collect();
@@ -229,9 +230,9 @@ fn base(identification: &Identification) -> String {
         .iter()
         .map(|one| {
             format!(
-                "{} {} %",
+                "{} {}",
                 one.model.label(),
-                significant(one.relative_error_percent, 3)
+                relative_words(&one.lines, one.relative_error_percent, 3)
             )
         })
         .collect();

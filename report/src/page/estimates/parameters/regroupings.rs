@@ -5,9 +5,25 @@ use crate::{
         markup::{details, paragraph},
         table::{Cell, Table},
     },
-    terminal::signed_term,
+    terminal::sum,
+    text::escape,
 };
 use overact_identification::Identification;
+
+/// Cell with a parameter's name, and below it the sum that it is.
+pub(super) fn named(identification: &Identification, name: &str) -> Cell {
+    let mut base = identification.base_parameters.iter();
+    let base = base.find(|one| one.name == name && !one.regrouping.is_empty());
+    let Some(base) = base else {
+        return Cell::text(name);
+    };
+    Cell::markup(format!(
+        "{}<span class=\"sum\">= {}</span>",
+        escape(name),
+        escape(&sum(base))
+    ))
+    .class("defined")
+}
 
 /// Collapsed table of the sums that the base parameters are.
 pub(super) fn regroupings(identification: &Identification) -> String {
@@ -19,12 +35,10 @@ pub(super) fn regroupings(identification: &Identification) -> String {
         return String::new();
     }
     let rows = regrouped.iter().map(|base| {
-        let terms: String = base.regrouping.iter().map(signed_term).collect();
-        let sum = format!("{}{terms}", base.parameter);
         vec![
             Cell::text(&base.name),
             Cell::text(&base.unit).class("unit"),
-            Cell::text(&sum).class("prose"),
+            Cell::text(&sum(base)).class("prose"),
         ]
     });
     let table = Table {
