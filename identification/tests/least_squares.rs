@@ -51,6 +51,7 @@ fn system(lines: &[(DMatrix<f64>, DVector<f64>)]) -> System {
     });
     let mut system = System::new(Projection::Platform, &common::PAIR.info(), TRUTH.len());
     system.line_names = ["x", "y", "phi"].map(String::from).to_vec();
+    system.line_units = vec!["N", "N", "N m"];
     system.lines = factors.collect();
     system
 }
