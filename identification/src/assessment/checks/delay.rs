@@ -2,7 +2,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Tested, parabola, tested, worst_harm},
+    fault_hypotheses::{TestedHypothesis, parabola, tested, worst_harm},
     level::{level, origin},
 };
 use crate::{
@@ -41,7 +41,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let intervals = context.dataset.runs.iter();
     let intervals = intervals.map(|run| HARMLESS / run.sampling_frequency());
     let harmless = intervals.fold(0.0, f64::max);
-    let beyond = |one: &&Tested| one.wald.probability_beyond(harmless) < level;
+    let beyond = |one: &&TestedHypothesis| one.wald.probability_beyond(harmless) < level;
     let most_significant = found.iter().filter(beyond);
     let most_significant =
         most_significant.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained));
@@ -132,7 +132,7 @@ struct TestLimits {
 
 impl TestLimits {
     /// The check of one delay, without words.
-    fn check(&self, context: &Context<'_>, scores: &Scores, one: &Tested) -> Check {
+    fn check(&self, context: &Context<'_>, scores: &Scores, one: &TestedHypothesis) -> Check {
         let wald = &one.wald;
         let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
         let beyond = (size.abs() - 1e3 * self.harmless).max(0.0);

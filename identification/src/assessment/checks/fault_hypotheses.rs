@@ -10,20 +10,20 @@ use crate::{
     result::{Estimate, ParameterEstimate, Stage},
 };
 
+/// Half width of a 95 % interval, in standard deviations.
+const HALF_WIDTH: f64 = 1.96;
+
 /// A fault is harmful if it shifts a parameter by more than this many standard deviations.
-pub(in crate::assessment) const HARMFUL: f64 = 3.0;
+pub(in crate::assessment) const HARMFUL: f64 = HALF_WIDTH;
 
 /// A harmful fault spoils all parameters shifted by more than this many standard deviations.
 const SPOILING: f64 = 1.0;
 
 /// Another hypothesis is likely if it explains this fraction of the best one's part.
-const LIKELY: f64 = 0.5;
-
-/// Half width of a 95 % interval, in standard deviations.
-const HALF_WIDTH: f64 = 1.96;
+pub(super) const LIKELY: f64 = 0.5;
 
 /// A tested fault hypothesis.
-pub(super) struct Tested {
+pub(super) struct TestedHypothesis {
     pub(super) group: Group,
     pub(super) wald: WaldTest,
     /// Size to use instead of the fitted one, if another test determines it better.
@@ -32,7 +32,7 @@ pub(super) struct Tested {
     pub(super) band_factor: f64,
 }
 
-impl Tested {
+impl TestedHypothesis {
     /// The fault; not for a payload.
     pub(super) fn hypothesis(&self, scores: &Scores) -> FaultHypothesis {
         self.group.fault_hypothesis(scores)
@@ -119,12 +119,15 @@ pub(super) struct Harm {
 }
 
 /// Tests groups of columns against the base parameters; skips untestable ones.
-pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Vec<Tested> {
+pub(super) fn tested(
+    scores: &Scores,
+    groups: impl Iterator<Item = Group>,
+) -> Vec<TestedHypothesis> {
     groups
         .filter_map(|group| {
             let wald = scores.test(&group, scores.selected())?;
             let size = None;
-            Some(Tested {
+            Some(TestedHypothesis {
                 group,
                 wald,
                 size,
@@ -135,15 +138,15 @@ pub(super) fn tested(scores: &Scores, groups: impl Iterator<Item = Group>) -> Ve
 }
 
 /// Tests one hypothesis against the base parameters; `None` if absent or untestable.
-pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<Tested> {
+pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<TestedHypothesis> {
     let place = scores.hypotheses.iter().position(|one| *one == wanted)?;
     tested(scores, std::iter::once(Group::hypothesis(place))).pop()
 }
 
 /// The hypothesis that explains most of the residual, among those significant at `level`.
-pub(super) fn most_significant(all: &[Tested], level: f64) -> Option<&Tested> {
+pub(super) fn most_significant(all: &[TestedHypothesis], level: f64) -> Option<&TestedHypothesis> {
     let beyond = all.iter().filter(|one| one.wald.probability < level);
-    beyond.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))
+    beyond.max_by(|a, b| a.wald.evidence().total_cmp(&b.wald.evidence()))
 }
 
 /// Names of the base parameters of dry friction.
@@ -164,8 +167,8 @@ pub(super) fn dry_friction(context: &Context<'_>) -> Vec<String> {
 pub(super) fn worst_harm(
     context: &Context<'_>,
     scores: &Scores,
-    all: &[Tested],
-    most_significant: &Tested,
+    all: &[TestedHypothesis],
+    most_significant: &TestedHypothesis,
     level: f64,
 ) -> Harm {
     let likely = all.iter().filter(|one| {
@@ -196,7 +199,7 @@ pub(super) fn worst_harm(
 }
 
 /// Effect of a fault on the base and recommended parameters of the first model.
-pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &Tested) -> Harm {
+pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &TestedHypothesis) -> Harm {
     let Some(base) = context.estimates_of(Stage::Base).next() else {
         return Harm::none();
     };
@@ -272,7 +275,7 @@ impl Harm {
     }
 
     /// The grade for a number of spoiled parameters among all.
-    fn grade(spoiled: usize, parameters: usize) -> Grade {
+    pub(super) fn grade(spoiled: usize, parameters: usize) -> Grade {
         match spoiled {
             0 => Grade::Use,
             _ if 2 * spoiled > parameters => Grade::DoNotUse,

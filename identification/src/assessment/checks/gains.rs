@@ -2,7 +2,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Harm, Tested, most_significant, only, parabola, worst_harm},
+    fault_hypotheses::{Harm, TestedHypothesis, most_significant, only, parabola, worst_harm},
     level::{level, origin},
 };
 use crate::{
@@ -39,7 +39,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }
     let count = found.len() + inseparable.len();
     let level = level(count);
-    let drive = |one: &Tested| match one.hypothesis(scores) {
+    let drive = |one: &TestedHypothesis| match one.hypothesis(scores) {
         FaultHypothesis::Gain(actuator) => name(actuator),
         _ => "",
     };
@@ -73,7 +73,7 @@ fn percent(value: f64) -> String {
 }
 
 /// The passed check, with its detection limits.
-fn passed_check(found: &[Tested], detectable: &[Detectable]) -> Check {
+fn passed_check(found: &[TestedHypothesis], detectable: &[Detectable]) -> Check {
     let visible: Vec<String> = detectable
         .iter()
         .map(|one| {
@@ -101,7 +101,7 @@ fn passed_check(found: &[Tested], detectable: &[Detectable]) -> Check {
 }
 
 /// The failed check of one drive.
-fn failed_check(worst: &Tested, harm: &Harm, actuator: &str) -> Check {
+fn failed_check(worst: &TestedHypothesis, harm: &Harm, actuator: &str) -> Check {
     let size = worst.wald.size();
     let others = "those of the other drives";
     let by = if size.abs() > LARGEST {

@@ -4,7 +4,9 @@
 
 use super::{
     Context,
-    fault_hypotheses::{HARMFUL, Tested, harm, most_significant, parabola, tested, worst_harm},
+    fault_hypotheses::{
+        HARMFUL, TestedHypothesis, harm, most_significant, parabola, tested, worst_harm,
+    },
     level::{level, origin},
 };
 use crate::{
@@ -27,6 +29,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             FaultHypothesis::Offset(_)
                 | FaultHypothesis::Scale(_)
                 | FaultHypothesis::Scales
+                | FaultHypothesis::Gear(_)
                 | FaultHypothesis::Eccentric(..)
                 | FaultHypothesis::Play(_)
                 | FaultHypothesis::Length(_)
@@ -58,6 +61,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         FaultHypothesis::Eccentric(..) => {
             "Its disc may be out of centre, or its scale wrong: check its mounting and its gear"
         }
+        FaultHypothesis::Gear(_) => "Check the number of teeth, or the lead of its screw",
         FaultHypothesis::Scale(_) | FaultHypothesis::Scales => {
             "Check the ratio of its gear or the lead of its screw, its increments, and its zero"
         }
@@ -81,10 +85,14 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 "excess of the described value",
             )
         }
-        FaultHypothesis::Scale(_) | FaultHypothesis::Scales => {
+        FaultHypothesis::Scale(_) | FaultHypothesis::Scales | FaultHypothesis::Gear(_) => {
             let whose = match hypothesis {
                 FaultHypothesis::Scales => String::from("all drives"),
                 _ => format!("`{name}`"),
+            };
+            let torques = match hypothesis {
+                FaultHypothesis::Gear(_) => ", and torques wrong by the inverse factor",
+                _ => "",
             };
             let [size, deviation] = [worst.wald.size(), worst.wald.deviation]
                 .map(|part| significant(100.0 * part.abs(), 3));
@@ -94,7 +102,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 "small"
             };
             let words = format!(
-                "the torques indicate that positions of {whose} are {size} % too {sense} (standard deviation {deviation} %); {}. {zero}",
+                "the torques indicate that positions of {whose} are {size} % too {sense} (standard deviation {deviation} %){torques}; {}. {zero}",
                 harm.words()
             );
             let title = format!("Residual for other scales of the positions of {whose}");
@@ -139,7 +147,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 fn passed_check(
     context: &Context<'_>,
     scores: &Scores,
-    found: &[Tested],
+    found: &[TestedHypothesis],
     tests: usize,
     level: f64,
 ) -> Check {
@@ -179,10 +187,10 @@ fn passed_check(
 fn detection_limits(
     context: &Context<'_>,
     scores: &Scores,
-    found: &[Tested],
+    found: &[TestedHypothesis],
     level: f64,
 ) -> Vec<(FaultHypothesis, Detectable)> {
-    let limit = |one: &Tested| {
+    let limit = |one: &TestedHypothesis| {
         let hypothesis = one.hypothesis(scores);
         let (unit, visible) = (unit(context, hypothesis), one.wald.visible(level));
         let limit = Detectable {
@@ -192,16 +200,16 @@ fn detection_limits(
         };
         (hypothesis, limit)
     };
-    let has_limit = |one: &&Tested| {
+    let has_limit = |one: &&TestedHypothesis| {
         !matches!(
             one.hypothesis(scores),
-            FaultHypothesis::Play(_) | FaultHypothesis::Eccentric(..)
+            FaultHypothesis::Play(_) | FaultHypothesis::Eccentric(..) | FaultHypothesis::Gear(_)
         )
     };
     found.iter().filter(has_limit).map(limit).collect()
 }
 
-fn ratio(one: &Tested) -> f64 {
+fn ratio(one: &TestedHypothesis) -> f64 {
     one.wald.size().abs() / one.wald.deviation
 }
 
@@ -210,6 +218,7 @@ fn name(context: &Context<'_>, hypothesis: FaultHypothesis) -> String {
     let name = match hypothesis {
         FaultHypothesis::Offset(at)
         | FaultHypothesis::Scale(at)
+        | FaultHypothesis::Gear(at)
         | FaultHypothesis::Eccentric(at, _)
         | FaultHypothesis::Play(at) => context.model.info().actuators.get(at).copied(),
         FaultHypothesis::Length(at) => context.dataset.variants.get(at).map(|one| one.length),
@@ -221,7 +230,7 @@ fn name(context: &Context<'_>, hypothesis: FaultHypothesis) -> String {
 /// Unit of the fault's size: of an actuator's position, or of a length.
 fn unit(context: &Context<'_>, hypothesis: FaultHypothesis) -> &'static str {
     match hypothesis {
-        FaultHypothesis::Scale(_) | FaultHypothesis::Scales => "",
+        FaultHypothesis::Scale(_) | FaultHypothesis::Scales | FaultHypothesis::Gear(_) => "",
         FaultHypothesis::Offset(at)
         | FaultHypothesis::Eccentric(at, _)
         | FaultHypothesis::Play(at)

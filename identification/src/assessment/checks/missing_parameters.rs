@@ -4,7 +4,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Harm, Tested, harm, most_significant, tested, worst_harm},
+    fault_hypotheses::{Harm, TestedHypothesis, harm, most_significant, tested, worst_harm},
     level::{level, origin},
 };
 use crate::{
@@ -25,13 +25,13 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let found = tested(
         scores,
-        Group::hypotheses(scores, |one| one.shape().is_some()),
+        Group::hypotheses(scores, FaultHypothesis::is_missing_effect),
     );
     if found.is_empty() {
         return Ok(Vec::new());
     }
     let (tests, level) = (found.len(), level(found.len()));
-    let ratio = |one: &Tested| one.wald.strength();
+    let ratio = |one: &TestedHypothesis| one.wald.strength();
     let worst = most_significant(&found, level);
     let limit = worst.unwrap_or(&found[0]).wald.quantile(level);
     let check = Check::new(CheckKind::MissingParameter, About::Model, "")
@@ -65,7 +65,9 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .against(limit, origin(tests))
         .with_harm(&harm);
     let actuator = match hypothesis {
-        FaultHypothesis::Torque(actuator, _) => context.model.info().actuators.get(actuator),
+        FaultHypothesis::Torque(actuator, _) | FaultHypothesis::Crosstalk { to: actuator, .. } => {
+            context.model.info().actuators.get(actuator)
+        }
         _ => None,
     };
     Ok(vec![match actuator {
@@ -78,22 +80,37 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 fn words(
     context: &Context<'_>,
     hypothesis: FaultHypothesis,
-    worst: &Tested,
+    worst: &TestedHypothesis,
     rest: String,
 ) -> String {
     let info = context.model.info();
-    let (what, name, shape) = match hypothesis {
-        FaultHypothesis::Force(line, shape) => ("force on", info.coordinates.get(line), shape),
-        FaultHypothesis::Torque(actuator, shape) => {
-            ("torque of", info.actuators.get(actuator), shape)
+    let named = |what: &str, name: Option<&&str>| {
+        format!("{what} {}", called(name.copied().unwrap_or_default()))
+    };
+    let drive = |actuator: usize| named("torque of", info.actuators.get(actuator));
+    let what = match hypothesis {
+        FaultHypothesis::Force(line, _) => named("force on", info.coordinates.get(line)),
+        FaultHypothesis::Torque(actuator, _) | FaultHypothesis::Crosstalk { to: actuator, .. } => {
+            drive(actuator)
         }
-        _ => return String::new(),
+        FaultHypothesis::Potential(_) => String::from("first joints"),
+        _ => String::from("torque of every drive"),
     };
     let finding = Finding {
-        what: format!("{what} {}", called(name.copied().unwrap_or_default())),
+        what,
         size: worst.wald.largest(),
         strength: worst.wald.strength(),
         rest,
+    };
+    if matches!(hypothesis, FaultHypothesis::Potential(_)) {
+        return finding.of_potential();
+    }
+    let Some(shape) = hypothesis.shape() else {
+        let neighbour = match hypothesis {
+            FaultHypothesis::Crosstalk { from, .. } => drive(from),
+            _ => String::from("torques of its neighbours"),
+        };
+        return finding.of_crosstalk(&neighbour);
     };
     match hypothesis {
         FaultHypothesis::Torque(actuator, Shape::Stribeck) => {
@@ -101,9 +118,10 @@ fn words(
         }
         FaultHypothesis::Torque(actuator, _) => {
             let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
-            finding.words(shape, shape.unit(revolute))
+            finding.words(shape, Some(shape.unit(revolute)))
         }
-        _ => finding.words(shape, ""),
+        FaultHypothesis::Force(..) => finding.words(shape, Some("")),
+        _ => finding.words(shape, None),
     }
 }
 
@@ -113,21 +131,26 @@ fn words(
 fn others(
     context: &Context<'_>,
     scores: &Scores,
-    found: &[Tested],
+    found: &[TestedHypothesis],
     strongest: FaultHypothesis,
     level: f64,
 ) -> Vec<(String, Harm)> {
     let info = context.model.info();
     let place = |hypothesis: FaultHypothesis| match hypothesis {
-        FaultHypothesis::Torque(actuator, _) => (0, actuator),
+        FaultHypothesis::Torque(actuator, _) | FaultHypothesis::Crosstalk { to: actuator, .. } => {
+            (0, actuator)
+        }
         FaultHypothesis::Force(line, _) => (1, line),
         _ => (2, 0),
     };
-    let place_of = |one: &Tested| place(one.hypothesis(scores));
+    let place_of = |one: &TestedHypothesis| place(one.hypothesis(scores));
     let mut places: Vec<(usize, usize)> = found.iter().map(place_of).collect();
     places.sort_unstable();
     places.dedup();
-    places.retain(|one| *one != place(strongest));
+    places.retain(|one| *one != place(strongest) && one.0 < 2);
+    if place(strongest).0 == 2 {
+        return Vec::new();
+    }
     let worst_of = |at: (usize, usize)| {
         let beyond = found
             .iter()
@@ -167,14 +190,33 @@ struct Finding {
 }
 
 impl Finding {
-    /// Sentence for a shape whose size has a unit.
-    fn words(&self, shape: Shape, unit: &str) -> String {
-        let size = format!(", by {} {unit}", significant(self.size, 3));
-        let by = match shape {
+    /// Sentence for a constant force or a weight.
+    fn of_potential(&self) -> String {
+        format!(
+            "the {} feel a further potential ({:.1} standard deviations), as of a constant force on a body, a balancer, a cable or a tilted base, {}. Look for such forces and add them to the description, or check the direction of `gravity`",
+            self.what, self.strength, self.rest
+        )
+    }
+
+    /// Sentence for crosstalk from a `neighbour`.
+    fn of_crosstalk(&self, neighbour: &str) -> String {
+        format!(
+            "the {} contains up to {} % of the {neighbour} ({:.1} standard deviations), {}. Look for crosstalk in the measurement of the torques, for a coupling of the gears that the description lacks, and for swapped columns",
+            self.what,
+            significant(100.0 * self.size.abs(), 3),
+            self.strength,
+            self.rest
+        )
+    }
+
+    /// Sentence for a shape whose size has a `unit`; `None` for several sizes.
+    fn words(&self, shape: Shape, unit: Option<&str>) -> String {
+        let by = match (shape, unit) {
             // The waves are nearly collinear, so their sizes have no meaning.
-            Shape::Waves => "",
-            _ => size.trim_end(),
+            (Shape::Waves | Shape::LoadWaves, _) | (_, None) => String::new(),
+            (_, Some(unit)) => format!(", by {} {unit}", significant(self.size, 3)),
         };
+        let by = by.trim_end();
         format!(
             "the {} depends on {} beyond the model{by} ({:.1} standard deviations), {}. Add the missing term to the description, or look for other differences from it",
             self.what,
@@ -226,7 +268,7 @@ impl Finding {
 }
 
 /// Plot of size by standard deviation for all hypotheses, grouped by shape.
-fn evidence(scores: &Scores, found: &[Tested], limit: f64) -> Evidence {
+fn evidence(scores: &Scores, found: &[TestedHypothesis], limit: f64) -> Evidence {
     let mut points: Vec<(Shape, Curve)> = Vec::new();
     for one in found {
         let (FaultHypothesis::Torque(number, shape) | FaultHypothesis::Force(number, shape)) =

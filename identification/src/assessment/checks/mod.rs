@@ -2,6 +2,7 @@
 //!
 //! The table [`CHECKS`] lists them.
 
+mod admissible_faults;
 mod clock;
 mod closure;
 mod consistency;
@@ -172,6 +173,7 @@ pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         all.extend(check(context)?);
     }
     all.extend(relative_error::silent(context, &all));
+    admissible_faults::spoil(context, &mut all);
     for check in &mut all {
         check.words = with_joints(&check.words);
     }

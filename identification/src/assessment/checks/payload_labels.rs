@@ -4,7 +4,7 @@ use overact::StandardParameter;
 
 use super::{
     Context,
-    fault_hypotheses::{Tested, harm, tested},
+    fault_hypotheses::{TestedHypothesis, harm, tested},
     level::{level, origin},
 };
 use crate::{
@@ -89,7 +89,13 @@ fn nothing_carried(context: &Context<'_>) -> Option<Check> {
 }
 
 /// The check of one run.
-fn of_run(context: &Context<'_>, scores: &Scores, log: &Log, one: &Tested, level: f64) -> Check {
+fn of_run(
+    context: &Context<'_>,
+    scores: &Scores,
+    log: &Log,
+    one: &TestedHypothesis,
+    level: f64,
+) -> Check {
     let wald = &one.wald;
     let check = Check::new(CheckKind::PayloadLabel, About::Model, "")
         .in_run(log.name())

@@ -11,7 +11,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
+    fault_hypotheses::{TestedHypothesis, dry_friction, harm, only, parabola},
     half_band::confirms,
     level::{level, origin},
     smoothing::{OF_MEAN, UNIT, harmless},
@@ -31,7 +31,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     };
     // Smoothing a step w removes s Σ ẇ²/Σ w² of it, and Σ ẇ² grows with the bandwidth.
-    let wider = |one: Tested| Tested {
+    let wider = |one: TestedHypothesis| TestedHypothesis {
         band_factor: scores.narrower as f64,
         ..one
     };
@@ -44,7 +44,7 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let bent = friction.filter(|one| one.wald.probability < limits.level);
     if let Some(found) = filtered(context, all.as_ref(), limits.level)? {
-        let explains = |one: &Tested| one.wald.explained;
+        let explains = |one: &TestedHypothesis| one.wald.explained;
         if bent
             .as_ref()
             .is_none_or(|one| explains(one) <= explains(found))
@@ -76,9 +76,9 @@ fn time(size: f64) -> String {
 /// The filter of all signals, if there is one. Negative sizes have no physical meaning.
 fn filtered<'a>(
     context: &Context<'_>,
-    all: Option<&'a Tested>,
+    all: Option<&'a TestedHypothesis>,
     level: f64,
-) -> Result<Option<&'a Tested>, Error> {
+) -> Result<Option<&'a TestedHypothesis>, Error> {
     let Some(one) = all else {
         return Ok(None);
     };
@@ -96,7 +96,13 @@ struct TestLimits {
 
 impl TestLimits {
     /// A check with its words.
-    fn check(&self, context: &Context<'_>, scores: &Scores, one: &Tested, words: String) -> Check {
+    fn check(
+        &self,
+        context: &Context<'_>,
+        scores: &Scores,
+        one: &TestedHypothesis,
+        words: String,
+    ) -> Check {
         let wald = &one.wald;
         Check::new(CheckKind::Reversals, About::Model, words)
             .measured(wald.size().abs() / wald.deviation, "standard deviations")
@@ -117,7 +123,7 @@ impl TestLimits {
     }
 
     /// The failed check of a filter that all signals passed.
-    fn filtered(&self, context: &Context<'_>, scores: &Scores, one: &Tested) -> Check {
+    fn filtered(&self, context: &Context<'_>, scores: &Scores, one: &TestedHypothesis) -> Check {
         let mut harm = harm(context, scores, one);
         // The filter also rounds reversals.
         harm.spoil(dry_friction(context));
@@ -130,7 +136,7 @@ impl TestLimits {
     }
 
     /// The failed check of dry friction that differs around reversals.
-    fn bent(&self, context: &Context<'_>, scores: &Scores, one: &Tested) -> Check {
+    fn bent(&self, context: &Context<'_>, scores: &Scores, one: &TestedHypothesis) -> Check {
         let harm = harm(context, scores, one);
         let words = if one.wald.size() > 0.0 {
             format!(

@@ -11,7 +11,7 @@
 
 use super::{
     Context,
-    fault_hypotheses::{Tested, dry_friction, harm, only, parabola},
+    fault_hypotheses::{TestedHypothesis, dry_friction, harm, only, parabola},
     filters::{equal_bands, torque_band},
     half_band::confirms,
     level::{level, origin},
@@ -50,10 +50,11 @@ pub(super) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(Vec::new());
     };
     // Effect on all parameters, including dry friction, at the size found without dry friction.
-    let whole = only(scores, FaultHypothesis::SmoothingWithFriction).map(|whole| Tested {
-        size: Some(one.wald.size()),
-        ..whole
-    });
+    let whole =
+        only(scores, FaultHypothesis::SmoothingWithFriction).map(|whole| TestedHypothesis {
+            size: Some(one.wald.size()),
+            ..whole
+        });
     let whole = whole.as_ref().unwrap_or(&one);
     let level = level(1);
     let harmless = harmless(context);
