@@ -96,38 +96,42 @@ pub(crate) fn rests_on(model: &dyn Model, before: PreviouslyIdentified) -> Optio
     Some(format!("Assumption that these data cannot test: {what}."))
 }
 
-/// A kind of fault whose detection limit is reported.
+/// A fault whose detection limit is reported.
 ///
 /// `check` looks for the fault. `is_part` says that its size is relative, with 1 as 100 %.
-struct Kind {
+struct LimitedFault {
     check: CheckKind,
     is_part: bool,
     name: &'static str,
 }
 
-/// Constructs a kind of faults.
-const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Kind {
-    Kind {
+/// Constructs a fault with a limit.
+const fn limited(check: CheckKind, is_part: bool, name: &'static str) -> LimitedFault {
+    LimitedFault {
         check,
         is_part,
         name,
     }
 }
 
-/// All kinds of faults whose detection limits are reported.
-const KINDS: [Kind; 8] = [
-    kind(CheckKind::EncoderOffset, false, "zero of an encoder"),
-    kind(CheckKind::EncoderOffset, true, "scale of an encoder"),
-    kind(CheckKind::Length, false, "length"),
-    kind(CheckKind::WrongGain, true, "gain of one drive"),
-    kind(CheckKind::Delay, false, "delay of the torques"),
-    kind(CheckKind::Filters, false, "smoothing of the torques"),
-    kind(
+/// All faults whose detection limits are reported.
+const LIMITED_FAULTS: [LimitedFault; 8] = [
+    limited(CheckKind::EncoderOffset, false, "zero of an encoder"),
+    limited(
+        CheckKind::EncoderOffset,
+        true,
+        "scale of an encoder or ratio of a gear",
+    ),
+    limited(CheckKind::Length, false, "length"),
+    limited(CheckKind::WrongGain, true, "gain of one drive"),
+    limited(CheckKind::Delay, false, "delay of the torques"),
+    limited(CheckKind::Filters, false, "smoothing of the torques"),
+    limited(
         CheckKind::Reversals,
         false,
         "equal smoothing of all signals",
     ),
-    kind(CheckKind::Clock, true, "sampling frequency"),
+    limited(CheckKind::Clock, true, "sampling frequency"),
 ];
 
 /// Relative sizes above 100 % are reported as 100 %.
@@ -137,7 +141,7 @@ const WHOLE: f64 = 1.0;
 ///
 /// The harm is the parameter shift at the smallest detectable size.
 pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
-    let worst_of = |kind: &Kind| {
+    let worst_of = |kind: &LimitedFault| {
         let own = checks.iter().filter(|one| one.passed);
         // One check tests offsets and lengths; it is filed under the kind that it found.
         let geometry = [CheckKind::EncoderOffset, CheckKind::Length];
@@ -152,7 +156,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             all.filter(|one| one.shift_deviations > HARMFUL && one.shift_deviations.is_finite());
         harmful.max_by(|a, b| a.shift_deviations.total_cmp(&b.shift_deviations))
     };
-    let told = KINDS.iter().filter_map(|kind| {
+    let told = LIMITED_FAULTS.iter().filter_map(|kind| {
         if let Some(never) = never(checks, kind) {
             return Some(never);
         }
@@ -183,7 +187,7 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
 }
 
 /// Names the drives whose gain error these data cannot detect, or only beyond 100 %.
-fn never(checks: &[Check], kind: &Kind) -> Option<String> {
+fn never(checks: &[Check], kind: &LimitedFault) -> Option<String> {
     let own = checks
         .iter()
         .filter(|one| one.kind == kind.check && one.passed);
@@ -230,7 +234,7 @@ mod tests {
         ]);
         let expected = [
             "zero of an encoder: 0.0091 rad of `left` would shift `zz_1` by 13 σ",
-            "scale of an encoder: 0.1 % of all drives would shift `zz_1` by 16 σ",
+            "scale of an encoder or ratio of a gear: 0.1 % of all drives would shift `zz_1` by 16 σ",
             "gain of one drive: 10 % of `right` would shift `zz_1` by 86 σ",
             "delay of the torques: 0.28 ms would shift `zz_1` by 5 σ",
             "smoothing of the torques: a mean over 12 ms would shift `zz_1` by 8 σ",

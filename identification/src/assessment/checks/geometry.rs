@@ -203,7 +203,7 @@ fn detection_limits(
     let has_limit = |one: &&TestedHypothesis| {
         !matches!(
             one.hypothesis(scores),
-            FaultHypothesis::Play(_) | FaultHypothesis::Eccentric(..) | FaultHypothesis::Gear(_)
+            FaultHypothesis::Play(_) | FaultHypothesis::Eccentric(..)
         )
     };
     found.iter().filter(has_limit).map(limit).collect()
