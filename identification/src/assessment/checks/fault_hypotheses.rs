@@ -13,10 +13,12 @@ use crate::{
 /// Half width of a 95 % interval, in standard deviations.
 const HALF_WIDTH: f64 = 1.96;
 
-/// A fault is harmful if it shifts a parameter by more than this many standard deviations.
-pub(in crate::assessment) const HARMFUL: f64 = HALF_WIDTH;
+/// Detection limits are reported if such a fault shifts a parameter by more than this many standard
+/// deviations.
+pub(in crate::assessment) const HARMFUL: f64 = 3.0;
 
-/// A harmful fault spoils all parameters shifted by more than this many standard deviations.
+/// A detected fault that shifts a parameter by more than its interval spoils all parameters that it
+/// shifts by more than this many standard deviations.
 const SPOILING: f64 = 1.0;
 
 /// Another hypothesis is likely if it explains this fraction of the best one's part.
@@ -214,7 +216,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &TestedHypoth
         parameter: name(worst.column),
         ..Harm::none()
     };
-    if harm.worst <= HARMFUL {
+    if harm.worst <= HALF_WIDTH {
         return harm;
     }
     for shift in all {
