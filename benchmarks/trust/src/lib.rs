@@ -11,10 +11,12 @@
 //!
 //! [`traps`] are data with one known fault each. `cargo run --release -p overact-trust --bin traps
 //! -- robots/dualv.toml` prints the results of identifications; with `--clean 100` it counts false
-//! alarms on faultless data. [`units`] are logs in other units; `--bin units` prints the matrix of
+//! alarms on faultless data. [`mod@faults`] repeats each fault over draws of the noise; `--bin faults`
+//! prints the table. [`units`] are logs in other units; `--bin units` prints the matrix of
 //! robots and unit errors.
 
 pub mod draw;
+pub mod faults;
 pub mod measure;
 pub mod subject;
 pub mod table;

@@ -65,6 +65,14 @@ impl Subject {
         })
     }
 
+    /// The robot in another gravity, m/s² in the base frame.
+    ///
+    /// # Errors
+    /// A robot without a model in this gravity.
+    pub fn in_gravity(&self, gravity: [f64; 3]) -> Result<Robot, Failure> {
+        Ok(self.robot.in_gravity(gravity).map_err(said)?)
+    }
+
     /// The model.
     #[must_use]
     pub fn model(&self) -> &dyn Model {

@@ -96,7 +96,7 @@ pub(crate) fn rests_on(model: &dyn Model, before: PreviouslyIdentified) -> Optio
     Some(format!("Assumption that these data cannot test: {what}."))
 }
 
-/// A kind of fault whose detection limit is reported.
+/// A fault whose detection limit is reported.
 ///
 /// `check` looks for the fault. `is_part` says that its size is relative, with 1 as 100 %.
 struct DetectableFault {
@@ -117,7 +117,11 @@ const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> Detectable
 /// All kinds of faults whose detection limits are reported.
 const KINDS: [DetectableFault; 8] = [
     kind(CheckKind::EncoderOffset, false, "zero of an encoder"),
-    kind(CheckKind::EncoderOffset, true, "scale of an encoder"),
+    kind(
+        CheckKind::EncoderOffset,
+        true,
+        "scale of an encoder or ratio of a gear",
+    ),
     kind(CheckKind::Length, false, "length"),
     kind(CheckKind::WrongGain, true, "gain of one drive"),
     kind(CheckKind::Delay, false, "delay of the torques"),
@@ -230,7 +234,7 @@ mod tests {
         ]);
         let expected = [
             "zero of an encoder: 0.0091 rad of `left` would shift `zz_1` by 13 σ",
-            "scale of an encoder: 0.1 % of all drives would shift `zz_1` by 16 σ",
+            "scale of an encoder or ratio of a gear: 0.1 % of all drives would shift `zz_1` by 16 σ",
             "gain of one drive: 10 % of `right` would shift `zz_1` by 86 σ",
             "delay of the torques: 0.28 ms would shift `zz_1` by 5 σ",
             "smoothing of the torques: a mean over 12 ms would shift `zz_1` by 8 σ",

@@ -215,3 +215,50 @@ fn shaped(record: &Record, actuator: usize, shape: &impl Fn(&Moment) -> f64) -> 
         })
         .collect()
 }
+
+/// Measures torques with a constant that falls by `part` at the peak.
+///
+/// The true torque is τ (1 - part |τ|/peak) for the measured τ.
+pub(super) fn saturating_constant(record: &mut Record, actuator: usize, part: f64) {
+    let curvature = part / peak(record, actuator).max(f64::MIN_POSITIVE);
+    // The smaller root of τ - c τ² = true torque.
+    torque(record, actuator, |own| {
+        let root = (1.0 - 4.0 * curvature * own.abs()).max(0.0).sqrt();
+        own.signum() * (1.0 - root) / (2.0 * curvature)
+    });
+}
+
+/// Adds a fraction of the torque of the second actuator of each pair to that of the first.
+pub(super) fn crosstalk(record: &mut Record, pairs: &[(usize, usize)], part: f64) {
+    let n = record.actuators.len();
+    for row in record.torques.chunks_exact_mut(n) {
+        let own = row.to_vec();
+        pairs
+            .iter()
+            .for_each(|(to, from)| row[*to] += part * own[*from]);
+    }
+}
+
+/// Changes the torque of an actuator as a function of its position.
+pub(super) fn torque_at_position(
+    record: &mut Record,
+    actuator: usize,
+    change: impl Fn(f64, f64) -> f64,
+) {
+    let n = record.actuators.len();
+    let positions = record.positions[actuator..].iter().step_by(n);
+    let torques = record.torques[actuator..].iter_mut().step_by(n);
+    torques
+        .zip(positions)
+        .for_each(|(torque, position)| *torque = change(*torque, *position));
+}
+
+/// Adds friction of a fraction of the magnitude of the torque.
+pub(super) fn load_friction(record: &mut Record, actuator: usize, part: f64) {
+    let n = record.actuators.len();
+    let signs = shaped(record, actuator, &|at: &Moment| at.velocity.signum());
+    let torques = record.torques[actuator..].iter_mut().step_by(n);
+    torques
+        .zip(signs)
+        .for_each(|(torque, sign)| *torque += part * torque.abs() * sign);
+}

@@ -2,10 +2,13 @@
 
 use super::alter;
 use overact_identification::CheckKind;
-use overact_simulation::Record;
+use overact_simulation::{Experiment, Record};
 
 /// Change of records.
 pub type Change = dyn Fn(&mut Vec<Record>) + Sync;
+
+/// Change of an experiment.
+pub type PlanChange = dyn Fn(&mut Experiment) + Sync;
 
 /// A fault.
 pub struct Trap {
@@ -13,6 +16,8 @@ pub struct Trap {
     pub name: String,
     /// Replacements in the description of the recorded robot; empty if only records are changed.
     pub plant: Vec<(String, String)>,
+    /// Change of the experiment, before it is simulated.
+    pub plan: Option<Box<PlanChange>>,
     /// Change of the records.
     pub alter: Box<Change>,
     /// Why no data can reveal it, if so.
@@ -23,10 +28,11 @@ pub struct Trap {
 }
 
 impl Trap {
-    fn new(name: &str, alter: impl Fn(&mut Vec<Record>) + Sync + 'static) -> Self {
+    pub(super) fn new(name: &str, alter: impl Fn(&mut Vec<Record>) + Sync + 'static) -> Self {
         Self {
             name: name.to_owned(),
             plant: Vec::new(),
+            plan: None,
             alter: Box::new(alter),
             assumed: None,
             size: None,
@@ -40,8 +46,16 @@ impl Trap {
     }
 
     /// Fault of every record separately.
-    fn each(name: &str, alter: impl Fn(&mut Record) + Sync + 'static) -> Self {
+    pub(super) fn each(name: &str, alter: impl Fn(&mut Record) + Sync + 'static) -> Self {
         Self::new(name, move |records| records.iter_mut().for_each(&alter))
+    }
+
+    /// Experiment that differs from the described one.
+    pub(super) fn plan(name: &str, change: impl Fn(&mut Experiment) + Sync + 'static) -> Self {
+        Self {
+            plan: Some(Box::new(change)),
+            ..Self::new(name, |_| ())
+        }
     }
 
     /// Robot that differs from the description.

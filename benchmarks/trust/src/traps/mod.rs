@@ -2,11 +2,14 @@
 //!
 //! - `list`: faults;
 //! - `alter`: application to faultless records;
+//! - `physics`: effects that a model lacks, of one drive or of all; motions that excite too little;
 //! - `outcome`: parameter errors and verdicts.
 
 mod alter;
 mod list;
 mod outcome;
+mod physics;
 
-pub use list::{Change, Trap, traps};
-pub use outcome::{Outcome, Standing, clean, identified, outcome, prepared};
+pub use list::{Change, PlanChange, Trap, traps};
+pub use outcome::{Outcome, Standing, clean, identified, identified_logs, outcome, prepared};
+pub use physics::physics;

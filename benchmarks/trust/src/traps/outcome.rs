@@ -254,8 +254,16 @@ pub fn identified(subject: &Subject, records: Vec<Record>) -> Result<Identificat
         .into_iter()
         .map(log)
         .collect::<Result<Vec<Log>, _>>()?;
+    identified_logs(subject, &runs)
+}
+
+/// Identifies from logs.
+///
+/// # Errors
+/// Logs that cannot be identified.
+pub fn identified_logs(subject: &Subject, runs: &[Log]) -> Result<Identification, Failure> {
     let dataset = Dataset {
-        runs: &runs,
+        runs,
         validation: &[],
         true_values: Some(&subject.truth),
         variants: &subject.variants.lent(),

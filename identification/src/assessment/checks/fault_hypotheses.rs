@@ -11,14 +11,19 @@ use crate::{
     result::{Estimate, ParameterEstimate, Stage},
 };
 
-/// A fault is harmful if it shifts a parameter by more than this many standard deviations.
+/// Half width of a 95 % interval, in standard deviations.
+const HALF_WIDTH: f64 = 1.96;
+
+/// Detection limits are reported if such a fault shifts a parameter by more than this many standard
+/// deviations.
 pub(in crate::assessment) const HARMFUL: f64 = 3.0;
 
-/// A harmful fault spoils all parameters shifted by more than this many standard deviations.
+/// A detected fault that shifts a parameter by more than its interval spoils all parameters that it
+/// shifts by more than this many standard deviations.
 const SPOILING: f64 = 1.0;
 
 /// Another hypothesis is likely if it explains this fraction of the best one's part.
-const LIKELY: f64 = 0.5;
+pub(super) const LIKELY: f64 = 0.5;
 
 /// A tested fault hypothesis.
 pub(super) struct TestedHypothesis {
@@ -144,7 +149,7 @@ pub(super) fn only(scores: &Scores, wanted: FaultHypothesis) -> Option<TestedHyp
 /// The hypothesis that explains most of the residual, among those significant at `level`.
 pub(super) fn most_significant(all: &[TestedHypothesis], level: f64) -> Option<&TestedHypothesis> {
     let beyond = all.iter().filter(|one| one.wald.probability < level);
-    beyond.max_by(|a, b| a.wald.explained.total_cmp(&b.wald.explained))
+    beyond.max_by(|a, b| a.wald.evidence().total_cmp(&b.wald.evidence()))
 }
 
 /// Names of the base parameters of dry friction.
@@ -212,7 +217,7 @@ pub(super) fn harm(context: &Context<'_>, scores: &Scores, tested: &TestedHypoth
         parameter: name(worst.column),
         ..Harm::none()
     };
-    if harm.worst <= HARMFUL {
+    if harm.worst <= HALF_WIDTH {
         return harm;
     }
     for shift in all {
@@ -273,7 +278,7 @@ impl Harm {
     }
 
     /// The grade for a number of spoiled parameters among all.
-    fn grade(spoiled: usize, parameters: usize) -> Grade {
+    pub(super) fn grade(spoiled: usize, parameters: usize) -> Grade {
         match spoiled {
             0 => Grade::Use,
             _ if 2 * spoiled > parameters => Grade::DoNotUse,

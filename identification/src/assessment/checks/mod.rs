@@ -3,6 +3,7 @@
 //! Each is a function of a read-only [`Context`].
 //! The table [`CHECKS`] lists them.
 
+mod admissible_faults;
 mod fault_hypotheses;
 mod kinematics;
 pub(crate) mod level;
@@ -152,6 +153,7 @@ pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         all.extend(check(context)?);
     }
     all.extend(residuals::relative_error::silent(context, &all));
+    admissible_faults::spoil(context, &mut all);
     for check in &mut all {
         check.words = with_joints(&check.words);
     }

@@ -5,10 +5,11 @@ use std::ops::Range;
 use overact::Model;
 
 use super::misreading::Misreading;
+use super::potential::FirstJoints;
 use super::shapes::{ActuatorState, PositionRange, SHAPES, Shape, WAVES};
 use crate::{
     filters::SampledSignals,
-    kinematics::Motion,
+    kinematics::{Motion, conditioning::couples},
     regression::{columns::Reversal, projection::ModelKind},
 };
 
@@ -41,6 +42,8 @@ pub(crate) enum FaultHypothesis {
     Eccentric(usize, Misreading),
     /// Relative error of the position of one actuator.
     Scale(usize),
+    /// Relative error of a gear ratio: positions too large and torques too small by the same part.
+    Gear(usize),
     /// Common relative error of all positions.
     Scales,
     /// Position lag by half of a play (rad, m).
@@ -51,21 +54,55 @@ pub(crate) enum FaultHypothesis {
     Torque(usize, Shape),
     /// Force on a platform coordinate that the model lacks.
     Force(usize, Shape),
+    /// Fraction of the torque of a neighbouring drive in the measured torque of a drive.
+    Crosstalk {
+        /// Drive with the wrong torque.
+        to: usize,
+        /// Its neighbour.
+        from: usize,
+    },
+    /// Constant forces and weights on bodies of a tree, as far as the first joints feel them.
+    Potential(FirstJoints),
+    /// Torques of this shape at all actuators, each of its own size.
+    AllTorques(Shape),
+    /// Crosstalk between all neighbours, each of its own size.
+    AllCrosstalk,
 }
 
 impl FaultHypothesis {
     /// Shape of a torque or force that the model may lack; `None` for other faults.
     pub(crate) const fn shape(self) -> Option<Shape> {
         match self {
-            Self::Torque(_, shape) | Self::Force(_, shape) => Some(shape),
+            Self::Torque(_, shape) | Self::Force(_, shape) | Self::AllTorques(shape) => Some(shape),
             _ => None,
         }
     }
 
-    /// Number of columns.
+    /// Whether it is crosstalk between drives.
+    pub(crate) const fn is_crosstalk(self) -> bool {
+        matches!(self, Self::Crosstalk { .. } | Self::AllCrosstalk)
+    }
+
+    /// Whether it is a torque or force that the model may lack.
+    pub(crate) const fn is_missing_effect(self) -> bool {
+        self.shape().is_some() || self.is_crosstalk() || matches!(self, Self::Potential(_))
+    }
+
+    /// Whether it is one of several faults that this one joins, with a size for each.
+    fn is_joined_by(self, all: Self) -> bool {
+        match (all, self) {
+            (Self::AllTorques(shape), Self::Torque(_, own)) => shape == own,
+            (Self::AllCrosstalk, Self::Crosstalk { .. }) => true,
+            _ => false,
+        }
+    }
+
+    /// Number of columns of its own; several faults together have none.
     const fn width(self) -> usize {
         match self {
-            Self::Torque(_, Shape::Waves) => WAVES,
+            Self::Torque(_, Shape::Waves | Shape::LoadWaves) => WAVES,
+            Self::Potential(joints) => joints.products(),
+            Self::AllTorques(_) | Self::AllCrosstalk => 0,
             _ => 1,
         }
     }
@@ -73,15 +110,15 @@ impl FaultHypothesis {
 
 /// Column indices of base parameters, fault hypotheses and payload parameters.
 ///
-/// Hypotheses with one column come first, waves last.
+/// Hypotheses with one column come first, then waves, then several faults together.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     /// Number of base parameter columns, including friction rates.
     pub(super) base: usize,
     /// Number of decimated columns: base parameters, one-column hypotheses, payload.
     pub(super) decimated: usize,
-    /// Column ranges of each hypothesis, then of the payload.
-    pub(super) blocks: Vec<Range<usize>>,
+    /// Columns of each hypothesis, then of the payload.
+    pub(super) blocks: Vec<Vec<usize>>,
     /// For each block, the range of its products among the products of all blocks.
     pub(super) places: Vec<Range<usize>>,
     /// Number of these products.
@@ -99,12 +136,18 @@ impl Layout {
             let width = hypothesis.width();
             let at = if width == 1 { &mut next } else { &mut wide };
             *at += width;
-            *at - width..*at
+            (*at - width..*at).collect()
         };
-        let mut blocks: Vec<Range<usize>> = hypotheses.iter().map(place).collect();
-        blocks.push(base + narrow..decimated);
+        let mut blocks: Vec<Vec<usize>> = hypotheses.iter().map(place).collect();
+        for (number, all) in hypotheses.iter().enumerate() {
+            let joined = hypotheses.iter().zip(&blocks);
+            let joined = joined.filter(|(one, _)| one.is_joined_by(*all));
+            let joined: Vec<usize> = joined.flat_map(|(_, block)| block.clone()).collect();
+            blocks[number].extend(joined);
+        }
+        blocks.push((base + narrow..decimated).collect());
         let mut squares = 0;
-        let place = |block: &Range<usize>| {
+        let place = |block: &Vec<usize>| {
             squares += block.len().pow(2);
             squares - block.len().pow(2)..squares
         };
@@ -122,7 +165,7 @@ impl Layout {
 
 /// The fault hypotheses of a robot for the model `kind`, with this number of `lengths`.
 ///
-/// Waves come last.
+/// Waves come after those with one column, several faults together last.
 pub(super) fn fault_hypotheses(
     model: &dyn Model,
     lengths: usize,
@@ -147,6 +190,7 @@ pub(super) fn fault_hypotheses(
     if sizes.actuators == sizes.dof {
         all.extend((0..sizes.actuators).map(FaultHypothesis::Offset));
         all.extend((0..sizes.actuators).map(FaultHypothesis::Scale));
+        all.extend((0..sizes.actuators).map(FaultHypothesis::Gear));
         if sizes.actuators > 1 {
             all.push(FaultHypothesis::Scales);
         }
@@ -166,7 +210,7 @@ pub(super) fn fault_hypotheses(
             .filter(|shape| revolute || !matches!(shape, Shape::Cosine | Shape::Sine));
         all.extend(shapes.map(|shape| FaultHypothesis::Torque(actuator, shape)));
     }
-    if kind == ModelKind::Platform {
+    if kind == ModelKind::Platform || couples(model) {
         for line in 0..sizes.dof {
             all.push(FaultHypothesis::Force(line, Shape::Constant));
             if sizes.pose == sizes.dof {
@@ -174,8 +218,28 @@ pub(super) fn fault_hypotheses(
             }
         }
     }
-    all.extend((0..sizes.actuators).map(|i| FaultHypothesis::Torque(i, Shape::Waves)));
+    all.extend(crosstalk(sizes.actuators));
+    all.extend(FirstJoints::new(model).map(FaultHypothesis::Potential));
+    for shape in [Shape::Waves, Shape::LoadWaves] {
+        all.extend((0..sizes.actuators).map(|i| FaultHypothesis::Torque(i, shape)));
+    }
+    if sizes.actuators > 1 {
+        let is_of_all = |shape: &Shape| {
+            let own = |i: usize| all.contains(&FaultHypothesis::Torque(i, *shape));
+            (0..sizes.actuators).all(own)
+        };
+        let shapes: Vec<Shape> = SHAPES.into_iter().filter(is_of_all).collect();
+        all.extend(shapes.into_iter().map(FaultHypothesis::AllTorques));
+        all.push(FaultHypothesis::AllCrosstalk);
+    }
     all
+}
+
+/// Crosstalk between drives that follow each other, in both directions.
+fn crosstalk(actuators: usize) -> impl Iterator<Item = FaultHypothesis> {
+    (1..actuators).flat_map(|i| {
+        [(i - 1, i), (i, i - 1)].map(|(to, from)| FaultHypothesis::Crosstalk { to, from })
+    })
 }
 
 /// Data of one sample for the columns of the hypotheses.
@@ -292,11 +356,17 @@ impl Sample<'_> {
                 let all = 0..self.torques.len();
                 all.map(|i| misread(i, Misreading::Scale)).sum::<f64>()
             }
+            FaultHypothesis::Gear(i) => misread(i, Misreading::Scale) - share(i) * self.torques[i],
             FaultHypothesis::Play(i) => factor * misread(i, Misreading::Offset),
             FaultHypothesis::Length(length) => self.lengths[length * r + line],
             FaultHypothesis::Torque(i, _) => share(i) * factor,
             FaultHypothesis::Force(own, _) if own != line => 0.0,
             FaultHypothesis::Force(..) => factor,
+            FaultHypothesis::Crosstalk { to, from } => share(to) * self.torques[from],
+            // Their columns follow after decimation, or are those of the faults that they join.
+            FaultHypothesis::Potential(_)
+            | FaultHypothesis::AllTorques(_)
+            | FaultHypothesis::AllCrosstalk => 0.0,
         }
     }
 }

@@ -31,6 +31,7 @@
 //! - `shapes`: dependence of a missing torque on the motion;
 //! - `columns`: hypotheses and their columns;
 //! - `misreading`: dependence of an encoder error on the position;
+//! - `potential`: constant forces and weights that the first joints of a tree feel;
 //! - `prediction`: prediction for a slightly different motion;
 //! - `sections`: products of columns and residual, by section of the time;
 //! - `pairs`, `correlations`: correlated residuals of actuators;
@@ -52,6 +53,7 @@ mod motion_data;
 mod pace;
 mod pairs;
 mod pass;
+mod potential;
 mod prediction;
 mod run;
 mod scaled;

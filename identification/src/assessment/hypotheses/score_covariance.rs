@@ -88,8 +88,8 @@ impl OrthogonalColumns<'_> {
 
     /// Columns of the group among all columns.
     fn columns(&self) -> impl Iterator<Item = usize> {
-        let first = self.layout.blocks[self.group.block].start;
-        self.independent.iter().map(move |column| first + column)
+        let block = &self.layout.blocks[self.group.block];
+        self.independent.iter().map(|place| block[*place])
     }
 
     /// Covariance of all runs' scores if the faults had these `sizes`.

@@ -111,7 +111,7 @@ impl Products {
         for (block, place) in layout.blocks.iter().zip(&layout.places) {
             let own = &mut self.own.as_mut_slice()[first + place.start..first + place.end];
             let mut own = DMatrixViewMut::from_slice(own, block.len(), block.len());
-            let columns = all.columns_range(block.clone());
+            let columns = all.select_columns(block);
             own.gemm_tr(1.0, &columns, &columns, 1.0);
         }
         let mut scores = self.scores.column_mut(section);
@@ -182,6 +182,8 @@ pub(super) struct Sink<'a> {
     expected: usize,
     /// Columns of constant torques, by which waves are multiplied.
     constants: Vec<usize>,
+    /// Columns of the gains, by which waves of the load are multiplied.
+    gains: Vec<usize>,
     products: Products,
     pairs: Pairs,
     equations: usize,
@@ -194,11 +196,16 @@ pub(super) struct Sink<'a> {
 impl<'a> Sink<'a> {
     /// For this number of samples, with the phases of a periodic motion.
     pub(super) fn new(frame: Frame<'a>, instants: usize, phases: Option<Phases>) -> Self {
-        let constant =
-            |one: &FaultHypothesis| matches!(one, FaultHypothesis::Torque(_, Shape::Constant));
-        let hypotheses = frame.hypotheses.iter().zip(&frame.layout.blocks);
-        let constants = hypotheses.filter(|(one, _)| constant(one));
-        let constants: Vec<usize> = constants.map(|(_, block)| block.start).collect();
+        let columns_of = |wanted: fn(&FaultHypothesis) -> bool| -> Vec<usize> {
+            let hypotheses = frame.hypotheses.iter().zip(&frame.layout.blocks);
+            let wanted = hypotheses.filter(|(one, _)| wanted(one));
+            wanted
+                .flat_map(|(_, block)| block.first().copied())
+                .collect()
+        };
+        let constants =
+            columns_of(|one| matches!(one, FaultHypothesis::Torque(_, Shape::Constant)));
+        let gains = columns_of(|one| matches!(one, FaultHypothesis::Gain(_)));
         let sections = (SECTIONS * cosines(instants)).min(instants).max(1);
         Self {
             frame,
@@ -206,6 +213,7 @@ impl<'a> Sink<'a> {
             expected: instants,
             pairs: Pairs::new(constants.len(), sections),
             constants,
+            gains,
             products: Products::new(frame.layout, sections),
             equations: 0,
             lines: 0,
@@ -308,22 +316,45 @@ impl<'a> Sink<'a> {
         let mut columns = all.remove_column(layout.base);
         columns.resize_horizontally_mut(layout.columns, 0.0);
         self.add_waves(&mut columns, positions);
+        self.add_potentials(&mut columns, positions);
         WeightedRows { columns, residual }
     }
 
-    /// Fills in the waves of decimated positions, multiplied by the column of a constant torque.
+    /// Fills in the waves of decimated positions, multiplied by the column of a constant torque, or
+    /// by that of the gain for waves of the load.
     fn add_waves(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
         let n = self.constants.len();
         for (hypothesis, block) in self.frame.hypotheses.iter().zip(&self.frame.layout.blocks) {
-            let FaultHypothesis::Torque(actuator, Shape::Waves) = *hypothesis else {
-                continue;
+            let (actuator, factors) = match *hypothesis {
+                FaultHypothesis::Torque(actuator, Shape::Waves) => (actuator, &self.constants),
+                FaultHypothesis::Torque(actuator, Shape::LoadWaves) => (actuator, &self.gains),
+                _ => continue,
             };
             let position_range = self.frame.position_ranges[actuator];
             for row in 0..all.nrows() {
-                let share = all[(row, self.constants[actuator])];
+                let factor = all[(row, factors[actuator])];
                 let waves = position_range.waves(positions[row * n + actuator]);
-                for (column, wave) in block.clone().zip(waves) {
-                    all[(row, column)] = share * wave;
+                for (column, wave) in block.iter().zip(waves) {
+                    all[(row, *column)] = factor * wave;
+                }
+            }
+        }
+    }
+
+    /// Fills in the gradients of potentials, multiplied by the columns of constant torques.
+    fn add_potentials(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
+        let n = self.constants.len();
+        for (hypothesis, block) in self.frame.hypotheses.iter().zip(&self.frame.layout.blocks) {
+            let FaultHypothesis::Potential(joints) = *hypothesis else {
+                continue;
+            };
+            for row in 0..all.nrows() {
+                let positions = &positions[row * n..(row + 1) * n];
+                for (product, column) in block.iter().enumerate() {
+                    let gradient = joints.gradient(product, positions);
+                    let torques = self.constants.iter().zip(gradient);
+                    let torques = torques.map(|(constant, part)| all[(row, *constant)] * part);
+                    all[(row, *column)] = torques.sum();
                 }
             }
         }

@@ -35,15 +35,19 @@ pub(crate) enum Shape {
     TimeSign,
     /// The torque times the time since the start of the run: a gain that drifts.
     GainTime,
+    /// The signed square of the torque: a torque constant that saturates.
+    Saturation,
     /// Waves over the range of the position, [`WAVES`] columns: cogging, or an error of a gear.
     Waves,
+    /// The torque times these waves: ripple of the torque constant.
+    LoadWaves,
 }
 
 /// Number of cosines over the range of a position, of 1/2, 1, 3/2 … periods.
 pub(super) const WAVES: usize = 16;
 
 /// Shapes of an actuator with one column each.
-pub(super) const SHAPES: [Shape; 16] = [
+pub(super) const SHAPES: [Shape; 17] = [
     Shape::Constant,
     Shape::Velocity,
     Shape::Sign,
@@ -60,6 +64,7 @@ pub(super) const SHAPES: [Shape; 16] = [
     Shape::Time,
     Shape::TimeSign,
     Shape::GainTime,
+    Shape::Saturation,
 ];
 
 /// Motion of an actuator or a coordinate at one time.
@@ -138,7 +143,13 @@ impl Shape {
             Self::Time => "time, as a drift",
             Self::TimeSign => "time and the sign of the velocity, as friction that changes",
             Self::GainTime => "time and the torque, as a gain that drifts",
+            Self::Saturation => {
+                "the square of the torque with its sign, as a torque constant that saturates"
+            }
             Self::Waves => "the position in waves, as cogging or an error of a gear",
+            Self::LoadWaves => {
+                "the torque in waves of the position, as ripple that grows with the load"
+            }
         }
     }
 
@@ -166,7 +177,9 @@ impl Shape {
             (Self::Time | Self::TimeSign, true) => "N m/s",
             (Self::Time | Self::TimeSign, false) => "N/s",
             (Self::GainTime, _) => "1/s",
-            (Self::Load | Self::Magnitude, _) => "",
+            (Self::Saturation, true) => "1/(N m)",
+            (Self::Saturation, false) => "1/N",
+            (Self::Load | Self::Magnitude | Self::LoadWaves, _) => "",
         }
     }
 
@@ -204,7 +217,8 @@ impl Shape {
             Self::Time => time,
             Self::TimeSign => time * sign,
             Self::GainTime => time * torque,
-            Self::Stribeck | Self::Waves => 0.0,
+            Self::Saturation => torque * torque.abs(),
+            Self::Stribeck | Self::Waves | Self::LoadWaves => 0.0,
         }
     }
 }

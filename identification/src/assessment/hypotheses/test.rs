@@ -49,7 +49,7 @@ impl Scores {
     /// Tests a group with these columns in the model.
     fn tested(&self, group: &Group, model_columns: &ModelColumns) -> Option<WaldTest> {
         let layout = &self.layout;
-        let columns: Vec<usize> = layout.blocks[group.block].clone().collect();
+        let columns: Vec<usize> = layout.blocks[group.block].clone();
         let inside = |run: usize| group.run.is_none_or(|own| own == run);
         let selected = model_columns.selected.as_slice();
         let mut cross = DMatrix::zeros(selected.len(), columns.len());
@@ -123,6 +123,7 @@ impl Scores {
             freedom,
             probability: test.probability,
             explained: score.norm_squared() / total.max(f64::MIN_POSITIVE),
+            noise: covariance.trace() / count / total.max(f64::MIN_POSITIVE),
             sizes: orthogonal
                 .independent
                 .iter()

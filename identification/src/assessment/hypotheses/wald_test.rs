@@ -21,6 +21,8 @@ pub(crate) struct WaldTest {
     pub(crate) probability: f64,
     /// Fraction of the squared residual that the group explains.
     pub(crate) explained: f64,
+    /// Fraction that a column explains by chance, from the covariance of the scores.
+    pub(crate) noise: f64,
     /// B δ for each base parameter of the estimate: place and shift.
     pub(crate) shifts: Vec<(usize, f64)>,
 }
@@ -48,6 +50,13 @@ impl WaldTest {
             1 => self.size().abs() / self.deviation,
             _ => self.quantile(self.probability.max(LEAST_PROBABILITY)),
         }
+    }
+
+    /// Explained fraction of the squared residual, less what more than one column explain by chance.
+    ///
+    /// The penalty of each further column is that of Akaike's criterion.
+    pub(crate) fn evidence(&self) -> f64 {
+        self.explained - 2.0 * (self.sizes.len() as f64 - 1.0) * self.noise
     }
 
     /// p-value of the first δ if the true size were as large as `harmless`.

@@ -13,7 +13,7 @@
 //! has Fisher's distribution with k and ν - k + 1 degrees of freedom (Hotelling), where k is the
 //! rank of V; columns without errors do not count. For each parameter, d_i/√V_ii has Student's
 //! distribution with ν_i degrees of freedom. A parameter differs at the level of the test divided
-//! by the number of parameters (Bonferroni). If k exceeds ν/2, the joint test is that of the
+//! by the number of parameters (Bonferroni), or at 5 % if the joint test rejects. If k exceeds ν/2, the joint test is that of the
 //! parameter with the largest difference.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -34,6 +34,9 @@ use crate::{
 ///
 /// It is the part of one of twelve families of checks of a false-alarm rate of 1 % per report.
 pub(crate) const LEVEL: f64 = 0.01 / 12.0;
+
+/// Level of the test of one parameter if the joint test rejects.
+const PROTECTED_LEVEL: f64 = 0.05;
 
 /// Smallest eigenvalue of the scaled V that counts, relative to the largest.
 ///
@@ -165,8 +168,12 @@ impl Hausman {
     }
 
     /// Whether a parameter differs significantly.
+    ///
+    /// If the joint test rejects, it protects the tests of single parameters (Fisher's least
+    /// significant difference), which need no division of the level.
     pub(crate) fn differs(&self, parameter: &Difference) -> bool {
-        parameter.probability * (self.parameters.len() as f64) < LEVEL
+        let alone = parameter.probability * (self.parameters.len() as f64) < LEVEL;
+        alone || self.rejects() && parameter.probability < PROTECTED_LEVEL
     }
 }
 

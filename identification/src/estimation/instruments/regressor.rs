@@ -113,7 +113,8 @@ pub struct RegressorError {
     pub difference_deviation: f64,
     /// p-value of the difference.
     pub probability: f64,
-    /// Whether the difference is significant, at the level divided by the number of parameters.
+    /// Whether the difference is significant, at the level divided by the number of parameters, or
+    /// at 5 % if all parameters together differ.
     pub differs: bool,
     /// Whether it also exceeds the standard deviation of least squares; then it is unusable.
     pub spoiled: bool,

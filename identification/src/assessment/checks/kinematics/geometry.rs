@@ -26,6 +26,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             FaultHypothesis::Offset(_)
                 | FaultHypothesis::Scale(_)
                 | FaultHypothesis::Scales
+                | FaultHypothesis::Gear(_)
                 | FaultHypothesis::Eccentric(..)
                 | FaultHypothesis::Play(_)
                 | FaultHypothesis::Length(_)
@@ -57,6 +58,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         FaultHypothesis::Eccentric(..) => {
             "Its disc may be out of centre, or its scale wrong: check its mounting and its gear"
         }
+        FaultHypothesis::Gear(_) => "Check the number of teeth, or the lead of its screw",
         FaultHypothesis::Scale(_) | FaultHypothesis::Scales => {
             "Check the ratio of its gear or the lead of its screw, its increments, and its zero"
         }
@@ -80,10 +82,14 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 "excess of the described value",
             )
         }
-        FaultHypothesis::Scale(_) | FaultHypothesis::Scales => {
+        FaultHypothesis::Scale(_) | FaultHypothesis::Scales | FaultHypothesis::Gear(_) => {
             let whose = match hypothesis {
                 FaultHypothesis::Scales => String::from("all drives"),
                 _ => format!("`{name}`"),
+            };
+            let torques = match hypothesis {
+                FaultHypothesis::Gear(_) => ", and torques wrong by the inverse factor",
+                _ => "",
             };
             let [size, deviation] = [worst.wald.size(), worst.wald.deviation]
                 .map(|part| significant(100.0 * part.abs(), 3));
@@ -93,7 +99,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 "small"
             };
             let words = format!(
-                "the torques indicate that positions of {whose} are {size} % too {sense} (standard deviation {deviation} %); {}. {zero}",
+                "the torques indicate that positions of {whose} are {size} % too {sense} (standard deviation {deviation} %){torques}; {}. {zero}",
                 harm.words()
             );
             let title = format!("Residual for other scales of the positions of {whose}");
@@ -209,6 +215,7 @@ fn name(context: &Context<'_>, hypothesis: FaultHypothesis) -> String {
     let name = match hypothesis {
         FaultHypothesis::Offset(at)
         | FaultHypothesis::Scale(at)
+        | FaultHypothesis::Gear(at)
         | FaultHypothesis::Eccentric(at, _)
         | FaultHypothesis::Play(at) => context.model.info().actuators.get(at).copied(),
         FaultHypothesis::Length(at) => context.dataset.variants.get(at).map(|one| one.length),
@@ -220,7 +227,7 @@ fn name(context: &Context<'_>, hypothesis: FaultHypothesis) -> String {
 /// Unit of the fault's size: of an actuator's position, or of a length.
 fn unit(context: &Context<'_>, hypothesis: FaultHypothesis) -> &'static str {
     match hypothesis {
-        FaultHypothesis::Scale(_) | FaultHypothesis::Scales => "",
+        FaultHypothesis::Scale(_) | FaultHypothesis::Scales | FaultHypothesis::Gear(_) => "",
         FaultHypothesis::Offset(at)
         | FaultHypothesis::Eccentric(at, _)
         | FaultHypothesis::Play(at)

@@ -46,7 +46,7 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
     let Some(Ok(system)) = context.systems.get(projection) else {
         return new(String::from("there are no equations"));
     };
-    let mut spoiled = summed(system, estimate);
+    let mut spoiled = dependent(system, estimate);
     let noise = context.column_noise.get(projection);
     let columns = estimate.columns();
     let values: Vec<f64> = estimate.parameters.iter().map(|one| one.value).collect();
@@ -110,17 +110,17 @@ impl Directions {
 }
 
 /// Parameters that other columns depend on linearly in these runs.
-fn summed(system: &System, estimate: &Estimate) -> Vec<String> {
+fn dependent(system: &System, estimate: &Estimate) -> Vec<String> {
     let ones = vec![1.0; system.lines.len()];
     let all = Factor::merged(&system.lines, &ones);
     let places: Vec<usize> = (0..all.parameters()).collect();
     let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
-    let is_summed = |column: usize| {
+    let depends = |column: usize| {
         let mut terms = found.dependent.iter().flat_map(|(_, terms)| terms);
         terms.any(|(kept, _)| *kept == column)
     };
     let own = estimate.parameters.iter();
-    own.filter(|one| is_summed(one.column))
+    own.filter(|one| depends(one.column))
         .map(|one| one.name.clone())
         .collect()
 }

@@ -21,7 +21,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let found = tested(
         scores,
-        Group::hypotheses(scores, |one| one.shape().is_some()),
+        Group::hypotheses(scores, FaultHypothesis::is_missing_effect),
     );
     if found.is_empty() {
         return Ok(Vec::new());
@@ -61,7 +61,9 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .against(limit, origin(tests))
         .with_harm(&harm);
     let actuator = match hypothesis {
-        FaultHypothesis::Torque(actuator, _) => context.model.info().actuators.get(actuator),
+        FaultHypothesis::Torque(actuator, _) | FaultHypothesis::Crosstalk { to: actuator, .. } => {
+            context.model.info().actuators.get(actuator)
+        }
         _ => None,
     };
     Ok(vec![match actuator {
@@ -78,18 +80,33 @@ fn sentence(
     consequence: String,
 ) -> String {
     let info = context.model.info();
-    let (quantity, name, shape) = match hypothesis {
-        FaultHypothesis::Force(line, shape) => ("force on", info.coordinates.get(line), shape),
-        FaultHypothesis::Torque(actuator, shape) => {
-            ("torque of", info.actuators.get(actuator), shape)
+    let named = |quantity: &str, name: Option<&&str>| {
+        format!("{quantity} {}", called(name.copied().unwrap_or_default()))
+    };
+    let drive = |actuator: usize| named("torque of", info.actuators.get(actuator));
+    let quantity = match hypothesis {
+        FaultHypothesis::Force(line, _) => named("force on", info.coordinates.get(line)),
+        FaultHypothesis::Torque(actuator, _) | FaultHypothesis::Crosstalk { to: actuator, .. } => {
+            drive(actuator)
         }
-        _ => return String::new(),
+        FaultHypothesis::Potential(_) => String::from("first joints"),
+        _ => String::from("torque of every drive"),
     };
     let finding = Finding {
-        quantity: format!("{quantity} {}", called(name.copied().unwrap_or_default())),
+        quantity,
         size: worst.wald.largest(),
         strength: worst.wald.strength(),
         consequence,
+    };
+    if matches!(hypothesis, FaultHypothesis::Potential(_)) {
+        return finding.potential_sentence();
+    }
+    let Some(shape) = hypothesis.shape() else {
+        let neighbour = match hypothesis {
+            FaultHypothesis::Crosstalk { from, .. } => drive(from),
+            _ => String::from("torques of its neighbours"),
+        };
+        return finding.crosstalk_sentence(&neighbour);
     };
     match hypothesis {
         FaultHypothesis::Torque(actuator, Shape::Stribeck) => {
@@ -97,9 +114,10 @@ fn sentence(
         }
         FaultHypothesis::Torque(actuator, _) => {
             let revolute = info.actuator_is_revolute.get(actuator) == Some(&true);
-            finding.sentence(shape, shape.unit(revolute))
+            finding.sentence(shape, Some(shape.unit(revolute)))
         }
-        _ => finding.sentence(shape, ""),
+        FaultHypothesis::Force(..) => finding.sentence(shape, Some("")),
+        _ => finding.sentence(shape, None),
     }
 }
 
@@ -116,7 +134,8 @@ enum EquationLine {
 impl EquationLine {
     const fn of(hypothesis: FaultHypothesis) -> Self {
         match hypothesis {
-            FaultHypothesis::Torque(actuator, _) => Self::Actuator(actuator),
+            FaultHypothesis::Torque(actuator, _)
+            | FaultHypothesis::Crosstalk { to: actuator, .. } => Self::Actuator(actuator),
             FaultHypothesis::Force(line, _) => Self::Coordinate(line),
             _ => Self::All,
         }
@@ -134,11 +153,14 @@ fn harmful_elsewhere(
     level: f64,
 ) -> Vec<(String, Harm)> {
     let info = context.model.info();
+    if EquationLine::of(strongest) == EquationLine::All {
+        return Vec::new();
+    }
     let line = |one: &TestedHypothesis| EquationLine::of(one.hypothesis(scores));
     let mut lines: Vec<EquationLine> = found.iter().map(line).collect();
     lines.sort_unstable();
     lines.dedup();
-    lines.retain(|one| *one != EquationLine::of(strongest));
+    lines.retain(|one| *one != EquationLine::of(strongest) && *one != EquationLine::All);
     let worst_of = |of: EquationLine| {
         let significant = found
             .iter()
@@ -179,14 +201,33 @@ struct Finding {
 }
 
 impl Finding {
-    /// Sentence for a shape whose size has a unit.
-    fn sentence(&self, shape: Shape, unit: &str) -> String {
-        let size = format!(", by {} {unit}", significant(self.size, 3));
-        let size = match shape {
+    /// Sentence for a constant force or a weight.
+    fn potential_sentence(&self) -> String {
+        format!(
+            "the {} feel a further potential ({:.1} standard deviations), as of a constant force on a body, a balancer, a cable or a tilted base, {}. Look for such forces and add them to the description, or check the direction of `gravity`",
+            self.quantity, self.strength, self.consequence
+        )
+    }
+
+    /// Sentence for crosstalk from a `neighbour`.
+    fn crosstalk_sentence(&self, neighbour: &str) -> String {
+        format!(
+            "the {} contains up to {} % of the {neighbour} ({:.1} standard deviations), {}. Look for crosstalk in the measurement of the torques, for a coupling of the gears that the description lacks, and for swapped columns",
+            self.quantity,
+            significant(100.0 * self.size.abs(), 3),
+            self.strength,
+            self.consequence
+        )
+    }
+
+    /// Sentence for a shape whose size has a `unit`; `None` for several sizes.
+    fn sentence(&self, shape: Shape, unit: Option<&str>) -> String {
+        let size = match (shape, unit) {
             // The waves are nearly collinear, so their sizes have no meaning.
-            Shape::Waves => "",
-            _ => size.trim_end(),
+            (Shape::Waves | Shape::LoadWaves, _) | (_, None) => String::new(),
+            (_, Some(unit)) => format!(", by {} {unit}", significant(self.size, 3)),
         };
+        let size = size.trim_end();
         format!(
             "the {} depends on {} beyond the model{size} ({:.1} standard deviations), {}. Add the missing term to the description, or look for other differences from it",
             self.quantity,

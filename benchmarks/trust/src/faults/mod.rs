@@ -1,0 +1,62 @@
+//! Each fault over many draws of the noise: grades, and errors of the values that may be used.
+//!
+//! - `row`: sums over the draws, and their row of the table.
+
+mod row;
+
+pub use row::{FaultRow, header};
+
+use crate::{
+    Failure, Subject, draw,
+    traps::{Trap, identified_logs, physics, traps},
+};
+use rayon::prelude::*;
+use row::Draw;
+use std::path::Path;
+
+/// Identifies every fault whose name is `wanted`, and the faultless data, in all draws.
+///
+/// `part` is the fraction of each run's duration, which the subject has already. `print` is called
+/// for each row.
+///
+/// # Errors
+/// A plant that cannot be simulated.
+pub fn rows(
+    path: &Path,
+    subject: &Subject,
+    (part, draws): (f64, u64),
+    wanted: &dyn Fn(&str) -> bool,
+    print: &dyn Fn(&FaultRow),
+) -> Result<Vec<FaultRow>, Failure> {
+    let faultless = draw::records(subject, &subject.experiment, 1.0)?;
+    let mut all = vec![Trap::none()];
+    all.extend(traps(subject.info().name));
+    all.extend(physics(subject)?);
+    let mut rows = Vec::new();
+    for trap in all.iter().filter(|trap| wanted(&trap.name)) {
+        let mut records = if trap.plant.is_empty() && trap.plan.is_none() {
+            faultless.clone()
+        } else {
+            let mut plant = Subject::altered(path, &trap.plant)?;
+            plant.shorten(part);
+            if let Some(change) = &trap.plan {
+                change(&mut plant.experiment);
+            }
+            draw::records(&plant, &plant.experiment, 1.0)?
+        };
+        (trap.alter)(&mut records);
+        let one = |number: u64| {
+            let logs = draw::logs(subject, &records, 1.0, number);
+            let result = logs.and_then(|logs| identified_logs(subject, &logs));
+            result.map_or_else(
+                |error| Draw::refused(&error.to_string()),
+                |one| Draw::new(&one),
+            )
+        };
+        let draws: Vec<Draw> = (1..=draws).into_par_iter().map(one).collect();
+        let row = FaultRow::new(subject.info().name, &trap.name, &draws);
+        print(&row);
+        rows.push(row);
+    }
+    Ok(rows)
+}

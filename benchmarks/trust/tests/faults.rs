@@ -1,0 +1,62 @@
+//! Parameters that the verdict permits to use are right, whatever fault the data have.
+//!
+//! A mean over draws of the noise has the bias of the fault alone.
+
+use overact_tier::{by_tier, is_full};
+use overact_trust::{
+    Subject,
+    faults::{FaultRow, rows},
+};
+use std::path::Path;
+
+/// Fraction of each run's duration, as in `docs/traps.md`.
+const PART: f64 = 0.25;
+
+/// Largest mean error of a usable parameter, in standard deviations.
+const LARGEST_MEAN: f64 = 2.0;
+
+/// Robots and faults whose fit by one drive alone left wrong parameters in the list.
+const CASES: [(&str, &[&str]); 4] = [
+    ("five_bar", &["torque constants of all", "coordinate y"]),
+    ("ankle", &["crosstalk of 4 % between", "coordinate roll"]),
+    (
+        "dualv",
+        &["torque constant", "crosstalk", "ripple", "all gains fall"],
+    ),
+    ("rx90", &["load-dependent friction"]),
+];
+
+/// Rows of the faults of a robot whose names contain one of these words.
+fn of_robot(name: &str, words: &[&str]) -> Vec<FaultRow> {
+    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
+    let path = robots.join(format!("{name}.toml"));
+    let mut subject = Subject::load(&path).expect("a robot");
+    subject.shorten(PART);
+    let wanted = |fault: &str| words.iter().any(|word| fault.contains(word));
+    let rows = rows(&path, &subject, (PART, by_tier([3, 10])), &wanted, &|row| {
+        println!("{row}");
+    });
+    rows.expect("rows")
+}
+
+#[test]
+fn usable_parameters_are_right_on_average_whatever_the_fault() {
+    let count = if is_full() { CASES.len() } else { 2 };
+    for (robot, words) in &CASES[..count] {
+        let rows = of_robot(robot, words);
+        assert!(rows.len() >= words.len());
+        for row in rows {
+            let mean = row.mean.as_ref().map_or(0.0, |(size, _)| *size);
+            assert!(mean <= LARGEST_MEAN, "{row}");
+        }
+    }
+}
+
+#[test]
+fn data_without_a_fault_are_used() {
+    for robot in by_tier([&["five_bar", "ankle"][..], &["dualv", "rx90"][..]]) {
+        for row in of_robot(robot, &["none"]) {
+            assert_eq!(row.unusable + row.listed + row.refused, 0, "{row}");
+        }
+    }
+}
