@@ -38,6 +38,10 @@ pub(crate) struct Arguments {
     /// The same, with the payload
     #[arg(long, value_name = "LOG", num_args = 1..)]
     cross_validate_payload: Vec<PathBuf>,
+    /// Recording session of each log of `--data`, then of `--payload-data`, such as its day; the
+    /// intervals then contain the changes of the robot between sessions
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    sessions: Vec<String>,
     /// Seed of the virtual experiment's noise [default: the description's]
     #[arg(long)]
     seed: Option<u64>,
@@ -66,6 +70,7 @@ impl Arguments {
             payload_data,
             cross_validate: Vec::new(),
             cross_validate_payload: Vec::new(),
+            sessions: Vec::new(),
             seed: None,
             spool: OnceCell::new(),
             friction: None,
@@ -126,6 +131,7 @@ impl Arguments {
             payloads.with(&self.payload_data),
         ]
         .concat();
+        self.check_sessions(own.len())?;
         let (plain, loaded) = (&self.cross_validate, &self.cross_validate_payload);
         let mut others = [payloads.without(plain), payloads.with(loaded)].concat();
         let all = || own.iter().chain(&others);
@@ -146,11 +152,29 @@ impl Arguments {
         let logs = logs.into_iter().zip(all());
         let mut identified: Vec<Log> = logs.map(|(log, one)| one.label(log)).collect();
         let validation = identified.split_off(own.len());
+        if !self.sessions.is_empty() {
+            let pairs = identified.into_iter().zip(&self.sessions);
+            identified = pairs.map(|(log, name)| log.with_session(name)).collect();
+        }
         Ok(Runs {
             identified,
             validation,
             true_values: None,
         })
+    }
+
+    /// Checks that each of `logs` training logs has a session.
+    ///
+    /// # Errors
+    /// Another number of sessions than logs.
+    fn check_sessions(&self, logs: usize) -> Result<(), Failure> {
+        let names = self.sessions.len();
+        if names == 0 || names == logs {
+            return Ok(());
+        }
+        Err(Failure::Usage(format!(
+            "`--sessions` names {names} sessions for {logs} logs: name one for each log of `--data`, then of `--payload-data`"
+        )))
     }
 
     /// Replaces the temporary file by the user's name of standard input in an error.

@@ -26,12 +26,14 @@ pub(crate) struct PreviouslyIdentified {
 
 /// Assumptions that these runs cannot test, one sentence each.
 ///
-/// Their violation has the same effect on the data as other parameter values.
+/// Violated assumptions have the same effect on the data as other parameter values. `sessions` is
+/// the number of recording sessions of the runs.
 pub(crate) fn assumptions(
     model: &dyn Model,
     columns: &ColumnSet,
     models: &[ModelKind],
     before: PreviouslyIdentified,
+    sessions: usize,
 ) -> Vec<String> {
     let gains = if before.gains {
         "known parameters are exact: gains and all other parameters scale with them"
@@ -51,9 +53,14 @@ pub(crate) fn assumptions(
             "the logged torques are the complete torques of the drives: no friction or gravity compensation was subtracted, no filter of the drive smoothed them, and there is no crosstalk",
         ),
         String::from("parameters that the description leaves out are zero"),
-        String::from(
-            "the robot is rigid and does not change: temperature, wear and load are those of the runs",
-        ),
+        String::from(match sessions {
+            0 | 1 => {
+                "the robot is rigid and does not change: temperature, wear and load are those of the runs; intervals do not contain changes between recording days (with runs of several days: `--sessions`)"
+            }
+            _ => {
+                "the robot is rigid, and the recording sessions show how much it changes: intervals contain the variation between them"
+            }
+        }),
     ];
     if lengths_are_untold(model) {
         all.push(String::from(

@@ -151,6 +151,7 @@ impl PoolGroup {
         System {
             projection: Projection::Joints,
             line_names: names.values().cloned().collect(),
+            sessions: Vec::new(),
             line_units: vec![""; lines.len()],
             lines,
             parts,

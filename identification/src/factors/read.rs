@@ -174,6 +174,7 @@ fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
             sampling_frequency: first.sampling_frequency,
             payload: first.loaded != 0,
             payload_name: Some(first.payload.clone()).filter(|name| !name.is_empty()),
+            session: None,
             closure_residual: first.closure_residual,
             standstill_equations: names(&first.standstill).iter().map(count).collect(),
         },

@@ -182,13 +182,21 @@ pub fn identify_after(
     // Detection limits are irrelevant for a refused result.
     let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
     let unseen = if refused { Vec::new() } else { unseen(&checks) };
+    let mut sessions: Vec<Option<&String>> = prepared
+        .runs
+        .iter()
+        .map(|run| run.session.as_ref())
+        .collect();
+    sessions.sort_unstable();
+    sessions.dedup();
+    let sessions = sessions.len();
     Ok(Identification {
         robot: info.name.to_owned(),
         base_parameters: BaseParameter::all(&prepared.columns, &prepared.base, dataset.true_values),
         without_effect: prepared.without_effect(),
         runs: prepared.runs,
         warnings,
-        assumptions: assumptions(model, &prepared.columns, &models, found),
+        assumptions: assumptions(model, &prepared.columns, &models, found, sessions),
         unseen,
         verdicts,
         checks,

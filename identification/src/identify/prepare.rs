@@ -248,8 +248,14 @@ pub fn prepare(
         projections,
         settings,
     };
-    let new =
-        |projection: &Projection| Ok(System::new(projection.clone(), &info, base.columns.len()));
+    let sessions = session_numbers(runs);
+    let new = |projection: &Projection| {
+        let system = System::new(projection.clone(), &info, base.columns.len());
+        Ok(System {
+            sessions: sessions.clone(),
+            ..system
+        })
+    };
     let mut systems: Vec<Result<System, Error>> = projections.iter().map(new).collect();
     let (mut observations, mut points, mut problems) = (Vec::new(), Vec::new(), Vec::new());
     let mut instrument_runs = InstrumentRuns::new(runs, settings);
@@ -292,6 +298,17 @@ pub fn prepare(
         periodic_motions,
         ..PreparedSystem::new(columns, base, payload, projections.to_vec(), systems)
     })
+}
+
+/// Number of each run's recording session, that of its first run; empty for one session.
+fn session_numbers(runs: &[Log]) -> Vec<usize> {
+    let first_of = |log: &Log| runs.iter().position(|one| one.session() == log.session());
+    let numbers: Vec<usize> = runs.iter().filter_map(first_of).collect();
+    if numbers.iter().any(|number| *number != 0) {
+        numbers
+    } else {
+        Vec::new()
+    }
 }
 
 /// Equations of a run for each projection, or the error.

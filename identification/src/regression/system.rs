@@ -70,6 +70,8 @@ pub struct System {
     pub lines: Vec<Factor>,
     /// Parts of the runs, for cross-validation.
     pub parts: Vec<RunPart>,
+    /// Number of each run's recording session; empty if all are of one session.
+    pub sessions: Vec<usize>,
     /// Successive equations, for the correlation of the residual.
     pub stretches: Vec<Stretch>,
     /// For each periodic motion, the mean equations of its phases.
@@ -112,6 +114,7 @@ impl System {
             lines: vec![Factor::new(parameters); info.sizes.dof],
             projection,
             parts: Vec::new(),
+            sessions: Vec::new(),
             stretches: Vec::new(),
             phase_sums: Vec::new(),
             partition: None,

@@ -19,6 +19,9 @@ pub struct RunSummary {
     /// Name of the payload, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub payload_name: Option<String>,
+    /// Name of the recording session, if there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub session: Option<String>,
     /// Largest closure residual of the measured positions (m, rad).
     pub closure_residual: f64,
     /// Equations of each actuator's joint excluded at standstill.
@@ -37,6 +40,7 @@ impl RunSummary {
             sampling_frequency: log.sampling_frequency(),
             payload: log.payload(),
             payload_name: log.payload_name().map(str::to_owned),
+            session: log.session().map(str::to_owned),
             closure_residual: observation.closure_residual,
             standstill_equations: observation.still.clone(),
         }

@@ -32,6 +32,8 @@ pub struct Log {
     payload: bool,
     /// Name of the payload, if there are several.
     payload_name: Option<Arc<str>>,
+    /// Name of the recording session, if there are several.
+    session: Option<Arc<str>>,
     instruments: Option<Box<Log>>,
     /// Note to the user on changes of the samples.
     note: Option<String>,
@@ -105,6 +107,7 @@ impl Log {
             torque_factors: vec![1.0; actuators],
             payload,
             payload_name: None,
+            session: None,
             instruments: None,
             note: None,
             is_unwrapped: false,
@@ -198,6 +201,7 @@ impl Log {
             source: Source::Files(Box::new(files)),
             payload,
             payload_name: None,
+            session: None,
             instruments: None,
             note: None,
             is_unwrapped: false,
@@ -283,6 +287,21 @@ impl Log {
     pub fn with_payload_name(mut self, name: &str) -> Self {
         self.payload = true;
         self.payload_name = Some(name.into());
+        self
+    }
+
+    /// Name of the recording session, such as a day, if there are several.
+    #[must_use]
+    pub fn session(&self) -> Option<&str> {
+        self.session.as_deref()
+    }
+
+    /// The same run as a recording of a session of this name.
+    ///
+    /// The intervals of parameters then contain the changes of the robot between sessions.
+    #[must_use]
+    pub fn with_session(mut self, name: &str) -> Self {
+        self.session = Some(name.into());
         self
     }
 

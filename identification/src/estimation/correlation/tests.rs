@@ -50,6 +50,7 @@ fn system(a: f64, seed: u64) -> System {
     System {
         projection: Projection::Platform,
         line_names: vec![String::from("x"), String::from("y")],
+        sessions: Vec::new(),
         line_units: vec!["N"; 2],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
@@ -145,6 +146,7 @@ fn a_residual_that_repeats_itself_does_not_average_out() {
         let system = System {
             projection: Projection::Joints,
             line_names: vec![String::from("1")],
+            sessions: Vec::new(),
             line_units: vec!["N"],
             lines: vec![factor],
             parts: Vec::new(),

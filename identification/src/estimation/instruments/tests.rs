@@ -61,6 +61,7 @@ fn system(errors: f64, seed: u64) -> System {
     System {
         projection: Projection::Joints,
         line_names: vec![String::from("1")],
+        sessions: Vec::new(),
         line_units: vec!["N"],
         lines: vec![line],
         parts: Vec::new(),

@@ -3,6 +3,7 @@
 //! - `scores`: covariance of the base estimate for any residual, with degrees of freedom.
 //! - `periodic_power`: its increase from residuals at the frequencies of the motion.
 //! - `periods`: its increase from residuals that are equal in all periods.
+//! - `sessions`: their increase from changes of the robot between recording sessions.
 //! - `parts`: covariance from sums over parts of the runs, if only their factors are stored.
 //! - `distributions`: Student's and related distributions.
 //!
@@ -28,6 +29,7 @@ mod parts;
 pub(crate) mod periodic_power;
 mod periods;
 pub(crate) mod scores;
+mod sessions;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -79,6 +81,10 @@ impl Intervals {
         let freedom = sorted[sorted.len() / 2];
         covariance.enlarge(&ratios(system, context));
         covariance.enlarge(&periods::ratios(system, context, &covariance));
+        let variances: Vec<f64> = covariance.matrix.diagonal().iter().copied().collect();
+        if let Some(ratios) = sessions::ratios(system, context, &variances) {
+            covariance.enlarge(&ratios);
+        }
         Some(Self {
             columns,
             values: values.clone(),

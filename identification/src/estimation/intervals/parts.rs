@@ -74,7 +74,7 @@ pub(super) fn covariance(system: &System, context: &Context<'_>) -> Option<Covar
 }
 
 /// G of a part.
-fn gram(part: &RunPart, context: &Context<'_>) -> DMatrix<f64> {
+pub(super) fn gram(part: &RunPart, context: &Context<'_>) -> DMatrix<f64> {
     let p = context.selected.len();
     let mut sum = DMatrix::zeros(p, p);
     for (line, weight) in part.lines.iter().zip(&context.estimation.weights) {
@@ -85,7 +85,7 @@ fn gram(part: &RunPart, context: &Context<'_>) -> DMatrix<f64> {
 }
 
 /// s of a part.
-fn score(part: &RunPart, context: &Context<'_>) -> DVector<f64> {
+pub(super) fn score(part: &RunPart, context: &Context<'_>) -> DVector<f64> {
     let values = DVector::from_column_slice(&context.estimation.values);
     let mut sum = DVector::zeros(context.selected.len());
     for (line, weight) in part.lines.iter().zip(&context.estimation.weights) {

@@ -6,7 +6,7 @@ use crate::{
     regression::{
         factor::Factor,
         projection::Projection,
-        system::{Stretch, System},
+        system::{RunPart, Stretch, System},
     },
 };
 use nalgebra::DMatrix;
@@ -72,6 +72,7 @@ fn system(kind: DrawOptions, samples: usize, seed: u64) -> System {
     System {
         projection: Projection::Platform,
         line_names: vec![String::from("x"), String::from("y")],
+        sessions: Vec::new(),
         line_units: vec!["N"; 2],
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
@@ -143,4 +144,92 @@ fn more_periods_tell_no_more_of_what_repeats_itself() {
     println!("widths of 6 and 24 periods: {few:.2}, {many:.2}");
     // For white residuals it would be one half.
     assert!(many > 0.75 * few);
+}
+
+/// Runs of several sessions whose parameters scatter by `scatter` around the truth.
+fn of_sessions(sessions: usize, scatter: f64, seed: u64) -> System {
+    let mut generator = Pcg64::seed_from_u64(1000 + seed);
+    let mut normal = || {
+        (0..12)
+            .map(|_| generator.random_range(-0.5..0.5))
+            .sum::<f64>()
+    };
+    let white = DrawOptions {
+        memory: 0.0,
+        growth: 0.0,
+        repeated: 0.0,
+    };
+    let mut all = system(white, 0, 0);
+    all.stretches.clear();
+    for session in 0..sessions {
+        let shift = [0; 3].map(|_| scatter * normal());
+        let mut own = system(white, 200, seed * 100 + session as u64);
+        let mut stretch = own.stretches.remove(0);
+        for rows in &mut stretch.lines {
+            for mut row in rows.row_iter_mut() {
+                let moved: f64 = (0..3).map(|i| row[i] * shift[i]).sum();
+                row[3] += moved;
+            }
+        }
+        let lines: Vec<Factor> = { &stretch.lines }
+            .iter()
+            .map(|rows| {
+                let mut factor = Factor::new(3);
+                factor.push(rows);
+                factor
+            })
+            .collect();
+        for (sum, one) in all.lines.iter_mut().zip(&lines) {
+            sum.add(one);
+        }
+        stretch.run = session;
+        all.stretches.push(stretch);
+        all.parts.push(RunPart {
+            run: session,
+            lines,
+        });
+        all.sessions.push(session);
+    }
+    all
+}
+
+/// Fraction of covering intervals, and their mean width, over many draws of sessions.
+fn coverage_of_sessions(sessions: usize, scatter: f64, are_known: bool) -> (f64, f64) {
+    const DRAWS: u64 = 60;
+    let (mut covering, mut width) = (0.0, 0.0);
+    for seed in 0..DRAWS {
+        let mut system = of_sessions(sessions, scatter, seed);
+        if !are_known {
+            system.sessions.clear();
+        }
+        let selected = [0, 1, 2];
+        let found = estimate(&system, &selected, &settings()).expect("an estimate");
+        let intervals = Intervals::new(&system, &selected, &found);
+        for column in selected {
+            let [low, high] = intervals.of(column, 3).expect("an estimated column");
+            covering += f64::from(u8::from((low..=high).contains(&TRUTH[column])));
+            width += high - low;
+        }
+    }
+    let count = (3 * DRAWS) as f64;
+    (covering / count, width / count)
+}
+
+#[test]
+fn intervals_contain_changes_between_sessions() {
+    let (without, narrow) = coverage_of_sessions(6, 0.5, false);
+    let (with, wide) = coverage_of_sessions(6, 0.5, true);
+    println!("changes, not labelled: {without:.3}, labelled: {with:.3}");
+    assert!(without < 0.7, "{without}");
+    assert!((0.91..0.99).contains(&with), "{with}");
+    assert!(wide > narrow);
+}
+
+#[test]
+fn intervals_of_equal_sessions_hardly_grow() {
+    let (_, narrow) = coverage_of_sessions(6, 0.0, false);
+    let (with, wide) = coverage_of_sessions(6, 0.0, true);
+    println!("no changes: {with:.3}, width {}", wide / narrow);
+    assert!((0.92..0.995).contains(&with), "{with}");
+    assert!(wide < 1.4 * narrow, "{wide} {narrow}");
 }

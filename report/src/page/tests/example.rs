@@ -286,6 +286,7 @@ pub(super) fn identification() -> Identification {
         robot: HOSTILE.to_owned(),
         runs: vec![RunSummary {
             payload_name: None,
+            session: None,
             name: HOSTILE.to_owned(),
             samples: 5000,
             sampling_frequency: 1000.0,
