@@ -25,8 +25,8 @@
 //! # Ok::<(), overact_logs::Error>(())
 //! ```
 //!
-//! Text, MATLAB's `.mat` files, NumPy's files, Parquet, HDF5 and MCAP are recognised by their first
-//! bytes. Columns of text are separated by commas, semicolons, tabs or blanks. Decimal commas, a
+//! Text, JSON Lines, MATLAB's `.mat` files, NumPy's files, Parquet, HDF5 and MCAP are recognised by their
+//! first bytes. Columns of text are separated by commas, semicolons, tabs or blanks. Decimal commas, a
 //! header, names in a comment or no names are supported.
 //!
 //! Readers report every missing column, every cell that is not a number, and the first non-uniform

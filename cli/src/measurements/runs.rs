@@ -22,7 +22,7 @@ use std::{
 #[derive(Debug, clap::Args)]
 #[group(id = "runs")]
 pub(crate) struct Arguments {
-    /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
+    /// Logs (CSV and other text, JSON Lines, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
     /// `a.csv+b.csv` for one run in two files, `-` for standard input; without any, the virtual
     /// experiment is simulated
     #[arg(long, value_name = "LOG", num_args = 1..)]

@@ -17,6 +17,8 @@ const BEGINNING: usize = 4096;
 pub(crate) enum Format {
     /// Lines of numbers.
     Text,
+    /// JSON objects, one per line or in a list.
+    JsonLines,
     /// MATLAB versions 5 to 7.2.
     Mat,
     /// NumPy's `.npy`.
@@ -162,12 +164,28 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     }
     let is_text = |byte: &u8| !byte.is_ascii_control() || b"\t\n\r\x0c\x1a".contains(byte);
     if beginning.iter().all(is_text) {
-        return Ok(Format::Text);
+        return Ok(if is_json(beginning) {
+            Format::JsonLines
+        } else {
+            Format::Text
+        });
     }
     let message = "the file is neither text nor of a known format";
     Err(Problem::new(Code::LOG_FORMAT, message).help(
-        "logs are text (CSV), Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
+        "logs are text (CSV), JSON Lines, Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
     ))
+}
+
+/// Whether a text starts with a JSON object, or a list of objects.
+fn is_json(beginning: &[u8]) -> bool {
+    let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning);
+    let text = text.trim_ascii_start();
+    let first = match text.strip_prefix(b"[") {
+        Some(rest) => rest.trim_ascii_start(),
+        None => text,
+    };
+    let inside = first.strip_prefix(b"{").map(<[u8]>::trim_ascii_start);
+    inside.is_some_and(|inside| inside.first().is_some_and(|byte| b"\"}".contains(byte)))
 }
 
 #[cfg(test)]
@@ -178,6 +196,15 @@ mod tests {
     fn first_bytes_tell_the_format() {
         assert_eq!(of(b""), Ok(Format::Text));
         assert_eq!(of("time;q\u{e9}\n".as_bytes()), Ok(Format::Text));
+        for json in [
+            "{\"t\":0}\n",
+            "\u{feff}\n{ \"t\":0}",
+            "[\n  {\n\"t\": 0",
+            "{}\n{\"t\":0}",
+        ] {
+            assert_eq!(of(json.as_bytes()), Ok(Format::JsonLines), "{json}");
+        }
+        assert_eq!(of(b"[rad],{deg}\n"), Ok(Format::Text));
         let mut mat = vec![b' '; 128];
         mat[124..].copy_from_slice(b"\x00\x01IM");
         assert_eq!(of(&mat), Ok(Format::Mat));

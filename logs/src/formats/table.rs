@@ -13,6 +13,7 @@ use crate::{
     formats::{
         arrays::{self, Arrays},
         format::{self, Format},
+        json_lines::JsonLines,
         mat_file, numpy,
         parquet_file::Parquet,
         stored::{Stored, StoredRows},
@@ -59,6 +60,7 @@ impl Table {
                 return Ok(parts.map(Self::Text).collect());
             }
             Format::Mat => Self::Arrays(mat_file::open(file, medium)?),
+            Format::JsonLines => Self::Stored(Arc::new(JsonLines::open(file, medium)?)),
             Format::Parquet => Self::Stored(Arc::new(Parquet::open(file, medium)?)),
             Format::Array => Self::Arrays(numpy::open_array(file, medium)?),
             Format::Archive => Self::Arrays(numpy::open_archive(file, medium)?),
@@ -116,8 +118,12 @@ impl Table {
     }
 
     /// Whether numbers must be parsed from text.
-    pub(crate) const fn is_text(&self) -> bool {
-        matches!(self, Self::Text(_))
+    pub(crate) fn is_text(&self) -> bool {
+        match self {
+            Self::Text(_) => true,
+            Self::Stored(stored) => stored.is_slow(),
+            Self::Arrays(_) => false,
+        }
     }
 
     /// Number of columns that can be selected by number.
@@ -285,10 +291,11 @@ impl Rows<'_> {
     }
 
     /// Line of the last sample, if the file has lines.
-    pub(crate) const fn line(&self) -> Option<usize> {
+    pub(crate) fn line(&self) -> Option<usize> {
         match self {
             Self::Text(rows) => Some(rows.line()),
-            Self::Stored(_) | Self::Arrays(_) => None,
+            Self::Stored(rows) => rows.line(),
+            Self::Arrays(_) => None,
         }
     }
 
