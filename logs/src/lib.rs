@@ -71,10 +71,11 @@ pub use error::{Error, Problem, suggestion};
 pub use formats::{arrays::Array, parquet_file::write_parquet};
 pub use mapping::{Gain, Mapping, Time, load::Load, scales::Scales};
 pub use period_sums::Periods;
-pub use read::{parts, read, read_all, read_arrays, read_bytes};
+pub use read::{parts, read, read_all, read_arrays, read_bytes, time_range};
 pub use run::{
     dataset::{Dataset, Variant},
     log::{Log, Reader},
+    time_range::TimeRange,
 };
 pub use samples::Samples;
 pub use significant::significant;

@@ -5,6 +5,7 @@
 //! - `text`, `json_lines`, `mat_file`, `numpy`, `parquet_file`, `hdf5_file`, `mcap_file`: one format
 //!   each;
 //! - `stored`: formats that are read block by block from disk;
+//! - `row_range`: some rows of a table;
 //! - `arrays`: formats that are read as a whole.
 
 mod archive;
@@ -18,6 +19,7 @@ mod mat_file;
 mod mcap_file;
 mod numpy;
 pub(crate) mod parquet_file;
+pub(crate) mod row_range;
 mod stored;
 mod structures;
 pub(crate) mod table;
