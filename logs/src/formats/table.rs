@@ -143,7 +143,7 @@ impl Table {
         match self {
             Self::Text(text) => text.find(name),
             Self::Stored(stored) => stored.find(name),
-            Self::Arrays(arrays) => Ok(arrays.find(name)),
+            Self::Arrays(arrays) => arrays.find(name),
         }
     }
 
