@@ -4,7 +4,7 @@ use overact::Code;
 use std::io::Read;
 
 use crate::{
-    bytes::byte_source::ByteSource,
+    bytes::{byte_source::ByteSource, unpacking},
     error::{Error, Problem},
     problems::unreadable,
 };
@@ -83,8 +83,8 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
         "export CSV",
     ),
     (
-        b"\x1f\x8b",
-        "the file is compressed by gzip",
+        unpacking::GZIP,
+        "the file is compressed by gzip twice",
         "unpack it first",
     ),
     (
@@ -104,11 +104,14 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
     ),
 ];
 
-/// Recognises the format of a file.
+/// Recognises the format of a file; the second value is the unpacked file if it is compressed.
 ///
 /// # Errors
 /// A file that cannot be read, or of an unsupported format.
-pub(crate) fn recognise(file: &str, medium: &ByteSource) -> Result<Format, Error> {
+pub(crate) fn recognise(
+    file: &str,
+    medium: &ByteSource,
+) -> Result<(Format, Option<ByteSource>), Error> {
     if let Some(path) = medium.path()
         && path.metadata().is_ok_and(|found| !found.is_file())
     {
@@ -117,12 +120,28 @@ pub(crate) fn recognise(file: &str, medium: &ByteSource) -> Result<Format, Error
         let problem = Problem::new(Code::UNREADABLE_LOG, message).file(file);
         return Err(problem.help("write it to a file first").into());
     }
-    let mut beginning = Vec::new();
+    let mut first = beginning(file, medium)?;
+    let mut unpacked = None;
+    if first.starts_with(unpacking::GZIP) {
+        let own = unpacking::gunzip(medium).map_err(|why| {
+            let problem = Problem::new(Code::LOG_FORMAT, why).file(file);
+            problem.help("copy it again, or unpack it first")
+        })?;
+        first = beginning(file, &own)?;
+        unpacked = Some(own);
+    }
+    let format = of(&first).map_err(|problem| problem.file(file))?;
+    Ok((format, unpacked))
+}
+
+/// First bytes of a file.
+fn beginning(file: &str, medium: &ByteSource) -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::new();
     medium
         .open()
-        .and_then(|input| input.take(BEGINNING as u64).read_to_end(&mut beginning))
+        .and_then(|input| input.take(BEGINNING as u64).read_to_end(&mut bytes))
         .map_err(|error| unreadable(file, &error))?;
-    of(&beginning).map_err(|problem| problem.file(file).into())
+    Ok(bytes)
 }
 
 /// Recognises the format from the first bytes.

@@ -54,7 +54,9 @@ impl Table {
     /// # Errors
     /// A file that cannot be read, or of an unsupported format.
     pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Vec<Self>, Error> {
-        let one = match format::recognise(&file, medium)? {
+        let (format, unpacked) = format::recognise(&file, medium)?;
+        let medium = unpacked.as_ref().unwrap_or(medium);
+        let one = match format {
             Format::Text => {
                 let parts = Text::open(file, medium)?.into_iter();
                 return Ok(parts.map(Self::Text).collect());
