@@ -8,6 +8,7 @@ use crate::{
 use overact_codegen::{Progress as Step, Request, diagnostic::Code};
 use overact_robot::{CompiledFile, Error, Robot};
 use std::{
+    fs::File,
     io,
     path::{Path, PathBuf},
 };
@@ -47,7 +48,7 @@ pub(crate) fn robot(path: &Path, as_json: bool) -> Result<Robot, Error> {
     compiled(path, &Robot::request(), as_json).map(Robot::new)
 }
 
-/// Log from standard input in a temporary file, because logs are read more than once.
+/// Log from standard input or a pipe in a temporary file, because logs are read more than once.
 #[derive(Debug)]
 pub(crate) struct Spool(NamedTempFile);
 
@@ -57,17 +58,31 @@ impl Spool {
     /// # Errors
     /// A temporary folder that cannot be written, or an interrupted input.
     pub(crate) fn read() -> Result<Self, Failure> {
-        let spooled = || {
-            let mut builder = tempfile::Builder::new();
-            builder.prefix("overact-");
-            let mut file = signals::guarded(|| builder.tempfile())?;
-            io::copy(&mut io::stdin().lock(), file.as_file_mut())?;
-            Ok(Self(file))
-        };
-        spooled().map_err(|error: io::Error| {
+        Self::of(&mut io::stdin().lock()).map_err(|error| {
             let message = format!("standard input can't be read as a log: {error}");
             Problem::new(Code::STREAM, message).into()
         })
+    }
+
+    /// Reads a pipe to its end.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn of_pipe(path: &Path) -> Result<Self, Failure> {
+        let read = File::open(path).and_then(|mut pipe| Self::of(&mut pipe));
+        read.map_err(|error| {
+            let message = format!("the pipe can't be read as a log: {error}");
+            let problem = Problem::new(Code::STREAM, message).file(path.display().to_string());
+            problem.help("write it to a file first").into()
+        })
+    }
+
+    fn of(input: &mut dyn io::Read) -> io::Result<Self> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix("overact-");
+        let mut file = signals::guarded(|| builder.tempfile())?;
+        io::copy(input, file.as_file_mut())?;
+        Ok(Self(file))
     }
 
     /// Path of the file.

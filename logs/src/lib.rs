@@ -25,8 +25,8 @@
 //! # Ok::<(), overact_logs::Error>(())
 //! ```
 //!
-//! Text, MATLAB's `.mat` files, NumPy's files, Parquet, HDF5 and MCAP are recognised by their first
-//! bytes. Columns of text are separated by commas, semicolons, tabs or blanks. Decimal commas, a
+//! Text, JSON Lines, MATLAB's `.mat` files, NumPy's files, Parquet, HDF5 and MCAP are recognised by their
+//! first bytes. Columns of text are separated by commas, semicolons, tabs or blanks. Decimal commas, a
 //! header, names in a comment or no names are supported.
 //!
 //! Readers report every missing column, every cell that is not a number, and the first non-uniform
@@ -71,10 +71,11 @@ pub use error::{Error, Problem, suggestion};
 pub use formats::{arrays::Array, parquet_file::write_parquet};
 pub use mapping::{Gain, Mapping, Time, load::Load, scales::Scales};
 pub use period_sums::Periods;
-pub use read::{parts, read, read_all, read_arrays, read_bytes};
+pub use read::{parts, read, read_all, read_arrays, read_bytes, time_range};
 pub use run::{
     dataset::{Dataset, Variant},
     log::{Log, Reader},
+    time_range::TimeRange,
 };
 pub use samples::Samples;
 pub use significant::significant;

@@ -109,6 +109,12 @@ fn not_found(file: &str) -> String {
     if file == "-" {
         return String::from("standard input can't be joined with files: write it to a file first");
     }
+    let bracketed = file.strip_suffix(']').and_then(|own| own.rsplit_once('['));
+    if bracketed.is_some_and(|(own, _)| Path::new(own).exists()) {
+        return String::from(
+            "a range of time, in s, follows the last file of a run: `log.csv[10:60]`, `a.csv+b.csv[10:60]`",
+        );
+    }
     let pieces: Vec<&str> = file.split(['+', ',', ';', ' ']).map(str::trim).collect();
     let pieces: Vec<&str> = pieces
         .into_iter()

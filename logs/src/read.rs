@@ -18,14 +18,48 @@ use crate::{
     },
     mapping::Mapping,
     problems::display_name,
-    run::{log::Log, source::Files},
+    run::{log::Log, source::Files, time_range::TimeRange},
 };
 
-/// Splits a path into the files of a run.
+/// Splits a path into the files of a run, without a range of time.
 ///
 /// `a.csv+b.csv` joins two files, sample by sample or by time, unless a file has this name.
+/// `a.csv+b.csv[10:60]` is the same run, of which only some samples are used ([`time_range`]).
 #[must_use]
 pub fn parts(path: &Path) -> Vec<&Path> {
+    joined(split(path).0)
+}
+
+/// Range of time of a path, `log.csv[10:60]`; `None` without one.
+///
+/// Samples with start ≤ t < end are used. The time t, in s, is that of the log's own time column.
+/// It is counted from the first sample if there is no time column, or if the first time is an
+/// absolute stamp, larger than 1e6 s. A file whose name really has brackets has no range.
+///
+/// # Errors
+/// A reversed range, or bounds that are no numbers.
+pub fn time_range(path: &Path) -> Result<Option<TimeRange>, Error> {
+    let (run, text) = split(path);
+    let parsed = text.map(|text| {
+        let range = TimeRange::parse(text);
+        range.map_err(|why| TimeRange::problem(&display_name(run), text, &why))
+    });
+    Ok(parsed.transpose()?)
+}
+
+/// Splits a path into a run and the text of its range.
+fn split(path: &Path) -> (&Path, Option<&str>) {
+    let bracketed = || {
+        let (run, range) = path.to_str()?.strip_suffix(']')?.rsplit_once('[')?;
+        let last = joined(path).pop()?;
+        let is_range = range.contains(':') && !run.is_empty() && !last.exists();
+        is_range.then(|| (Path::new(run), Some(range)))
+    };
+    bracketed().unwrap_or((path, None))
+}
+
+/// Splits a path without a range into the files of a run.
+fn joined(path: &Path) -> Vec<&Path> {
     let text = path.to_str().filter(|_| !path.exists());
     let parts: Vec<&Path> = text
         .into_iter()
@@ -40,6 +74,8 @@ pub fn parts(path: &Path) -> Vec<&Path> {
 }
 
 /// Reads a run from a file of any supported format, or from several joined files ([`parts`]).
+///
+/// With a range of time, `log.csv[10:60]`, only its samples are used ([`time_range`]).
 ///
 /// # Errors
 /// A file that cannot be read or of an unsupported format, missing columns, invalid expressions,
@@ -58,7 +94,8 @@ fn read_with_progress(
 ) -> Result<Log, Error> {
     let part = |path: &Path| (display_name(path), ByteSource::at(path));
     let files: Vec<_> = parts(path).into_iter().map(part).collect();
-    let files = Files::new(display_name(path), &files, mapping)?;
+    let range = time_range(path)?;
+    let files = Files::new(display_name(path), &files, mapping, range)?;
     first_pass(files, mapping, payload, advance)
 }
 
@@ -78,7 +115,7 @@ pub fn read_arrays(
         table.push(array.name, rows, columns, array.values);
     }
     let tables = vec![Table::Arrays(table)];
-    let files = Files::of_tables(name.to_owned(), tables, vec![1], mapping)?;
+    let files = Files::of_tables(name.to_owned(), tables, vec![1], mapping, None)?;
     first_pass(files, mapping, payload, &|_| {})
 }
 
@@ -93,7 +130,7 @@ pub fn read_bytes(
     payload: bool,
 ) -> Result<Log, Error> {
     let files = [(name.to_owned(), ByteSource::Memory(Arc::clone(bytes)))];
-    let files = Files::new(name.to_owned(), &files, mapping)?;
+    let files = Files::new(name.to_owned(), &files, mapping, None)?;
     first_pass(files, mapping, payload, &|_| {})
 }
 
@@ -113,7 +150,9 @@ fn first_pass(
     let (frequency, count) = (summary.frequency, summary.count);
     let resampled = files.note(count, summary.left_out);
     let of_files = files.tables.first().and_then(Table::note);
-    let notes: Vec<String> = { of_files.into_iter().chain(resampled) }
+    let range = files.range.as_ref().map(|range| range.note.clone());
+    let notes: Vec<String> = { range.into_iter().chain(of_files) }
+        .chain(resampled)
         .chain(summary.irregularities.note())
         .chain(wraps.iter().map(|(_, wrap)| wrap.note()))
         .collect();
@@ -153,7 +192,8 @@ pub fn read_all(
     let done = AtomicU64::new(0);
     let advance = |bytes: u64| {
         let now = bytes + done.fetch_add(bytes, Ordering::Relaxed);
-        progress(now as f64 / total.max(1) as f64);
+        // A compressed file has more bytes than its size.
+        progress((now as f64 / total.max(1) as f64).min(1.0));
     };
     let read =
         |&(path, payload): &(&Path, bool)| read_with_progress(path, mapping, payload, &advance);

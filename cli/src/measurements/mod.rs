@@ -5,3 +5,4 @@ pub(crate) mod factors;
 pub(crate) mod payloads;
 pub(crate) mod runs;
 pub(crate) mod same;
+mod streams;

@@ -19,17 +19,16 @@ pub(crate) struct GivenLog {
     pub(crate) loaded: bool,
     /// Name before the equals sign, if payloads have names.
     name: Option<String>,
-    /// Whether it was read from standard input.
-    pub(crate) streamed: bool,
+    /// Path as given, if it was read from standard input or a pipe.
+    pub(crate) given: Option<String>,
 }
 
 impl GivenLog {
     /// Adds the name of the payload to the log.
     pub(crate) fn label(&self, log: Log) -> Log {
-        let log = if self.streamed {
-            log.with_name("-")
-        } else {
-            log
+        let log = match &self.given {
+            Some(name) => log.with_name(name.as_str()),
+            None => log,
         };
         match &self.name {
             Some(name) => log.with_payload_name(name),
@@ -51,7 +50,7 @@ impl<'a> Payloads<'a> {
             path: path.clone(),
             loaded: false,
             name: None,
-            streamed: false,
+            given: None,
         };
         paths.iter().map(given).collect()
     }
@@ -64,7 +63,7 @@ impl<'a> Payloads<'a> {
                 path: file(path).to_path_buf(),
                 loaded: true,
                 name,
-                streamed: false,
+                given: None,
             }
         };
         paths.iter().map(given).collect()

@@ -3,18 +3,14 @@
 use super::{
     payloads::{self, Payloads},
     same,
+    streams::Streams,
 };
-use crate::{
-    failure::Failure,
-    input::{Spool, is_stream},
-    note::print_without_effect,
-    progress::Progress,
-};
+use crate::{failure::Failure, note::print_without_effect, progress::Progress};
 use clap::ValueEnum;
 use overact_identification::{Log, Progress as Doing, Settings};
 use overact_robot::{Error, Robot, Runs};
 use std::{
-    cell::OnceCell,
+    cell::RefCell,
     path::{Path, PathBuf},
 };
 
@@ -22,8 +18,9 @@ use std::{
 #[derive(Debug, clap::Args)]
 #[group(id = "runs")]
 pub(crate) struct Arguments {
-    /// Logs (CSV and other text, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
-    /// `a.csv+b.csv` for one run in two files, `-` for standard input; without any, the virtual
+    /// Logs (CSV and other text, JSON Lines, MATLAB's .mat up to version 7, NumPy's .npz, Parquet),
+    /// `a.csv+b.csv` for one run in two files, `'log.csv[10:60]'` for a range of its time in s, `-`
+    /// for standard input, or a pipe such as `<(ssh robot cat log.csv)`; without any, the virtual
     /// experiment is simulated
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,
@@ -45,9 +42,9 @@ pub(crate) struct Arguments {
     /// Seed of the virtual experiment's noise [default: the description's]
     #[arg(long)]
     seed: Option<u64>,
-    /// Log from standard input; its file is removed with this value.
+    /// Logs from standard input and pipes; their copies are removed with this value.
     #[arg(skip)]
-    spool: OnceCell<Spool>,
+    streams: RefCell<Streams>,
     /// Friction in both directions of motion [default: the description's]
     #[arg(long, value_enum)]
     friction: Option<Friction>,
@@ -64,7 +61,7 @@ enum Friction {
 
 impl Arguments {
     /// Runs from logs, without and with payload.
-    pub(crate) const fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
+    pub(crate) fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
         Self {
             data,
             payload_data,
@@ -72,7 +69,7 @@ impl Arguments {
             cross_validate_payload: Vec::new(),
             sessions: Vec::new(),
             seed: None,
-            spool: OnceCell::new(),
+            streams: RefCell::default(),
             friction: None,
         }
     }
@@ -137,9 +134,10 @@ impl Arguments {
         let all = || own.iter().chain(&others);
         payloads.check(all())?;
         for one in own.iter_mut().chain(&mut others) {
-            if is_stream(&one.path) {
-                one.path = self.spooled()?;
-                one.streamed = true;
+            let copied = self.streams.borrow_mut().copied(&one.path)?;
+            if let Some(path) = copied {
+                one.given = Some(one.path.display().to_string());
+                one.path = path;
             }
         }
         let all = || own.iter().chain(&others);
@@ -177,32 +175,17 @@ impl Arguments {
         )))
     }
 
-    /// Replaces the temporary file by the user's name of standard input in an error.
+    /// Replaces temporary files by the user's names of streams in an error.
     fn as_given(&self, error: Error) -> Error {
-        let spooled = self
-            .spool
-            .get()
-            .map(|spool| spool.path().display().to_string());
         let mut problems = error.problems();
-        for problem in &mut problems {
-            if problem.file.is_some() && problem.file == spooled {
-                problem.file = Some("-".to_owned());
-            }
-        }
+        let streams = self.streams.borrow();
+        problems
+            .iter_mut()
+            .for_each(|problem| streams.as_given(problem));
         match error {
             description @ Error::Description { .. } => description,
             _ => Error::Problems(problems),
         }
-    }
-
-    /// File with the contents of standard input.
-    fn spooled(&self) -> Result<PathBuf, Failure> {
-        if self.spool.get().is_none() {
-            // It was empty, as checked above.
-            let _ = self.spool.set(Spool::read()?);
-        }
-        let path = self.spool.get().map(Spool::path);
-        Ok(path.unwrap_or_default())
     }
 
     /// Simulates the virtual experiment.

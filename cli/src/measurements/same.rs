@@ -17,6 +17,7 @@ pub(crate) fn check(logs: &[&Path], estimated: usize) -> Result<(), Failure> {
     for at in 1..logs.len() {
         let is_same = |&other: &usize| {
             sizes[at].is_some()
+                && overlap(logs[at], logs[other])
                 && sizes[at] == sizes[other]
                 && content(logs[at]) == content(logs[other])
         };
@@ -33,6 +34,16 @@ pub(crate) fn check(logs: &[&Path], estimated: usize) -> Result<(), Failure> {
         Ok(())
     } else {
         Err(problems.into())
+    }
+}
+
+/// Whether two logs have times in common, if both are read in part, `log.csv[10:60]`.
+fn overlap(one: &Path, other: &Path) -> bool {
+    // Ranges that cannot be used are reported when the logs are read.
+    let range = |log: &Path| overact_logs::time_range(log).ok().flatten();
+    match (range(one), range(other)) {
+        (Some(one), Some(other)) => one.overlaps(&other),
+        _ => true,
     }
 }
 
@@ -106,6 +117,11 @@ mod tests {
             "{validated}"
         );
         assert!(said(&[&a, &b, &b], 1).contains("count twice"));
+        // Ranges of one log are different runs unless they overlap.
+        let [start, end, middle] = ["a.csv[:1]", "a.csv[1:]", "a.csv[0.5:1.5]"].map(at);
+        assert_eq!(said(&[&start, &end], 1), "");
+        assert!(said(&[&end, &middle], 2).contains("count twice"));
+        assert!(said(&[&a, &middle], 1).contains("from which the parameters are estimated"));
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{
     fs::{self, File},
-    io::{Cursor, Read, Result, Seek, SeekFrom},
+    io::{Cursor, Read, Result, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -18,8 +18,23 @@ use parquet::{
 pub(crate) enum ByteSource {
     /// In a file of this path.
     Disk(PathBuf),
+    /// In a temporary file, which is deleted after the last use.
+    #[cfg(not(target_family = "wasm"))]
+    Temporary(Arc<TemporaryFile>),
     /// Shared bytes in memory.
     Memory(Arc<[u8]>),
+}
+
+/// A temporary file, deleted with this value.
+#[cfg(not(target_family = "wasm"))]
+#[derive(Debug)]
+pub(crate) struct TemporaryFile(tempfile::TempPath);
+
+#[cfg(not(target_family = "wasm"))]
+impl PartialEq for TemporaryFile {
+    fn eq(&self, other: &Self) -> bool {
+        *self.0 == *other.0
+    }
 }
 
 /// A file that is being read.
@@ -42,6 +57,8 @@ impl ByteSource {
     pub(crate) fn open(&self) -> Result<Opened> {
         Ok(match self {
             Self::Disk(path) => Opened::Disk(File::open(path)?),
+            #[cfg(not(target_family = "wasm"))]
+            Self::Temporary(file) => Opened::Disk(File::open(&file.0)?),
             Self::Memory(bytes) => Opened::Memory(Cursor::new(Arc::clone(bytes))),
         })
     }
@@ -53,6 +70,8 @@ impl ByteSource {
     pub(crate) fn read(&self) -> Result<Vec<u8>> {
         match self {
             Self::Disk(path) => fs::read(path),
+            #[cfg(not(target_family = "wasm"))]
+            Self::Temporary(file) => fs::read(&file.0),
             Self::Memory(bytes) => Ok(bytes.to_vec()),
         }
     }
@@ -61,8 +80,43 @@ impl ByteSource {
     pub(crate) fn path(&self) -> Option<&Path> {
         match self {
             Self::Disk(path) => Some(path),
+            #[cfg(not(target_family = "wasm"))]
+            Self::Temporary(file) => Some(&file.0),
             Self::Memory(_) => None,
         }
+    }
+
+    /// Number of bytes.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub(crate) fn size(&self) -> Result<u64> {
+        match (self, self.path()) {
+            (Self::Memory(bytes), _) => Ok(bytes.len() as u64),
+            (_, Some(path)) => Ok(fs::metadata(path)?.len()),
+            (_, None) => Ok(0),
+        }
+    }
+
+    /// Other bytes in a temporary file, or in memory if these are.
+    ///
+    /// # Errors
+    /// The error of `write`, or a temporary folder that cannot be written.
+    pub(crate) fn like(
+        &self,
+        write: &mut dyn FnMut(&mut dyn Write) -> Result<u64>,
+    ) -> Result<Self> {
+        #[cfg(not(target_family = "wasm"))]
+        if self.path().is_some() {
+            let mut file = tempfile::Builder::new().prefix("overact-").tempfile()?;
+            write(file.as_file_mut())?;
+            return Ok(Self::Temporary(Arc::new(TemporaryFile(
+                file.into_temp_path(),
+            ))));
+        }
+        let mut bytes = Vec::new();
+        write(&mut bytes)?;
+        Ok(Self::Memory(bytes.into()))
     }
 }
 

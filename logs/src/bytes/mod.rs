@@ -3,3 +3,4 @@
 pub(crate) mod budget;
 pub(crate) mod byte_source;
 pub(crate) mod temporary_store;
+pub(crate) mod unpacking;

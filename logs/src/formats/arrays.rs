@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use crate::{
     error::{Error, Problem},
-    problems::Existing,
+    formats::structures::Object,
+    problems::{Existing, shown},
 };
 
 /// An array in a caller's memory.
@@ -34,6 +35,10 @@ pub(crate) struct Arrays {
     /// Names of the arrays.
     names: Vec<String>,
     series: Vec<Series>,
+    /// Texts that name an array, with its name.
+    labels: Vec<(String, String)>,
+    /// Objects of MATLAB's classes, which cannot be read.
+    pub(crate) objects: Vec<Object>,
 }
 
 impl Arrays {
@@ -43,6 +48,8 @@ impl Arrays {
             file,
             names: Vec::new(),
             series: Vec::new(),
+            labels: Vec::new(),
+            objects: Vec::new(),
         }
     }
 
@@ -71,14 +78,71 @@ impl Arrays {
         }
     }
 
+    /// Adds a text that names the array `name`.
+    pub(crate) fn label(&mut self, label: &str, name: &str) {
+        self.names.push(label.to_owned());
+        self.labels.push((label.to_owned(), name.to_owned()));
+    }
+
     /// Number of vectors and columns of matrices.
     pub(crate) fn columns(&self) -> usize {
         self.series.len()
     }
 
     /// Index of a vector, of a matrix column `name(:,2)` or of a matrix row `name(2,:)`.
-    pub(crate) fn find(&self, name: &str) -> Option<usize> {
+    ///
+    /// The name may be the text that names a signal, if only one signal has it.
+    ///
+    /// # Errors
+    /// A text of several signals, or the name of an object.
+    pub(crate) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
+        if let Some(place) = self.named(name) {
+            return Ok(Some(place));
+        }
+        let index = name.rfind('(').filter(|_| name.ends_with(')'));
+        let (label, column) = name.split_at(index.unwrap_or(name.len()));
+        for (label, column) in [(name, ""), (label.trim(), column)] {
+            let arrays: Vec<&str> = self.labelled(label).collect();
+            match arrays[..] {
+                [] => {}
+                [array] => return Ok(self.named(&format!("{array}{column}"))),
+                [first, second, ..] => {
+                    return Err(ambiguous(&self.file, name, label, [first, second]));
+                }
+            }
+        }
+        let outer = name.split(['.', '(', '{']).next().unwrap_or_default();
+        match self.objects.iter().find(|object| object.name == outer) {
+            Some(object) => Err(self.unreadable(object).column(name)),
+            None => Ok(None),
+        }
+    }
+
+    /// Arrays that a text names.
+    fn labelled(&self, label: &str) -> impl Iterator<Item = &str> {
+        let labels = self.labels.iter();
+        labels.filter_map(move |(own, array)| (own == label).then_some(array.as_str()))
+    }
+
+    /// The problem of an object of a MATLAB class.
+    fn unreadable(&self, object: &Object) -> Problem {
+        let message = format!(
+            "`{}` is an object of MATLAB's class `{}`, whose content only MATLAB can read",
+            shown(&object.name),
+            shown(&object.class)
+        );
+        let problem = Problem::new(Code::LOG_FORMAT, message).file(self.file.as_str());
+        problem.help(
+            "save arrays or structures: let Simulink log in the format `Structure With Time`, or write `t = x.Time; q = x.Data; save('log.mat', 't', 'q', '-v7')` for a timeseries x",
+        )
+    }
+
+    /// Index of a vector, of a matrix column or of a matrix row.
+    fn named(&self, name: &str) -> Option<usize> {
         let bare: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+        // Signals of two dimensions have samples along the third one; `s(1)` is `s`.
+        let bare = bare.replace(",1,:)", ",:)");
+        let single = bare.replace("(1).", ".");
         // A vector is a matrix of one column.
         let vector = bare
             .strip_suffix("(:,1)")
@@ -88,11 +152,13 @@ impl Arrays {
         is(name)
             .or_else(|| is(&bare))
             .or_else(|| vector.and_then(is))
+            .or_else(|| is(&single))
     }
 
     /// Values of a vector or of a matrix column.
     pub(crate) fn values(&self, name: &str) -> Option<&[f64]> {
-        self.find(name).map(|place| &*self.series[place].values)
+        let place = self.find(name).ok().flatten()?;
+        Some(&*self.series[place].values)
     }
 
     /// The existing arrays.
@@ -106,10 +172,15 @@ impl Arrays {
 
     /// First column of a matrix that is named like a vector.
     pub(crate) fn first_column(&self, name: &str) -> Option<&str> {
-        let start = format!("{name}(");
-        let mut parts = self.series.iter();
-        let part = parts.find(|series| series.name.starts_with(&start));
-        part.map(|series| series.name.as_str())
+        let array = self.labelled(name).next().unwrap_or(name);
+        let names = self.series.iter().map(|series| series.name.as_str());
+        let is_column = |own: &&str| {
+            let index = own
+                .strip_prefix(array)
+                .filter(|index| index.starts_with('('));
+            index.is_some_and(|index| !index.contains('.'))
+        };
+        { names }.find(is_column)
     }
 
     /// Reads some series row by row; the names are for messages.
@@ -140,6 +211,17 @@ impl Arrays {
             next: 0,
         })
     }
+}
+
+/// The problem of a column `name` with the text of several signals, `label`.
+pub(crate) fn ambiguous(file: &str, name: &str, label: &str, paths: [&str; 2]) -> Problem {
+    let message = format!("several signals are called `{}`", shown(label));
+    let problem = Problem::new(Code::SAME_COLUMN, message);
+    let help = format!(
+        "give the path of the signal, `{}` or `{}`",
+        paths[0], paths[1]
+    );
+    problem.file(file).column(name).help(help)
 }
 
 /// Series that are read row by row.

@@ -4,7 +4,7 @@ use overact::Code;
 use std::io::Read;
 
 use crate::{
-    bytes::byte_source::ByteSource,
+    bytes::{byte_source::ByteSource, unpacking},
     error::{Error, Problem},
     problems::unreadable,
 };
@@ -17,6 +17,8 @@ const BEGINNING: usize = 4096;
 pub(crate) enum Format {
     /// Lines of numbers.
     Text,
+    /// JSON objects, one per line or in a list.
+    JsonLines,
     /// MATLAB versions 5 to 7.2.
     Mat,
     /// NumPy's `.npy`.
@@ -81,8 +83,8 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
         "export CSV",
     ),
     (
-        b"\x1f\x8b",
-        "the file is compressed by gzip",
+        unpacking::GZIP,
+        "the file is compressed by gzip twice",
         "unpack it first",
     ),
     (
@@ -102,11 +104,14 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
     ),
 ];
 
-/// Recognises the format of a file.
+/// Recognises the format of a file; the second value is the unpacked file if it is compressed.
 ///
 /// # Errors
 /// A file that cannot be read, or of an unsupported format.
-pub(crate) fn recognise(file: &str, medium: &ByteSource) -> Result<Format, Error> {
+pub(crate) fn recognise(
+    file: &str,
+    medium: &ByteSource,
+) -> Result<(Format, Option<ByteSource>), Error> {
     if let Some(path) = medium.path()
         && path.metadata().is_ok_and(|found| !found.is_file())
     {
@@ -115,12 +120,28 @@ pub(crate) fn recognise(file: &str, medium: &ByteSource) -> Result<Format, Error
         let problem = Problem::new(Code::UNREADABLE_LOG, message).file(file);
         return Err(problem.help("write it to a file first").into());
     }
-    let mut beginning = Vec::new();
+    let mut first = beginning(file, medium)?;
+    let mut unpacked = None;
+    if first.starts_with(unpacking::GZIP) {
+        let own = unpacking::gunzip(medium).map_err(|why| {
+            let problem = Problem::new(Code::LOG_FORMAT, why).file(file);
+            problem.help("copy it again, or unpack it first")
+        })?;
+        first = beginning(file, &own)?;
+        unpacked = Some(own);
+    }
+    let format = of(&first).map_err(|problem| problem.file(file))?;
+    Ok((format, unpacked))
+}
+
+/// First bytes of a file.
+fn beginning(file: &str, medium: &ByteSource) -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::new();
     medium
         .open()
-        .and_then(|input| input.take(BEGINNING as u64).read_to_end(&mut beginning))
+        .and_then(|input| input.take(BEGINNING as u64).read_to_end(&mut bytes))
         .map_err(|error| unreadable(file, &error))?;
-    of(&beginning).map_err(|problem| problem.file(file).into())
+    Ok(bytes)
 }
 
 /// Recognises the format from the first bytes.
@@ -162,12 +183,28 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
     }
     let is_text = |byte: &u8| !byte.is_ascii_control() || b"\t\n\r\x0c\x1a".contains(byte);
     if beginning.iter().all(is_text) {
-        return Ok(Format::Text);
+        return Ok(if is_json(beginning) {
+            Format::JsonLines
+        } else {
+            Format::Text
+        });
     }
     let message = "the file is neither text nor of a known format";
     Err(Problem::new(Code::LOG_FORMAT, message).help(
-        "logs are text (CSV), Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
+        "logs are text (CSV), JSON Lines, Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
     ))
+}
+
+/// Whether a text starts with a JSON object, or a list of objects.
+fn is_json(beginning: &[u8]) -> bool {
+    let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning);
+    let text = text.trim_ascii_start();
+    let first = match text.strip_prefix(b"[") {
+        Some(rest) => rest.trim_ascii_start(),
+        None => text,
+    };
+    let inside = first.strip_prefix(b"{").map(<[u8]>::trim_ascii_start);
+    inside.is_some_and(|inside| inside.first().is_some_and(|byte| b"\"}".contains(byte)))
 }
 
 #[cfg(test)]
@@ -178,6 +215,15 @@ mod tests {
     fn first_bytes_tell_the_format() {
         assert_eq!(of(b""), Ok(Format::Text));
         assert_eq!(of("time;q\u{e9}\n".as_bytes()), Ok(Format::Text));
+        for json in [
+            "{\"t\":0}\n",
+            "\u{feff}\n{ \"t\":0}",
+            "[\n  {\n\"t\": 0",
+            "{}\n{\"t\":0}",
+        ] {
+            assert_eq!(of(json.as_bytes()), Ok(Format::JsonLines), "{json}");
+        }
+        assert_eq!(of(b"[rad],{deg}\n"), Ok(Format::Text));
         let mut mat = vec![b' '; 128];
         mat[124..].copy_from_slice(b"\x00\x01IM");
         assert_eq!(of(&mat), Ok(Format::Mat));

@@ -1,4 +1,4 @@
-//! MATLAB's `.mat` files up to version 7: numeric arrays, fields of structures, and scalars.
+//! MATLAB's `.mat` files up to version 7: numeric arrays, also in structures and cell arrays.
 
 use overact::Code;
 
@@ -39,11 +39,15 @@ pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Arrays, Error> {
             if one.is_packed {
                 of_numbers.take(array.size().iter().product::<usize>() as u64 * 8)?;
             }
-            push(&mut arrays, one.name.unwrap_or(array.name()), array);
+            let name = one.name.unwrap_or(array.name());
+            push(&mut arrays, name, array);
+            if let Some(label) = one.label {
+                arrays.label(label, name);
+            }
         }
         Ok(())
     });
-    read.map_err(broken)?;
+    arrays.objects = read.map_err(broken)?;
     Ok(arrays)
 }
 

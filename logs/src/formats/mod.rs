@@ -2,8 +2,10 @@
 //!
 //! - `format`: recognises the format from the first bytes;
 //! - `table`: a file of any format;
-//! - `text`, `mat_file`, `numpy`, `parquet_file`, `hdf5_file`, `mcap_file`: one format each;
+//! - `text`, `json_lines`, `mat_file`, `numpy`, `parquet_file`, `hdf5_file`, `mcap_file`: one format
+//!   each;
 //! - `stored`: formats that are read block by block from disk;
+//! - `row_range`: some rows of a table;
 //! - `arrays`: formats that are read as a whole.
 
 mod archive;
@@ -11,11 +13,13 @@ pub(crate) mod arrays;
 mod format;
 #[cfg(feature = "hdf5")]
 mod hdf5_file;
+mod json_lines;
 mod mat_file;
 #[cfg(feature = "mcap")]
 mod mcap_file;
 mod numpy;
 pub(crate) mod parquet_file;
+pub(crate) mod row_range;
 mod stored;
 mod structures;
 pub(crate) mod table;

@@ -30,6 +30,11 @@ pub(crate) trait Stored: Debug + Send + Sync {
         false
     }
 
+    /// Whether numbers must be parsed from text.
+    fn is_slow(&self) -> bool {
+        false
+    }
+
     /// Number of columns that can be selected by number.
     fn columns(&self) -> usize;
 
@@ -87,6 +92,11 @@ pub(crate) trait StoredRows: Debug {
     /// # Errors
     /// Every cell of the row that is no finite number, or a file that cannot be read further.
     fn next(&mut self, values: &mut [f64]) -> Result<bool, Error>;
+
+    /// Line of the last row, if the file has lines.
+    fn line(&self) -> Option<usize> {
+        None
+    }
 
     /// Whether nothing more can be read.
     fn is_broken(&self) -> bool;

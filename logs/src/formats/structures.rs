@@ -1,4 +1,8 @@
-//! Structures in MATLAB's `.mat` files: numeric fields as arrays named `STRUCTURE.FIELD`.
+//! Structures and cell arrays in MATLAB's `.mat` files, with names as in MATLAB.
+//!
+//! Numeric fields are arrays `STRUCTURE.FIELD`, `STRUCTURE(2).FIELD` of arrays of structures, and
+//! `CELLS{2}` of cell arrays. Files of Simulink and dSPACE have texts that name a signal: the
+//! values of `signals(2)` are in `values` and their name in `label`, or in `Data` and `Name`.
 //!
 //! A field is stored like an array of a file, except for its name. With a name and the file's
 //! header, it becomes a file of one array for the array reader.
@@ -15,30 +19,58 @@ pub(crate) const HEADER: usize = 128;
 /// Largest depth of nested structures.
 const LARGEST_DEPTH: usize = 8;
 
+/// Largest number of arrays in structures.
+const MOST_FIELDS: usize = 100_000;
+
+/// Fields with the name of a signal, and with its values.
+const LABELS: [&str; 2] = ["name", "label"];
+const VALUES: [&str; 2] = ["data", "values"];
+
 /// Types of elements.
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
-/// Class of structures.
+/// Classes of cell arrays, structures, texts, and objects of MATLAB's classes.
+const CELL: u8 = 1;
 const STRUCTURE: u8 = 2;
+const TEXT: u8 = 4;
+const OBJECT: u8 = 17;
 
 /// Classes of numeric arrays.
 const NUMBERS: std::ops::RangeInclusive<u8> = 6..=15;
 
-/// Bytes of an array that determine its class and size.
-const BEGINNING: usize = 72;
+/// Bytes of an array that determine its class and size, and the class of an object.
+const BEGINNING: usize = 160;
 
 /// An array of a file, as a file of that array alone.
 pub(crate) struct OneArray<'a> {
     /// Name of a field, `STRUCTURE.FIELD`; `None` for arrays with names of their own.
     pub(crate) name: Option<&'a str>,
+    /// Text that names the signal.
+    pub(crate) label: Option<&'a str>,
     /// Whether it is compressed in the original file.
     pub(crate) is_packed: bool,
     /// Content of the file.
     pub(crate) file: &'a mut dyn Read,
 }
 
+/// An object of a MATLAB class, whose content is not documented.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Object {
+    pub(crate) name: String,
+    pub(crate) class: String,
+}
+
+/// A numeric array in a structure or cell array.
+struct Field {
+    name: String,
+    label: Option<String>,
+    array: Vec<u8>,
+}
+
 /// Passes all numeric arrays of a file to `take`, including fields of structures.
+///
+/// Returns the objects of MATLAB's classes.
 ///
 /// Other arrays are skipped, compressed ones without unpacking.
 ///
@@ -48,13 +80,13 @@ pub(crate) fn arrays(
     file: &[u8],
     budget: &mut Budget,
     take: &mut dyn FnMut(OneArray<'_>) -> Result<(), String>,
-) -> Result<(), String> {
+) -> Result<Vec<Object>, String> {
     let cut_off = || String::from("it is truncated");
     let (header, content) = file.split_at_checked(HEADER).ok_or_else(cut_off)?;
     let order = Order {
         is_little: header.ends_with(b"IM"),
     };
-    let mut read = 0;
+    let (mut read, mut objects) = (0, Vec::new());
     for element in order.elements(content) {
         read += element.whole.len();
         let beginning = match element.kind {
@@ -70,6 +102,7 @@ pub(crate) fn arrays(
                 let mut file = header.chain(&mut unpacked);
                 let taken = take(OneArray {
                     name: None,
+                    label: None,
                     is_packed,
                     file: &mut file,
                 });
@@ -80,6 +113,7 @@ pub(crate) fn arrays(
                 let mut file = header.chain(element.whole);
                 take(OneArray {
                     name: None,
+                    label: None,
                     is_packed,
                     file: &mut file,
                 })?;
@@ -88,21 +122,28 @@ pub(crate) fn arrays(
                 let packed = Decoder::new(element.data).map_err(|_| String::from(BROKEN))?;
                 let unpacked = budget.unpack(packed)?;
                 if let Some(element) = order.elements(&unpacked).next() {
-                    order.collect("", element.data, 0, &mut fields);
+                    order.collect(None, element.data, 0, &mut fields);
                 }
             }
             (ArrayKind::Structure, _) => {
-                order.collect("", element.data, 0, &mut fields);
+                order.collect(None, element.data, 0, &mut fields);
             }
+            (ArrayKind::Object, _) => objects.extend(order.object(&beginning)),
             (ArrayKind::Other, _) => {}
         }
-        for (name, field) in &fields {
+        if fields.len() > MOST_FIELDS {
+            return Err(format!(
+                "its structures have more than {MOST_FIELDS} arrays"
+            ));
+        }
+        for field in &fields {
             // Fields that are not numeric are skipped like other variables.
-            let beginning = &field[..field.len().min(BEGINNING)];
+            let beginning = &field.array[..field.array.len().min(BEGINNING)];
             if matches!(order.kind(beginning), Ok(ArrayKind::Numbers)) {
-                let mut file = header.chain(field.as_slice());
+                let mut file = header.chain(field.array.as_slice());
                 take(OneArray {
-                    name: Some(name.as_str()),
+                    name: Some(field.name.as_str()),
+                    label: field.label.as_deref(),
                     is_packed,
                     file: &mut file,
                 })?;
@@ -113,7 +154,7 @@ pub(crate) fn arrays(
     if content[read..].iter().any(|byte| *byte != 0) {
         return Err(cut_off());
     }
-    Ok(())
+    Ok(objects)
 }
 
 /// Message for broken compressed bytes.
@@ -122,7 +163,9 @@ const BROKEN: &str = "it is damaged";
 /// Content of an array.
 enum ArrayKind {
     Numbers,
+    /// A structure, an array of structures, or a cell array.
     Structure,
+    Object,
     Other,
 }
 
@@ -175,7 +218,8 @@ impl Order {
         let mut elements = self.elements(beginning.get(8..).unwrap_or_default());
         let class = elements.next().and_then(|flags| self.class(flags.data));
         match class {
-            Some(STRUCTURE) => return Ok(ArrayKind::Structure),
+            Some(STRUCTURE | CELL) => return Ok(ArrayKind::Structure),
+            Some(OBJECT) => return Ok(ArrayKind::Object),
             Some(class) if NUMBERS.contains(&class) => {}
             _ => return Ok(ArrayKind::Other),
         }
@@ -212,42 +256,127 @@ impl Order {
         })
     }
 
-    /// Collects the fields of an array if it is a single structure.
+    /// Collects the numeric arrays in structures and cell arrays; `None` for other arrays.
+    ///
+    /// `name` is that of the array, which has a name of its own otherwise.
     fn collect(
         self,
-        outer: &str,
+        name: Option<&str>,
         array: &[u8],
         depth: usize,
-        fields: &mut Vec<(String, Vec<u8>)>,
+        fields: &mut Vec<Field>,
     ) -> Option<()> {
         let mut elements = self.elements(array);
         let class = self.class(elements.next()?.data)?;
-        let size = elements.next()?.data;
-        let own = String::from_utf8_lossy(elements.next()?.data).into_owned();
-        let name = match (outer, own.as_str()) {
-            ("", own) => own,
-            (outer, _) => outer,
-        };
-        if class != STRUCTURE {
+        let sizes = elements.next()?.data.chunks_exact(4);
+        let own = String::from_utf8_lossy(elements.next()?.data);
+        let name = name.unwrap_or(&own);
+        if ![STRUCTURE, CELL].contains(&class) || depth > LARGEST_DEPTH {
             return None;
         }
-        let is_single = size.chunks_exact(4).all(|one| self.number(one) == Some(1));
+        let count = sizes.into_iter().try_fold(1_usize, |count, size| {
+            count.checked_mul(self.number(size)? as usize)
+        })?;
+        if class == CELL {
+            for (place, element) in elements.take(count).enumerate() {
+                let path = format!("{name}{{{}}}", place + 1);
+                self.add(path, None, &element, depth, fields);
+            }
+            return Some(());
+        }
         let length = self.number(elements.next()?.data)? as usize;
         let names = elements.next()?.data;
-        if !is_single || length == 0 || depth > LARGEST_DEPTH {
+        if length == 0 {
             return None;
         }
-        for (field, element) in names.chunks_exact(length).zip(elements) {
-            let end = field.iter().position(|byte| *byte == 0);
-            let field = String::from_utf8_lossy(&field[..end.unwrap_or(length)]);
-            let path = format!("{name}.{field}");
-            let inside = self.collect(&path, element.data, depth + 1, fields);
-            if inside.is_none() && element.kind == MATRIX {
-                let named = self.named(element.data).into_iter();
-                fields.extend(named.map(|array| (path.clone(), array)));
+        let names: Vec<String> = names.chunks_exact(length).map(until_zero).collect();
+        for place in 0..count {
+            let own: Vec<Element<'_>> = elements.by_ref().take(names.len()).collect();
+            if own.is_empty() || fields.len() > MOST_FIELDS {
+                break;
+            }
+            let is_one = |field: &str, of: [&str; 2]| {
+                of.iter().any(|known| field.eq_ignore_ascii_case(known))
+            };
+            let mut labels = names
+                .iter()
+                .zip(&own)
+                .filter(|(name, _)| is_one(name, LABELS));
+            let label = labels.find_map(|(_, element)| self.text(element.data));
+            for (field, element) in names.iter().zip(&own) {
+                let index = if count == 1 {
+                    String::new()
+                } else {
+                    format!("({})", place + 1)
+                };
+                let label = label.clone().filter(|_| is_one(field, VALUES));
+                let path = format!("{name}{index}.{field}");
+                self.add(path, label, element, depth, fields);
             }
         }
         Some(())
+    }
+
+    /// Adds a field of a structure, or an item of a cell array.
+    fn add(
+        self,
+        path: String,
+        label: Option<String>,
+        element: &Element<'_>,
+        depth: usize,
+        fields: &mut Vec<Field>,
+    ) {
+        if element.kind != MATRIX || fields.len() > MOST_FIELDS {
+            return;
+        }
+        let inside = self.collect(Some(&path), element.data, depth + 1, fields);
+        if inside.is_none()
+            && let Some(array) = self.named(element.data)
+        {
+            fields.push(Field {
+                name: path,
+                label,
+                array,
+            });
+        }
+    }
+
+    /// A text of one line; `None` if it is empty or no text.
+    fn text(self, array: &[u8]) -> Option<String> {
+        const UTF16: [u32; 2] = [4, 17];
+        let mut elements = self.elements(array);
+        if self.class(elements.next()?.data)? != TEXT {
+            return None;
+        }
+        let rows = self.number(elements.next()?.data)?;
+        let content = elements.nth(1)?;
+        let text = if UTF16.contains(&content.kind) {
+            let (units, _) = content.data.as_chunks::<2>();
+            let units = units.iter().map(|own| {
+                if self.is_little {
+                    u16::from_le_bytes(*own)
+                } else {
+                    u16::from_be_bytes(*own)
+                }
+            });
+            String::from_utf16_lossy(&units.collect::<Vec<_>>())
+        } else {
+            String::from_utf8_lossy(content.data).into_owned()
+        };
+        let text = text.trim();
+        (rows == 1 && !text.is_empty()).then(|| text.to_owned())
+    }
+
+    /// Name and class of an object, from its first bytes.
+    fn object(self, beginning: &[u8]) -> Option<Object> {
+        let mut elements = self.elements(beginning.get(8..)?);
+        let name = until_zero(elements.nth(1)?.data);
+        // After the name of the type system, `MCOS`.
+        let class = elements.nth(1).map(|class| until_zero(class.data));
+        Some(Object {
+            name,
+            class: class.unwrap_or_default(),
+        })
     }
 
     /// Adds a name to an array, since those in structures have none.
@@ -268,6 +397,12 @@ impl Order {
         let tag = [bytes(MATRIX), bytes(u32::try_from(array.len()).ok()?)].concat();
         Some([tag, array].concat())
     }
+}
+
+/// A text up to its first zero byte.
+fn until_zero(bytes: &[u8]) -> String {
+    let end = bytes.iter().position(|byte| *byte == 0);
+    String::from_utf8_lossy(&bytes[..end.unwrap_or(bytes.len())]).into_owned()
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::{
     formats::{
         arrays::{self, Arrays},
         format::{self, Format},
+        json_lines::JsonLines,
         mat_file, numpy,
         parquet_file::Parquet,
         stored::{Stored, StoredRows},
@@ -53,12 +54,15 @@ impl Table {
     /// # Errors
     /// A file that cannot be read, or of an unsupported format.
     pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Vec<Self>, Error> {
-        let one = match format::recognise(&file, medium)? {
+        let (format, unpacked) = format::recognise(&file, medium)?;
+        let medium = unpacked.as_ref().unwrap_or(medium);
+        let one = match format {
             Format::Text => {
                 let parts = Text::open(file, medium)?.into_iter();
                 return Ok(parts.map(Self::Text).collect());
             }
             Format::Mat => Self::Arrays(mat_file::open(file, medium)?),
+            Format::JsonLines => Self::Stored(Arc::new(JsonLines::open(file, medium)?)),
             Format::Parquet => Self::Stored(Arc::new(Parquet::open(file, medium)?)),
             Format::Array => Self::Arrays(numpy::open_array(file, medium)?),
             Format::Archive => Self::Arrays(numpy::open_archive(file, medium)?),
@@ -116,8 +120,12 @@ impl Table {
     }
 
     /// Whether numbers must be parsed from text.
-    pub(crate) const fn is_text(&self) -> bool {
-        matches!(self, Self::Text(_))
+    pub(crate) fn is_text(&self) -> bool {
+        match self {
+            Self::Text(_) => true,
+            Self::Stored(stored) => stored.is_slow(),
+            Self::Arrays(_) => false,
+        }
     }
 
     /// Number of columns that can be selected by number.
@@ -137,7 +145,7 @@ impl Table {
         match self {
             Self::Text(text) => text.find(name),
             Self::Stored(stored) => stored.find(name),
-            Self::Arrays(arrays) => Ok(arrays.find(name)),
+            Self::Arrays(arrays) => arrays.find(name),
         }
     }
 
@@ -285,10 +293,11 @@ impl Rows<'_> {
     }
 
     /// Line of the last sample, if the file has lines.
-    pub(crate) const fn line(&self) -> Option<usize> {
+    pub(crate) fn line(&self) -> Option<usize> {
         match self {
             Self::Text(rows) => Some(rows.line()),
-            Self::Stored(_) | Self::Arrays(_) => None,
+            Self::Stored(rows) => rows.line(),
+            Self::Arrays(_) => None,
         }
     }
 

@@ -312,6 +312,28 @@ impl<'a> Parser<'a> {
         Ok(Expression::Number(value))
     }
 
+    /// Skips indices and further names of a column: `(:,2)`, `(3).Data`, `[0]`, `{1}.q`.
+    fn indices(&mut self, name: &str) -> Result<(), String> {
+        loop {
+            let end = match self.peek() {
+                Some('(') => ')',
+                Some('[') => ']',
+                Some('{') => '}',
+                _ => return Ok(()),
+            };
+            let place = self.while_is(|c| c != end);
+            if place.contains(|c: char| c.is_alphabetic() || c == '$' || c == '\'') {
+                let known: Vec<&str> = FUNCTIONS.iter().map(|(name, ..)| *name).collect();
+                let known = known.join(", ");
+                return Err(format!("there is no function `{name}`; there are {known}"));
+            }
+            self.expect(end)?;
+            if self.peek() == Some('.') {
+                self.while_is(|c| c.is_alphanumeric() || c == '_' || c == '.');
+            }
+        }
+    }
+
     /// A function, a constant, or a column with an optional matrix index.
     fn named(&mut self) -> Result<Expression, String> {
         let start = self.place();
@@ -319,25 +341,17 @@ impl<'a> Parser<'a> {
         let end = self.place();
         let name = &self.text[start..end];
         let known = FUNCTIONS.iter().find(|(known, ..)| *known == name);
-        if self.peek() != Some('(') {
-            return match (known, name) {
-                (Some(_), _) => Err(format!("`{name}` has no argument")),
-                (None, "pi") => Ok(Expression::Number(std::f64::consts::PI)),
-                (None, _) => (self.column)(name),
-            };
-        }
         let Some(&(_, function, count)) = known else {
-            // A matrix column: everything up to the closing parenthesis.
-            let place = self.while_is(|c| c != ')');
-            if place.contains(|c: char| c.is_alphabetic() || c == '$' || c == '\'') {
-                let known: Vec<&str> = FUNCTIONS.iter().map(|(name, ..)| *name).collect();
-                let known = known.join(", ");
-                return Err(format!("there is no function `{name}`; there are {known}"));
-            }
-            self.expect(')')?;
+            self.indices(name)?;
             let end = self.place();
-            return (self.column)(&self.text[start..end]);
+            return match self.text[start..end].trim_end() {
+                "pi" => Ok(Expression::Number(std::f64::consts::PI)),
+                column => (self.column)(column),
+            };
         };
+        if self.peek() != Some('(') {
+            return Err(format!("`{name}` has no argument"));
+        }
         self.expect('(')?;
         let mut arguments = vec![self.sum()?];
         while self.take(',') {

@@ -147,7 +147,8 @@ impl Log {
 
     /// Note on changes of the samples.
     ///
-    /// For files with separate clocks, it names those that were interpolated.
+    /// For files with separate clocks, it names those that were interpolated. It also says if only a
+    /// range of time was read.
     #[must_use]
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()

@@ -2,6 +2,7 @@
 //!
 //! - `columns`, `signals`: requested columns, and their conversion to time and SI units;
 //! - `source`, `open_files`: the files of a run, opened;
+//! - `time_range`: the rows of a range of time;
 //! - `rows`: reads a run, with its files joined;
 //! - `clock`, `summary`: the first pass over a run, which checks and counts everything;
 //! - `log`: a run, in memory or in its files; `dataset`: all runs of an identification;
@@ -17,3 +18,4 @@ mod rows;
 mod signals;
 pub(crate) mod source;
 mod summary;
+pub(crate) mod time_range;

@@ -13,18 +13,22 @@ use crate::{
         rows::Joined,
         signals::Signals,
         source::{FileClock, Files, Resampling},
+        time_range::TimeRange,
     },
 };
 
 impl Files {
     /// Opens the files of the run `name`, each with its own name, and finds their columns.
     ///
+    /// Only samples in `range` are used, if it is given.
+    ///
     /// # Errors
-    /// An invalid mapping, files that cannot be read, missing columns.
+    /// An invalid mapping, files that cannot be read, missing columns, a range without samples.
     pub(crate) fn new(
         name: String,
         files: &[(String, ByteSource)],
         mapping: &Mapping,
+        range: Option<TimeRange>,
     ) -> Result<Self, Error> {
         mapping.check()?;
         let (mut tables, mut numbers, mut problems) = (Vec::new(), Vec::new(), Vec::new());
@@ -40,7 +44,7 @@ impl Files {
         problems.extend(tables.iter().filter_map(Table::without_lines));
         problems.extend(twice(files));
         Error::check(problems)?;
-        Self::of_tables(name, tables, numbers, mapping)
+        Self::of_tables(name, tables, numbers, mapping, range)
     }
 
     /// The run `name` of tables, each with the number of its file.
@@ -52,6 +56,7 @@ impl Files {
         mut tables: Vec<Table>,
         mut numbers: Vec<usize>,
         mapping: &Mapping,
+        range: Option<TimeRange>,
     ) -> Result<Self, Error> {
         mapping.check()?;
         if tables.iter().any(Table::is_part) {
@@ -74,9 +79,13 @@ impl Files {
             clocks: Vec::new(),
             transmission: Transmission::new(&mapping.transmission, mapping.positions.len())?,
             resampling: None,
+            range: None,
             spill: None,
         };
         files.clocks = files.differing_clocks()?;
+        if let Some(range) = range {
+            files.restrict(range, &mapping.time)?;
+        }
         if let Some(rate) = mapping.resample {
             let step = files.usual_step()?;
             files.resampling = Some(Resampling { rate, step });
@@ -296,7 +305,7 @@ mod tests {
             rotating: Vec::new(),
         };
         let file = (String::from("log.csv"), ByteSource::Disk(path.clone()));
-        let files = Files::new(String::from("run"), &[file], &mapping).expect("files");
+        let files = Files::new(String::from("run"), &[file], &mapping, None).expect("files");
         let log = Log::in_files(files, 10.0, 100, false);
         let (positions, torques) = log.load().expect("numbers");
         assert_eq!((positions[99], torques[50]), (99.0, 100.0));

@@ -4,6 +4,7 @@
 
 use crate::{
     error::{Error, Problem},
+    formats::row_range::RangedRows,
     resampling::{Irregularities, Place, Resampled, apart},
     run::{
         signals::is_measurable,
@@ -54,8 +55,9 @@ impl<'a> Joined<'a> {
     pub(crate) fn new(files: &'a Files) -> Result<Self, Error> {
         let mut parts = Vec::new();
         for (table, own) in files.tables.iter().zip(files.signals.columns()) {
+            let rows = RangedRows::new(table.rows(&own)?, files.row_range(parts.len()));
             parts.push(Part {
-                rows: UnwrappedRows::new(table.rows(&own)?, files.rotations_of(parts.len())),
+                rows: UnwrappedRows::new(rows, files.rotations_of(parts.len())),
                 columns: own.len(),
                 resampled: files.resampled(Some(parts.len())),
             });
@@ -75,6 +77,11 @@ impl<'a> Joined<'a> {
     /// As [`advance`](Self::advance).
     pub(crate) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         Ok(self.advance(values, None)? == Step::Row)
+    }
+
+    /// Whether nothing more can be read.
+    pub(crate) const fn has_ended(&self) -> bool {
+        self.has_ended
     }
 
     /// First of the uniform times at which all files have values; `None` if a file is empty.

@@ -3,10 +3,10 @@
 use crate::{
     bytes::temporary_store::TemporaryStore,
     error::Error,
-    formats::table::Table,
+    formats::{row_range::RowRange, table::Table},
     mapping::{expression::Expression, transmission::Transmission},
     resampling::Resampled,
-    run::signals::Signals,
+    run::{signals::Signals, time_range::RangeRows},
     unwrapping::{Rotation, Wrap},
 };
 
@@ -59,6 +59,8 @@ pub(crate) struct Files {
     pub(crate) rotating_values: Vec<Rotation>,
     /// Resampling of the run, if requested.
     pub(crate) resampling: Option<Resampling>,
+    /// Rows of the tables that are used, if not all.
+    pub(crate) range: Option<RangeRows>,
     /// Cached samples of a large run whose files are slow to read.
     pub(crate) spill: Option<TemporaryStore>,
 }
@@ -67,6 +69,12 @@ impl Files {
     /// Number of requested columns of all files.
     pub(crate) fn width(&self) -> usize {
         self.signals.columns().map(|own| own.len()).sum()
+    }
+
+    /// Rows of a table that are used.
+    pub(crate) fn row_range(&self, table: usize) -> RowRange {
+        let range = self.range.as_ref();
+        range.map_or(RowRange::ALL, |range| range.tables[table])
     }
 
     /// Resampling state of a table if clocks differ, or of the whole run.

@@ -18,7 +18,10 @@ mod watch;
 
 use self::watch::Watch;
 pub(crate) use self::{columns::Position, watch::Wrap};
-use crate::{error::Error, formats::table};
+use crate::{
+    error::Error,
+    formats::{row_range::RangedRows, table},
+};
 
 /// A column that may be a wrapped angle.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,12 +104,12 @@ impl Unwrapper {
 /// The remaining rows of a table, with unwrapped columns.
 #[derive(Debug)]
 pub(crate) struct UnwrappedRows<'a> {
-    rows: table::Rows<'a>,
+    rows: RangedRows<'a>,
     pub(crate) unwrapper: Unwrapper,
 }
 
 impl<'a> UnwrappedRows<'a> {
-    pub(crate) fn new(rows: table::Rows<'a>, rotations: Vec<Rotation>) -> Self {
+    pub(crate) fn new(rows: RangedRows<'a>, rotations: Vec<Rotation>) -> Self {
         Self {
             rows,
             unwrapper: Unwrapper::new(rotations),
@@ -127,7 +130,7 @@ impl<'a> UnwrappedRows<'a> {
 
     /// The rows as stored in the file.
     pub(crate) const fn logged(&self) -> &table::Rows<'a> {
-        &self.rows
+        self.rows.logged()
     }
 }
 

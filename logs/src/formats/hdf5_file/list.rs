@@ -8,15 +8,20 @@ use hdf5_reader::{
 };
 
 /// Largest depth of groups, and largest numbers of groups and datasets.
-const DEEPEST: usize = 16;
+pub(super) const DEEPEST: usize = 16;
 const MOST_GROUPS: usize = 1000;
-const MOST_DATASETS: usize = 20_000;
+pub(super) const MOST_DATASETS: usize = 20_000;
 
 /// Whether MATLAB wrote a file; it starts with that text.
 pub(super) fn is_matlab(path: &Path) -> bool {
     let mut beginning = [0; 6];
     let read = File::open(path).and_then(|mut input| input.read_exact(&mut beginning));
     read.is_ok() && beginning == *b"MATLAB"
+}
+
+/// The error of too many datasets.
+pub(super) fn too_many() -> Error {
+    Error::InvalidData(format!("it has more than {MOST_DATASETS} datasets"))
 }
 
 /// All datasets with their paths, joined by points.
@@ -41,9 +46,7 @@ pub(super) fn datasets(file: &Hdf5File) -> Result<Vec<(String, Dataset)>> {
         let (inner, datasets) = group.members()?;
         for dataset in datasets {
             if found.len() >= MOST_DATASETS {
-                return Err(Error::InvalidData(format!(
-                    "it has more than {MOST_DATASETS} datasets"
-                )));
+                return Err(too_many());
             }
             found.push((format!("{path}{}", dataset.name()), dataset));
         }

@@ -6,6 +6,7 @@
 
 mod list;
 mod number;
+mod references;
 mod rows;
 mod series;
 
@@ -15,11 +16,13 @@ use std::path::Path;
 use hdf5_reader::{FileStorage, Hdf5File, OpenOptions};
 
 use self::{
+    references::Expanded,
     rows::{Rows, Wanted},
     series::{Series, broken},
 };
 use crate::{
     error::{Error, Problem},
+    formats::arrays::ambiguous,
     formats::stored::{Stored, StoredRows},
     problems::{Existing, shown, unreadable},
 };
@@ -38,6 +41,8 @@ pub(crate) struct Hdf5 {
     /// The file as the caller named it.
     file: String,
     series: Vec<Series>,
+    /// Texts that name a dataset, with its path.
+    labels: Vec<(String, String)>,
     /// Number of all vectors and matrix columns.
     columns: usize,
     /// Scalars.
@@ -68,8 +73,15 @@ impl Hdf5 {
         let opened = opened.map_err(broken)?;
         let is_matlab = list::is_matlab(path);
         let datasets = list::datasets(&opened).map_err(broken)?;
-        let mut series: Vec<Series> = datasets
-            .into_iter()
+        let expanded = if is_matlab {
+            references::expand(&opened, datasets).map_err(broken)?
+        } else {
+            Expanded {
+                datasets,
+                ..Expanded::default()
+            }
+        };
+        let mut series: Vec<Series> = { expanded.datasets.into_iter() }
             .map(|(name, dataset)| Series::new(name, dataset, is_matlab))
             .collect();
         let mut columns = 0_usize;
@@ -88,6 +100,7 @@ impl Hdf5 {
         Ok(Self {
             file,
             series,
+            labels: expanded.labels,
             columns,
             variables,
             bytes,
@@ -101,6 +114,39 @@ impl Hdf5 {
             .iter()
             .position(|own| place >= own.first && place - own.first < own.count)?;
         Some((series, place - self.series[series].first))
+    }
+
+    /// Index of a vector, or of a column of a matrix.
+    fn named(&self, name: &str) -> Result<Option<usize>, Problem> {
+        let bare: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+        let bare = bare.trim_start_matches('/');
+        let (path, part) = match bare.rfind('(').filter(|_| bare.ends_with(')')) {
+            Some(start) => bare.split_at(start),
+            None => (bare, ""),
+        };
+        let path = path.replace('/', ".");
+        // A structure `s` is `s(1)` as well.
+        let single = path.replace("(1).", ".");
+        let is = |own: &&Series, path: &str| own.name == path;
+        let path = if self.series.iter().any(|own| is(&own, &path)) {
+            path
+        } else {
+            single
+        };
+        let mut named = self.series.iter().filter(|own| is(own, &path));
+        let Some(first) = named.next() else {
+            return Ok(None);
+        };
+        if named.next().is_some() {
+            let message = format!(
+                "the file has several datasets that are called `{}` with points between names",
+                shown(&path)
+            );
+            return Err(Problem::new(Code::SAME_COLUMN, message)
+                .file(self.file.as_str())
+                .column(name));
+        }
+        Ok(first.part(part).map(|part| first.first + part))
     }
 }
 
@@ -118,27 +164,23 @@ impl Stored for Hdf5 {
     }
 
     fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
-        let bare: String = name.chars().filter(|c| !c.is_whitespace()).collect();
-        let bare = bare.trim_start_matches('/');
-        let (path, part) = match bare.find('(') {
-            Some(start) => bare.split_at(start),
-            None => (bare, ""),
-        };
-        let path = path.replace('/', ".");
-        let mut named = self.series.iter().filter(|own| own.name == path);
-        let Some(first) = named.next() else {
-            return Ok(None);
-        };
-        if named.next().is_some() {
-            let message = format!(
-                "the file has several datasets that are called `{}` with points between names",
-                shown(&path)
-            );
-            return Err(Problem::new(Code::SAME_COLUMN, message)
-                .file(self.file.as_str())
-                .column(name));
+        if let Some(place) = self.named(name)? {
+            return Ok(Some(place));
         }
-        Ok(first.part(part).map(|part| first.first + part))
+        let index = name.rfind('(').filter(|_| name.ends_with(')'));
+        let (label, column) = name.split_at(index.unwrap_or(name.len()));
+        for (label, column) in [(name, ""), (label.trim(), column)] {
+            let own = self.labels.iter().filter(|(own, _)| own == label);
+            let paths: Vec<&str> = own.map(|(_, path)| path.as_str()).collect();
+            match paths[..] {
+                [] => {}
+                [path] => return self.named(&format!("{path}{column}")),
+                [first, second, ..] => {
+                    return Err(ambiguous(&self.file, name, label, [first, second]));
+                }
+            }
+        }
+        Ok(None)
     }
 
     fn check(&self, place: usize) -> Result<(), Problem> {
@@ -165,14 +207,21 @@ impl Stored for Hdf5 {
     }
 
     fn first_column(&self, name: &str) -> Option<&str> {
-        let path = name.trim_start_matches('/').replace('/', ".");
+        let mut labels = self.labels.iter();
+        let labelled = labels.find_map(|(own, path)| (own == name).then_some(path));
+        let path = match labelled {
+            Some(path) => path.clone(),
+            None => name.trim_start_matches('/').replace('/', "."),
+        };
         let series = self.series.iter().find(|own| own.name == path);
         series.and_then(|own| own.first_column.as_deref())
     }
 
     fn existing(&self) -> Existing<'_> {
         Existing {
-            names: self.series.iter().map(|own| own.name.as_str()).collect(),
+            names: { self.series.iter().map(|own| own.name.as_str()) }
+                .chain(self.labels.iter().map(|(label, _)| label.as_str()))
+                .collect(),
             columns: self.columns,
             what: "dataset",
         }
