@@ -48,8 +48,11 @@ def without_dry_friction(toml, folder):
     return {name: (0.0 if name.startswith("fs_") else value) for name, value in values.items()}
 
 
-def sample(overact, toml, folder, size, count=5):
-    """States of a description with all outputs of overact that the comparison needs."""
+def sample(overact, toml, folder, size, order=None, count=5):
+    """States of a description with all outputs of overact that the comparison needs.
+
+    The states are drawn for coordinates in the given order of names, by default the description's.
+    """
     sheet = json.loads(run(overact, "inspect", toml, "--json", "--effort", "none"))
     values = without_dry_friction(toml, folder)
     parameters = folder / "parameters.toml"
@@ -58,10 +61,11 @@ def sample(overact, toml, folder, size, count=5):
     r = sheet["dof"]
     random = np.random.default_rng(1)
     home = np.array(sheet["home_pose"])
+    own = [(order or sheet["pose"]).index(name) for name in sheet["pose"]]
     states = []
     for _ in range(count):
-        pose = home + random.uniform(-size, size, r)
-        state = {"pose": pose, "twist": random.uniform(-1, 1, r), "acceleration": random.uniform(-3, 3, r)}
+        drawn = [random.uniform(-largest, largest, r)[own] for largest in (size, 1, 3)]
+        state = {"pose": home + drawn[0], "twist": drawn[1], "acceleration": drawn[2]}
         states.append({key: list(value) for key, value in state.items()})
     has_loops = sheet["joints"] > r
     result = []

@@ -14,17 +14,27 @@ import sys
 import tempfile
 from pathlib import Path
 
-from compare import TOLERANCE, compare, run, sample
-
 import numpy as np
+from compare import TOLERANCE, compare, run, sample
+from description import Description
 from mechanisms import FORMATS, closed, tree
 
+try:
+    from mujoco_engine import actuated
+except ImportError as error:
+    print(f"skipped: {error}")
+    sys.exit(0)
 
-def torques_of(overact, file, options, folder, size):
+
+def torques_of(overact, file, options, folder, size, order):
+    """Torques in the order of the motors' names, and home positions of the coordinates."""
     toml = folder / f"{file.suffix[1:]}.toml"
     run(overact, "--json", "import", file, *options, "-o", toml)
-    sheet, _, states = sample(overact, toml, folder, size)
-    return np.array([torques for *_, torques in states]), sheet
+    sheet, _, states = sample(overact, toml, folder, size, order)
+    motors = [name for _, name in actuated(Description(toml))]
+    by_name = np.argsort(motors)
+    homes = dict(zip(sheet["pose"], sheet["home_pose"]))
+    return np.array([torques[by_name] for *_, torques in states]), homes
 
 
 def examine(overact, own, folder):
@@ -38,10 +48,11 @@ def examine(overact, own, folder):
     if misfit > 1e-9:
         raise RuntimeError(f"a misfit of {misfit:.1e}")
     found = {"MuJoCo": max(position, torque)}
-    first, _ = torques_of(overact, files["xml"], options, folder, size)
+    order = sheet["pose"]
+    first, home = torques_of(overact, files["xml"], options, folder, size, order)
     for suffix in ("urdf", "sdf"):
-        other, other_sheet = torques_of(overact, files[suffix], options, folder, size)
-        if first.shape != other.shape or not np.allclose(sheet["home_pose"], other_sheet["home_pose"], atol=1e-9):
+        other, other_home = torques_of(overact, files[suffix], options, folder, size, order)
+        if home.keys() != other_home.keys() or any(abs(home[key] - other_home[key]) > 1e-9 for key in home):
             raise RuntimeError(f"{suffix}: other coordinates or another home than in MJCF")
         found[suffix] = np.abs(other - first).max() / np.abs(first).max()
     return found
@@ -55,11 +66,6 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path)
     given = parser.parse_args()
-    try:
-        import mujoco  # noqa: F401
-    except ImportError as error:
-        print(f"skipped: {error}")
-        return
     failures = 0
     for name, make, count in (("trees", tree, given.trees), ("closed", closed, given.closed)):
         worst, bad = {}, 0
@@ -72,7 +78,7 @@ def main():
                     problem = ", ".join(f"{key} {value:.1e}" for key, value in found.items() if not value < TOLERANCE)
                     for key, value in found.items():
                         worst[key] = max(worst.get(key, 0.0), value)
-                except (RuntimeError, AssertionError, KeyError) as error:
+                except (RuntimeError, AssertionError, KeyError, ValueError) as error:
                     problem = said(error)
                 if problem:
                     bad += 1
