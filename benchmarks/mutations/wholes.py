@@ -13,7 +13,7 @@ LINES = 2500
 MODELS = ROOT / "interchange" / "tests" / "models"
 # Files of other programs, with the required options.
 FOREIGN = {"ankle.xml": [], "arm.urdf": [], "arm.par": ["--value", "L1=0.2,D3=0.5,L2=0.52,L3=0.25"]}
-WRITTEN = ROOT / "identification" / "tests" / "written"
+WRITTEN = ROOT / "logs" / "tests" / "written"
 # One log of two drives in every binary format without a feature, with the names of its columns.
 STORED = {
     "same.npy": ("$1", ["$2", "$3"], ["$6", "$7"]),

@@ -43,6 +43,8 @@ struct InputFile {
     errors: Diagnostics,
     /// Number of errors that are not kept.
     further_errors: usize,
+    /// Whether it is outside the folder of the first file, so that no message may show its contents.
+    is_outside: bool,
 }
 
 /// Files of one import and the errors found in them.
@@ -70,8 +72,44 @@ impl Default for Files {
     }
 }
 
+impl InputFile {
+    /// Text for messages: blank for a file whose contents they may not show.
+    fn shown(&self) -> Source {
+        let Source { name, text } = &self.source;
+        if !self.is_outside {
+            return self.source.clone();
+        }
+        let blank = text.split('\n').map(|line| " ".repeat(line.len()));
+        Source::new(name.clone(), blank.collect::<Vec<_>>().join("\n"))
+    }
+
+    /// Adds the first error of a file whose contents messages may not show, and counts the others.
+    fn push_hidden(&mut self, error: &Diagnostic) {
+        if !self.errors.is_empty() {
+            self.further_errors += 1;
+            return;
+        }
+        let message = "this file can't be used, and its contents are not shown";
+        let help = "it is outside the robot's folder: copy it into the folder to see the error";
+        let shown = match &error.span {
+            Some(span) => Diagnostic::new(Code::FOREIGN, message, span.clone()),
+            None => Diagnostic::global(Code::FOREIGN, message),
+        };
+        self.errors.push(shown.help(help));
+    }
+}
+
 impl Files {
+    /// Reads a file that the user names; `None` after an error.
+    pub(crate) fn read_given(&self, path: &Path) -> Option<usize> {
+        let file = self.read(path, None)?;
+        self.read.borrow_mut()[file].is_outside = false;
+        Some(file)
+    }
+
     /// Reads a file; `None` after an error, which is reported where the file is named.
+    ///
+    /// Messages do not show the contents of a file outside the folder of the first.
     pub(crate) fn read(&self, path: &Path, named_at: Option<&Place>) -> Option<usize> {
         let may_be_pipe = named_at.is_none() && is_standard_input(path);
         let (text, error) = match read(path, may_be_pipe, self.bytes_left.get()) {
@@ -90,12 +128,15 @@ impl Files {
         }
         let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1));
         let mut all = self.read.borrow_mut();
+        let first = all.first();
+        let is_outside = first.is_some_and(|first| !is_beside(&first.path, path));
         all.push(InputFile {
             path: path.to_owned(),
             line_starts: line_starts.collect(),
             source: Source::new(name, text),
             errors: Diagnostics::new(),
             further_errors: 0,
+            is_outside,
         });
         let at = all.len() - 1;
         if let Some(message) = message {
@@ -148,6 +189,11 @@ impl Files {
         self.read.borrow()[file].source.name.clone()
     }
 
+    /// Whether messages may not show the contents of a file.
+    pub(crate) fn is_outside(&self, file: usize) -> bool {
+        self.read.borrow()[file].is_outside
+    }
+
     /// Paths of all files read.
     pub(crate) fn paths(&self) -> Vec<PathBuf> {
         self.read
@@ -157,10 +203,10 @@ impl Files {
             .collect()
     }
 
-    /// All files read, in reading order.
+    /// All files read, in reading order, for messages.
     pub(crate) fn sources(&self) -> Vec<Source> {
         let all = self.read.borrow();
-        all.iter().map(|file| file.source.clone()).collect()
+        all.iter().map(InputFile::shown).collect()
     }
 
     /// Line of a location, counted from 1.
@@ -184,7 +230,9 @@ impl Files {
     /// Adds an error of a file, or counts it if the file has too many.
     fn push(&self, file: usize, error: Diagnostic) {
         if let Some(own) = self.read.borrow_mut().get_mut(file) {
-            if own.errors.len() < MOST_ERRORS {
+            if own.is_outside {
+                own.push_hidden(&error);
+            } else if own.errors.len() < MOST_ERRORS {
                 own.errors.push(error);
             } else {
                 own.further_errors += 1;
@@ -265,8 +313,8 @@ impl Files {
     /// All errors, for files with errors only.
     pub(crate) fn into_errors(self) -> Errors {
         let wrong = |file: InputFile| {
+            let source = file.shown();
             let InputFile {
-                source,
                 mut errors,
                 further_errors,
                 ..
@@ -287,6 +335,17 @@ impl Files {
                 .filter_map(wrong)
                 .collect(),
         )
+    }
+}
+
+/// Whether a file is in the folder of another or below, also after symbolic links.
+pub(crate) fn is_beside(first: &Path, path: &Path) -> bool {
+    let folder = first.parent().filter(|own| !own.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize();
+    match (folder, path.canonicalize()) {
+        (Ok(folder), Ok(path)) => path.starts_with(folder),
+        // A missing file has no contents.
+        _ => true,
     }
 }
 

@@ -23,6 +23,8 @@ pub(crate) struct Model {
     pub(crate) says_motors: bool,
     /// Motors with a gear or that turn several joints, as far as the file describes them.
     pub(crate) motors: Vec<Motor>,
+    /// Whether the file has settings that change inertias after they are read.
+    pub(crate) adjusts_inertias: bool,
     /// Closures and axes that were changed to close the loops.
     pub(crate) misfits: Vec<Misfit>,
     /// Notes on what was omitted or assumed.
@@ -103,6 +105,11 @@ pub(crate) struct Joint {
     pub(crate) damping: f64,
     pub(crate) friction: f64,
     pub(crate) armature: f64,
+    /// Armature, damping and friction of the joint's own element if actuators or tendons of the
+    /// file may add to them.
+    pub(crate) given: Option<[f64; 3]>,
+    /// Stiffness and damping that the file gives by time constants.
+    pub(crate) timed_spring: Option<[f64; 2]>,
     /// Spring stiffness and rest position.
     pub(crate) spring: Option<(f64, f64)>,
     /// Description of the transmission, for comments.
@@ -191,6 +198,7 @@ impl Model {
             closures: Vec::new(),
             says_motors: false,
             motors: Vec::new(),
+            adjusts_inertias: false,
             misfits: Vec::new(),
             notes: Vec::new(),
         }
@@ -298,9 +306,26 @@ impl Joint {
             damping: 0.0,
             friction: 0.0,
             armature: 0.0,
+            given: None,
+            timed_spring: None,
             spring: None,
             drive: String::new(),
             place,
+        }
+    }
+}
+
+impl Joint {
+    /// Part of a torque parameter that actuators and tendons of the file contribute.
+    pub(crate) fn from_others(&self, symbol: &str) -> f64 {
+        let Some([armature, damping, friction]) = self.given else {
+            return 0.0;
+        };
+        match symbol {
+            "ia" => self.armature - armature,
+            "fv" => self.damping - damping - self.timed_spring.map_or(0.0, |[_, damping]| damping),
+            "fs" => self.friction - friction,
+            _ => 0.0,
         }
     }
 }

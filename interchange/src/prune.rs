@@ -12,6 +12,9 @@ use std::collections::BTreeSet;
 /// Reason for names that are not in the table.
 const UNKNOWN: &str = "not in the specification; not used";
 
+/// Name of unknown contents of files outside the robot's folder.
+const HIDDEN: &str = "?";
+
 /// Reason for values without effect, which are not reported.
 const NEUTRAL: &str = "this value has no effect";
 
@@ -133,6 +136,14 @@ fn is_kept(files: &Files, treatment: Option<Treatment>, subject: &Subject<'_>) -
                 None => format!("<{element}>: {reason}"),
             };
             files.report(subject.place, message, help);
+        }
+        // The name itself may be a content that messages may not show.
+        None if files.is_outside(subject.place.file) => {
+            let names = match subject.attribute {
+                Some(_) => (subject.element, Some(HIDDEN)),
+                None => (HIDDEN, None),
+            };
+            files.record(Use::Reported, subject.place, names.0, names.1, UNKNOWN);
         }
         None => record(Use::Reported, UNKNOWN),
     }

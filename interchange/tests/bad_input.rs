@@ -342,6 +342,50 @@ fn files_outside_the_folder_are_included_with_an_option_only() {
     }
 }
 
+/// An option or a link allows more files; their contents must not be in messages either.
+#[cfg(unix)]
+#[test]
+fn messages_never_show_contents_of_files_outside_the_folder() {
+    let outer = tempfile::tempdir().expect("a folder");
+    let inner = outer.path().join("robot");
+    fs::create_dir(&inner).expect("a folder");
+    let anywhere = Options {
+        include_outside: true,
+        ..Options::default()
+    };
+    let secret = outer.path().join("secret");
+    let robot = inner.join("robot.xml");
+    fs::write(&robot, "<mujoco><include file='../secret'/></mujoco>").expect("a file");
+    let contents = [
+        "confidential: x\nsecond",
+        "<mujoco><confidential/>\n<worldbody><joint type='confidential'/><body><joint axis='confidential'/></body></worldbody></mujoco>",
+        "<mujoco><option confidential='1'/>\n<worldbody><confidential/></worldbody></mujoco>",
+    ];
+    for text in contents {
+        fs::write(&secret, text).expect("a file");
+        let said = match import(&robot, &anywhere) {
+            Ok(imported) => format!("{:?}", imported.account),
+            Err(errors) => {
+                let each = errors.0.iter();
+                each.map(|(source, own)| own.render_plain(source)).collect()
+            }
+        };
+        assert!(!said.contains("confidential"), "{said}");
+    }
+    // A YAML file next to a URDF may be a link.
+    let urdf = inner.join("robot.urdf");
+    fs::write(&urdf, "<robot name='r'><link name='a'/></robot>").expect("a file");
+    std::os::unix::fs::symlink(&secret, inner.join("robot.yaml")).expect("a link");
+    fs::write(&secret, "confidential").expect("a file");
+    let errors = import(&urdf, &Options::default()).expect_err("no YAML");
+    let each = errors.0.iter();
+    let said: String = each.map(|(source, own)| own.render_plain(source)).collect();
+    assert!(
+        said.contains("contents are not shown") && !said.contains("confidential"),
+        "{said}"
+    );
+}
+
 /// A pipe without a writer would block whoever opens it.
 #[cfg(unix)]
 #[test]

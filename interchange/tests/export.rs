@@ -181,3 +181,69 @@ fn included_files_change_where_they_say_it() {
         "{text}"
     );
 }
+
+/// Exports other values and imports the result: the same parameters.
+fn text_goes_round(text: &str) -> Exported {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("robot.xml");
+    fs::write(&file, text).expect("a file");
+    let before = parameters(&file);
+    let same = exported(&file, &before, folder.path());
+    assert_eq!(same.text, text, "what does not differ does not change");
+    let wanted = others(&before);
+    let made = exported(&file, &wanted, folder.path());
+    fs::write(&file, &made.text).expect("a file");
+    let after = parameters(&file);
+    for name in wanted.keys().chain(after.keys()) {
+        let [value, found] = [&wanted, &after].map(|all| all.get(name).copied().unwrap_or(0.0));
+        assert!(
+            (found - value).abs() <= 1e-12 * value.abs().max(1e-3),
+            "{name}: {found} for {value}\n{}",
+            made.text
+        );
+    }
+    made
+}
+
+#[test]
+fn inertia_and_friction_of_actuators_and_tendons_are_not_written_twice() {
+    let text = "<mujoco><worldbody><body name='a'><joint name='x' axis='0 1 0' armature='0.4' damping='2' frictionloss='3'/>\
+        <inertial mass='2' pos='0.1 0 0' diaginertia='1 1 1'/></body>\
+        <body name='b'><joint name='y' axis='0 1 0' damping='2'/>\
+        <inertial mass='2' pos='0.1 0 0' diaginertia='1 1 1'/></body></worldbody>\
+        <tendon><fixed name='t' armature='0.01' damping='0.2' frictionloss='0.3'><joint joint='x' coef='2'/></fixed></tendon>\
+        <actuator><motor joint='x' gear='3' armature='0.01' damping='0.02'/><motor joint='y'/></actuator></mujoco>";
+    let made = text_goes_round(text);
+    assert!(made.notes.is_empty(), "{:?}", made.notes);
+}
+
+#[test]
+fn less_than_the_inertia_of_the_actuator_is_noted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("robot.xml");
+    let text = "<mujoco><worldbody><body name='a'><joint name='x' axis='0 1 0' armature='0.4'/>\
+        <inertial mass='2' pos='0.1 0 0' diaginertia='1 1 1'/></body></worldbody>\
+        <actuator><motor joint='x' gear='3' armature='0.1'/></actuator></mujoco>";
+    fs::write(&file, text).expect("a file");
+    let values = BTreeMap::from([("ia_x".to_owned(), 0.5)]);
+    let made = exported(&file, &values, folder.path());
+    assert!(made.text.contains("armature='0'"), "{}", made.text);
+    assert!(
+        made.notes[0].contains("ia_x = 0.5 is less than"),
+        "{:?}",
+        made.notes
+    );
+}
+
+#[test]
+fn settings_that_change_inertias_and_springs_are_written_out() {
+    let text = "<mujoco><compiler settotalmass='7' boundmass='0.01'/><worldbody>\
+        <body name='a'><joint name='x' axis='0 1 0' springdamper='0.3 0.8'/>\
+        <inertial mass='2' pos='0.1 0 0' diaginertia='1 1 1'/>\
+        <body name='b' pos='0.2 0 0'><joint name='y' axis='0 1 0'/>\
+        <geom type='box' size='0.1 0.2 0.3' pos='0.1 0 0.1'/></body></body></worldbody>\
+        <actuator><motor joint='x'/><motor joint='y'/></actuator></mujoco>";
+    let made = text_goes_round(text);
+    assert_eq!(made.notes.len(), 2, "{:?}", made.notes);
+    assert!(!made.text.contains("settotalmass"), "{}", made.text);
+}

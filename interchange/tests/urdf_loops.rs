@@ -242,3 +242,38 @@ fn couplings_of_urdf_plus_add_the_joints_up_to_the_common_ancestor() {
     ));
     assert_eq!(plain(read(&by_tip, "", "")), expected);
 }
+
+/// A five-bar in the xy plane whose last elbow is a universal joint without a rotation in the plane.
+///
+/// Its first rotation, by a quarter turn, brings the second into the plane.
+#[test]
+fn a_home_at_which_a_universal_joint_blocks_a_motor_is_moved() {
+    let pin = |name: &str, ends: [&str; 2], at: &str, turn: f64| {
+        let origin = format!("<origin xyz='{at}' rpy='0 0 {turn}'/>");
+        let limits = "<limit lower='-3' upper='3' effort='1' velocity='1'/>";
+        joint(name, ends, "revolute", &(origin + limits)).replace("0 1 0", "0 0 1")
+    };
+    let tip = |name: &str, parent: &str| {
+        let origin = "<origin xyz='0.3 0 0'/>";
+        format!("<link name='{name}'/>") + &joint(name, [parent, name], "fixed", origin)
+    };
+    let urdf = "<robot name='five_bar'><link name='base'/>".to_owned()
+        + &["a1", "a2", "b1", "b2"].map(link).concat()
+        + &pin("a", ["base", "a1"], "0 0 0", 1.745_329_251_994_329_5)
+        + &pin("a_", ["a1", "a2"], "0.25 0 0", -1.121_030_949_964_204_4)
+        + &pin("b", ["base", "b1"], "0.4 0 0", 1.396_263_401_595_463_6)
+        + &pin("b_", ["b1", "b2"], "0.25 0 0", 1.121_030_949_964_204_6)
+        + &tip("tip_a", "a2")
+        + &tip("tip_b", "b2")
+        + "</robot>";
+    let yaml = "closed_loop: [['tip_a', 'tip_b']]\ntype: ['3d']\nname_mot: ['a', 'b']\n\
+                joint_name: ['b_']\njoint_type: ['UJOINT_XY']\n";
+    let text = read(&urdf, yaml, "").expect("a five-bar").text;
+    assert!(text.contains("Home is moved"), "{text}");
+    let source = overact_codegen::Source::new("made.toml", text.clone());
+    let checked = match overact_codegen::check(&source) {
+        Ok(checked) => checked.mechanism,
+        Err(errors) => panic!("{}\n{text}", errors.render_plain(&source)),
+    };
+    assert_eq!((checked.dof(), checked.actuated().len()), (2, 2));
+}

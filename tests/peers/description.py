@@ -44,10 +44,18 @@ def relative_turn(before, after):
 
 
 class Body:
-    """Frame, angular velocity and acceleration of a joint's body."""
+    """Frame of a joint's body, its angular velocity and acceleration, and those of its origin."""
 
-    def __init__(self, whole, rate, acceleration):
+    def __init__(self, whole, rate, acceleration, linear):
         self.frame, self.rate, self.acceleration = whole, rate, acceleration
+        self.linear_rate, self.linear_acceleration = linear
+
+    def at(self, origin):
+        """Velocity and acceleration of a point of the body."""
+        arm = origin - self.frame[:3, 3]
+        rate = self.linear_rate + np.cross(self.rate, arm)
+        centripetal = np.cross(self.rate, np.cross(self.rate, arm))
+        return rate, self.linear_acceleration + np.cross(self.acceleration, arm) + centripetal
 
 
 class Description:
@@ -62,6 +70,9 @@ class Description:
             said = re.search(r"from `([^`]*)`\s+to\s+`([^`]*)`", block.replace("\n#", ""))
             if joint and said:
                 self.between[joint.groups()] = said.groups()
+            platform = re.search(r"Displacements of the platform `([^`]*)`", block)
+            if joint and platform:
+                self.between[joint.groups()] = ("ground", platform[1])
 
         # Home positions of joints without a coordinate of their own.
         joined = re.sub(r"\n# ?", " ", text)
@@ -84,13 +95,14 @@ class Description:
     def motion(self, q, rates, accelerations):
         """Motions of all bodies by leg and joint."""
         own = {key: (q[i], rates[i], accelerations[i]) for i, key in enumerate(self.joints())}
-        still = Body(np.eye(4), np.zeros(3), np.zeros(3))
+        still = Body(np.eye(4), np.zeros(3), np.zeros(3), (np.zeros(3), np.zeros(3)))
         bodies = {}
         for leg in self.legs:
             table = self.toml["leg"][leg]
             base = table.get("base", {})
             on = self.named(bodies, base.get("body", "ground"), still)
-            start = Body(on.frame @ placed(base), on.rate, on.acceleration)
+            origin = on.frame @ placed(base)
+            start = Body(origin, on.rate, on.acceleration, on.at(origin[:3, 3]))
             before = "base"
             for joint in table["joint"]:
                 antecedent = joint.get("antecedent", before)
@@ -125,11 +137,13 @@ class Description:
         step = frame(rotation=about(2, c["gamma"])) @ frame((0, 0, c["b"])) @ frame(rotation=about(0, c["alpha"]))
         step = step @ frame((c["d"], 0, 0)) @ frame(rotation=about(2, c["theta"])) @ frame((0, 0, c["r"]))
         whole = carrier.frame @ step
-        if joint["type"] != "revolute":
-            return Body(whole, carrier.rate, carrier.acceleration)
         z = whole[:3, 2]
+        linear = carrier.at(whole[:3, 3])
+        if joint["type"] != "revolute":
+            linear = (linear[0] + z * rate, linear[1] + z * acceleration + 2 * np.cross(carrier.rate, z) * rate)
+            return Body(whole, carrier.rate, carrier.acceleration, linear)
         turning = np.cross(carrier.rate, z) * rate
-        return Body(whole, carrier.rate + z * rate, carrier.acceleration + z * acceleration + turning)
+        return Body(whole, carrier.rate + z * rate, carrier.acceleration + z * acceleration + turning, linear)
 
     def carried(self):
         """Body of the file that each joint of the description carries, by name."""

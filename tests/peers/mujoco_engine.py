@@ -20,8 +20,8 @@ class Engine:
         self.at_home(home)
 
     def at_home(self, home):
-        """Poses of the engine's bodies at the description's home: ball joints rotate until the loops are
-        closed."""
+        """Poses of the engine's bodies at the description's home: ball joints rotate and free bodies move
+        until the loops are closed."""
         model, data = self.model, self.data
         still = self.description.motion(home, 0 * home, 0 * home)
         data.qpos[:] = model.qpos0
@@ -29,7 +29,8 @@ class Engine:
             joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
             if joint >= 0:
                 data.qpos[model.jnt_qposadr[joint]] = value
-        balls = [d for d in range(model.nv) if model.jnt_type[model.dof_jntid[d]] == mujoco.mjtJoint.mjJNT_BALL]
+        loose = (mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_FREE)
+        balls = [d for d in range(model.nv) if model.jnt_type[model.dof_jntid[d]] in loose]
         for _ in range(20):
             mujoco.mj_forward(model, data)
             gap, rows = self.closure()
@@ -41,13 +42,37 @@ class Engine:
         mujoco.mj_forward(model, data)
         gap, _ = self.closure()
         assert not len(gap) or np.abs(gap).max() < 1e-10, f"MuJoCo's loops are {np.abs(gap).max()} m open at home"
-        self.offset = {}
-        for name, joint in self.carried.items():
-            body = self.body(name)
-            self.offset[name] = relative_turn(still[joint].frame[:3, :3], data.xmat[body].reshape(3, 3))
+        self.offset, self.shift = {}, {}
+        for body in range(1, model.nbody):
+            for name, turn in self.stages_at(body, data.qpos):
+                if name in self.carried:
+                    own = still[self.carried[name]].frame
+                    self.offset[name] = relative_turn(own[:3, :3], turn)
+                    self.shift[name] = own[:3, :3].T @ (data.xpos[body] - own[:3, 3])
 
     def body(self, name):
         return mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
+
+    def stages(self, body):
+        """Bodies after each joint of a body of the engine, as import names them."""
+        name, count = self.model.body(body).name, self.model.body_jntnum[body]
+        return [f"{name}_{at + 1}" for at in range(count - 1)] + [name]
+
+    def stages_at(self, body, position):
+        """Name and rotation after each joint of a body."""
+        model = self.model
+        placed = np.zeros(9)
+        mujoco.mju_quat2Mat(placed, model.body_quat[body])
+        turn = self.data.xmat[model.body_parentid[body]].reshape(3, 3) @ placed.reshape(3, 3)
+        for at, name in enumerate(self.stages(body)[:-1]):
+            joint = model.body_jntadr[body] + at
+            if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE:
+                address, quaternion, own = model.jnt_qposadr[joint], np.zeros(4), np.zeros(9)
+                mujoco.mju_axisAngle2Quat(quaternion, model.jnt_axis[joint], position[address] - model.qpos0[address])
+                mujoco.mju_quat2Mat(own, quaternion)
+                turn = turn @ own.reshape(3, 3)
+            yield name, turn
+        yield model.body(body).name, self.data.xmat[body].reshape(3, 3)
 
     def closure(self):
         """Residuals of all connect constraints and their Jacobian."""
@@ -83,7 +108,12 @@ class Engine:
             return turn @ own.reshape(3, 3), rate, acceleration
         if not body:
             return np.eye(3), np.zeros(3), np.zeros(3)
-        name = self.model.body(body).name
+        return self.stage(bodies, self.model.body(body).name)
+
+    def stage(self, bodies, name):
+        """Rotation, angular velocity and acceleration of a body of the description."""
+        if name not in self.carried:
+            raise RuntimeError(f"the description has no body `{name}`")
         moved = bodies[self.carried[name]]
         return moved.frame[:3, :3] @ self.offset[name], moved.rate, moved.acceleration
 
@@ -96,18 +126,23 @@ class Engine:
         q, v, a = model.qpos0.copy(), np.zeros(model.nv), np.zeros(model.nv)
         for joint in range(model.njnt):
             body = model.jnt_bodyid[joint]
-            if model.body_jntnum[body] > 1:
-                raise RuntimeError("bodies of several joints are not compared")
-            turn, rate, acceleration = self.turned(bodies, body)
-            before, rate0, acceleration0 = self.turned(bodies, model.body_parentid[body])
-            placed = np.zeros(9)
-            mujoco.mju_quat2Mat(placed, model.body_quat[body])
+            at, stages = joint - model.body_jntadr[body], self.stages(body)
+            turn, rate, acceleration = self.stage(bodies, stages[at])
+            qa, va = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+            if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_FREE:
+                q[qa : qa + 7], v[va : va + 6], a[va : va + 6] = self.free(bodies[self.carried[stages[at]]], stages[at])
+                continue
+            placed = np.eye(3).flatten()
+            if at > 0:
+                before, rate0, acceleration0 = self.stage(bodies, stages[at - 1])
+            else:
+                before, rate0, acceleration0 = self.turned(bodies, model.body_parentid[body])
+                mujoco.mju_quat2Mat(placed, model.body_quat[body])
             relative = (before @ placed.reshape(3, 3)).T @ turn
             quaternion = np.zeros(4)
             mujoco.mju_mat2Quat(quaternion, relative.flatten())
             local = turn.T @ (rate - rate0)
             change = turn.T @ (acceleration - acceleration0 - np.cross(rate, rate - rate0))
-            qa, va = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
             if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_BALL:
                 q[qa : qa + 4], v[va : va + 3], a[va : va + 3] = quaternion, local, change
             elif model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE:
@@ -117,6 +152,16 @@ class Engine:
             else:
                 q[qa], v[va], a[va] = self.scalar[model.joint(joint).name]
         return q, v, a
+
+    def free(self, body, name):
+        """Position, velocity and acceleration of a free joint: linear in the world, angular in the body."""
+        turn = body.frame[:3, :3] @ self.offset[name]
+        origin = body.frame[:3, 3] + body.frame[:3, :3] @ self.shift[name]
+        rate, acceleration = body.at(origin)
+        quaternion = np.zeros(4)
+        mujoco.mju_mat2Quat(quaternion, turn.flatten())
+        position = np.concatenate([origin, quaternion])
+        return position, np.concatenate([rate, turn.T @ body.rate]), np.concatenate([acceleration, turn.T @ body.acceleration])
 
     def centres(self, position, description, bodies, values):
         """Largest distance between centres of mass, and between closure points."""

@@ -15,6 +15,9 @@ const OPEN: f64 = 5e-3;
 const STARTS: usize = 20;
 /// Displacements from a singular configuration, rad or m.
 const STEPS: [f64; 4] = [0.3, -0.3, 0.1, -0.1];
+/// Number of other starts of passive joints, and their range, rad.
+const ELSEWHERE: usize = 40;
+const TURN: f64 = 3.8;
 
 /// Sets the home positions of a model with loops.
 pub(crate) fn choose(model: &mut Model) {
@@ -62,13 +65,7 @@ fn starts(model: &Model, zero: &State) -> Vec<(State, Option<&'static str>)> {
         all.push((state, Some(KEYFRAME)));
     }
     all.push((zero.clone(), None));
-    let mut random = 1_u64;
-    let mut next = || {
-        random = random
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        f64::from(u32::try_from(random >> 33).unwrap_or(0)) / f64::from(1_u32 << 31)
-    };
+    let mut next = random();
     for attempt in 0..=STARTS {
         let mut state = zero.clone();
         for (at, joint) in model.joints.iter().enumerate() {
@@ -87,6 +84,17 @@ fn starts(model: &Model, zero: &State) -> Vec<(State, Option<&'static str>)> {
         all.push((state, Some(LIMITS)));
     }
     all
+}
+
+/// Deterministic pseudo-random numbers between 0 and 1.
+fn random() -> impl FnMut() -> f64 {
+    let mut random = 1_u64;
+    move || {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(random >> 33).unwrap_or(0)) / f64::from(1_u32 << 31)
+    }
 }
 
 /// Closed configuration near a start, also if rounded numbers leave the loops slightly open.
@@ -108,7 +116,8 @@ fn is_within(model: &Model, state: &State) -> bool {
 
 /// Closed configuration near a singular one in which the motors have more independent motions.
 ///
-/// `None` if the given configuration is regular.
+/// `None` if the given configuration is regular. If no displacement along its motions helps, such
+/// as for universal joints whose first rotation has no effect, passive joints start elsewhere.
 fn regular(motion: &Motion<'_>, home: &State) -> Option<State> {
     let (free, count) = driven(motion, home);
     for size in STEPS {
@@ -127,7 +136,30 @@ fn regular(motion: &Motion<'_>, home: &State) -> Option<State> {
             return Some(moved);
         }
     }
-    None
+    let motors = motion.model.joints.iter().filter(|joint| joint.actuated);
+    if count >= motors.count().min(free.ncols()) {
+        return None;
+    }
+    let mut next = random();
+    let elsewhere = (0..ELSEWHERE).filter_map(|_| {
+        let step = motion.coordinates.iter().map(|own| {
+            let joint = &motion.model.joints[own.joint];
+            let is_turned = joint.kind == JointType::Revolute && !joint.actuated;
+            let share = next();
+            if is_turned { TURN * (share - 0.5) } else { 0.0 }
+        });
+        let step = DVector::from_vec(step.collect());
+        let moved = motion.closed(&motion.moved_by(home, &step)).ok()?;
+        let is_regular = is_within(motion.model, &moved) && driven(motion, &moved).1 > count;
+        is_regular.then_some(moved)
+    });
+    elsewhere.min_by(|a, b| distance(home, a).total_cmp(&distance(home, b)))
+}
+
+/// Largest displacement of a joint between two configurations.
+fn distance(from: &State, to: &State) -> f64 {
+    let pairs = from.positions.iter().zip(&to.positions);
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 /// Motions that keep the loops closed, and the number of independent rates of the motors.

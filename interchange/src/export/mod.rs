@@ -75,17 +75,20 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
     let text = robot
         .toml(files, &Err("none is needed".to_owned()), path, options)
         .text;
+    let parameters_file = files.count();
     let values = values(files, parameters, &text)?;
     let mut own = Export {
         files,
         network: &robot.network,
         format,
+        parameters_file,
         values,
         expressed: BTreeSet::new(),
         wanted: ExportChanges::default(),
         notes: Vec::new(),
     };
     own.gather(&robot.plan);
+    own.write_out();
     let changed = own.wanted.names.clone();
     let mut notes = std::mem::take(&mut own.notes);
     notes.extend(own.left_out());
@@ -108,7 +111,7 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
 
 /// Reads the parameter values by their names in the description.
 fn values(files: &Files, parameters: &Path, toml: &str) -> Option<BTreeMap<String, f64>> {
-    let file = files.read(parameters, None)?;
+    let file = files.read_given(parameters)?;
     let source = Source::new(files.name(file), files.text(file));
     let Ok(description) = overact_description::parse(&Source::new("imported.toml", toml)) else {
         files.refuse(
@@ -143,6 +146,8 @@ struct Export<'e, 'm> {
     files: &'e Files,
     network: &'e Network<'m>,
     format: Format,
+    /// Number of the file with the parameters.
+    parameters_file: usize,
     values: BTreeMap<String, f64>,
     /// Names of parameters that are exported or unchanged.
     expressed: BTreeSet<String>,
@@ -257,7 +262,15 @@ impl Export<'_, '_> {
                 .find(|(s, _)| *s == symbol)
                 .map_or(0.0, |(_, v)| *v);
             if (value - before).abs() > SAME * before.abs() {
-                changes.push((attribute, *value));
+                let others = file_joint.from_others(symbol);
+                let is_less = others > 0.0 && *value < others;
+                if is_less {
+                    self.notes.push(format!(
+                        "{name} = {value} is less than the {others} of its actuators and tendons: `{attribute}` is zero."
+                    ));
+                }
+                let rest = if is_less { 0.0 } else { value - others };
+                changes.push((attribute, rest));
             }
             self.expressed.insert(name);
         }
@@ -267,6 +280,39 @@ impl Export<'_, '_> {
                 .joints
                 .insert((place.file, place.span.start), changes);
             self.wanted.names.push(file_joint.name.clone());
+        }
+    }
+
+    /// Writes out what settings of the file would compute again from changed values.
+    fn write_out(&mut self) {
+        let model = self.network.model;
+        if self.format != Format::Mjcf || self.wanted.names.is_empty() {
+            return;
+        }
+        if model.adjusts_inertias && !self.wanted.inertias.is_empty() {
+            for (at, inertia) in mjcf::adjusted_inertias(model) {
+                if let Some(place) = &model.bodies[at].place {
+                    let key = (place.file, place.span.start);
+                    self.wanted.inertias.entry(key).or_insert(inertia);
+                }
+            }
+            self.notes.push("Settings of <compiler> that change inertias are removed: all inertias are written out.".to_owned());
+        }
+        for joint in &model.joints {
+            let Some([stiffness, damping]) = joint.timed_spring else {
+                continue;
+            };
+            let key = (joint.place.file, joint.place.span.start);
+            let changes = self.wanted.joints.entry(key).or_default();
+            for (name, value) in [("stiffness", stiffness), ("damping", damping)] {
+                if changes.iter().all(|(own, _)| *own != name) {
+                    changes.push((name, value));
+                }
+            }
+            self.notes.push(format!(
+                "`springdamper` of `{}` is replaced by its stiffness and damping.",
+                joint.name
+            ));
         }
     }
 
@@ -292,12 +338,22 @@ impl Export<'_, '_> {
     /// Texts of the changed files; `None` after an error.
     fn patched(&self) -> Option<BTreeMap<usize, String>> {
         let keys = self.wanted.inertias.keys().chain(self.wanted.joints.keys());
-        let files: BTreeSet<usize> = keys.map(|(file, _)| *file).collect();
+        let mut files: BTreeSet<usize> = keys.map(|(file, _)| *file).collect();
+        let is_written_out = self.format == Format::Mjcf
+            && self.network.model.adjusts_inertias
+            && !self.wanted.inertias.is_empty();
+        if is_written_out {
+            files.extend(0..self.files.count());
+            files.remove(&self.parameters_file);
+        }
         let mut texts = BTreeMap::new();
         for file in files {
             let text = self.files.text(file);
             let document = roxmltree::Document::parse(&text).ok()?;
             let mut patch = Patch::default();
+            if is_written_out {
+                mjcf::without_adjustments(&mut patch, &text, &document);
+            }
             for ((_, start), inertia) in self
                 .wanted
                 .inertias

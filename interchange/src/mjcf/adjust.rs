@@ -41,18 +41,30 @@ impl Adjustments {
             self.total_mass = (total > 0.0).then_some(total);
         }
     }
+
+    /// Whether bounds or balance change the inertias of single bodies.
+    fn changes_single_inertias(&self) -> bool {
+        self.least_mass > 0.0 || self.least_inertia > 0.0 || self.is_balanced
+    }
+
+    /// Whether the settings change inertias at all.
+    fn changes_inertias(&self) -> bool {
+        self.changes_single_inertias() || self.total_mass.is_some()
+    }
 }
 
 /// Applies bounds, balance and total mass to all inertias.
 pub(super) fn inertias(files: &Files, root: &Element, compiler: &Compiler, model: &mut Model) {
     let adjustments = compiler.adjustments;
+    model.adjusts_inertias =
+        adjustments.changes_inertias() || compiler.inertia_from_geometry == Some(true);
     let is_moving = moving(model);
     // Bodies without a location are auxiliary bodies between joints and do not exist in MuJoCo.
     let is_own = |at: usize| {
         model.bodies[at].place.is_some() && (is_moving[at] || !adjustments.is_static_fused)
     };
     let own: Vec<usize> = (1..model.bodies.len()).filter(|&at| is_own(at)).collect();
-    if adjustments.least_mass > 0.0 || adjustments.least_inertia > 0.0 || adjustments.is_balanced {
+    if adjustments.changes_single_inertias() {
         for &at in &own {
             let body = &mut model.bodies[at];
             if !body.has_unknown_inertia {
@@ -157,8 +169,10 @@ pub(super) fn springs(files: &Files, model: &mut Model, springs: &[SpringDamper]
             return;
         };
         let square = (spring.time_constant * spring.damping_ratio).powi(2);
-        joint.spring = Some((inertia / square, spring.rest));
-        joint.damping += 2.0 * inertia / spring.time_constant;
+        let [stiffness, damping] = [inertia / square, 2.0 * inertia / spring.time_constant];
+        joint.spring = Some((stiffness, spring.rest));
+        joint.timed_spring = Some([stiffness, damping]);
+        joint.damping += damping;
     }
 }
 

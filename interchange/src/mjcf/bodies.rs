@@ -117,7 +117,9 @@ fn body(
         let at_joint = model.joints.len() - 1;
         if let Some(spring) = spring_damper(reader, own, model, at_joint) {
             // The spring's damping replaces the joint's own.
-            model.joints[at_joint].damping = 0.0;
+            let own = &mut model.joints[at_joint];
+            own.damping = 0.0;
+            own.given = Some([own.armature, 0.0, own.friction]);
             tree.springs.push(spring);
         }
         // All joints but the last carry a massless body at the same pose.
@@ -311,6 +313,7 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
     joint.home = joint.reference;
     [joint.damping, joint.friction, joint.armature] =
         ["damping", "frictionloss", "armature"].map(|key| first(files, element, key));
+    joint.given = Some([joint.armature, joint.damping, joint.friction]);
     let stiffness = first(files, element, "stiffness");
     if stiffness != 0.0 {
         joint.spring = Some((stiffness, position("springref")));
