@@ -195,7 +195,7 @@ fn files_that_are_no_text_are_named_and_never_shown() {
             b"PK\x03\x04\x14\x00",
             "the zip archive can't be read: it is truncated",
         ),
-        (b"\x1f\x8b\x08\x00", "gzip"),
+        (b"\x1f\x8b\x08\x00", "compressed file is damaged"),
         (b"\xff\xfet\x00i\x00", "UTF-16"),
         (b"SQLite format 3\0", "SQLite"),
         (b"\x7fELF\x02\x01\x01\x00\x00", "neither text nor"),

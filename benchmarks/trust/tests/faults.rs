@@ -16,14 +16,13 @@ const PART: f64 = 0.25;
 const LARGEST_MEAN: f64 = 2.0;
 
 /// Robots and faults whose fit by one drive alone left wrong parameters in the list.
-const CASES: [(&str, &[&str]); 4] = [
+const CASES: [(&str, &[&str]); 3] = [
     ("five_bar", &["torque constants of all", "coordinate y"]),
     ("ankle", &["crosstalk of 4 % between", "coordinate roll"]),
     (
         "dualv",
         &["torque constant", "crosstalk", "ripple", "all gains fall"],
     ),
-    ("rx90", &["load-dependent friction"]),
 ];
 
 /// Rows of the faults of a robot whose names contain one of these words.
@@ -33,7 +32,7 @@ fn of_robot(name: &str, words: &[&str]) -> Vec<FaultRow> {
     let mut subject = Subject::load(&path).expect("a robot");
     subject.shorten(PART);
     let wanted = |fault: &str| words.iter().any(|word| fault.contains(word));
-    let rows = rows(&path, &subject, (PART, by_tier([3, 10])), &wanted, &|row| {
+    let rows = rows(&path, &subject, (PART, by_tier([2, 5])), &wanted, &|row| {
         println!("{row}");
     });
     rows.expect("rows")
@@ -41,7 +40,7 @@ fn of_robot(name: &str, words: &[&str]) -> Vec<FaultRow> {
 
 #[test]
 fn usable_parameters_are_right_on_average_whatever_the_fault() {
-    let count = if is_full() { CASES.len() } else { 2 };
+    let count = if is_full() { CASES.len() } else { 1 };
     for (robot, words) in &CASES[..count] {
         let rows = of_robot(robot, words);
         assert!(rows.len() >= words.len());
@@ -54,7 +53,7 @@ fn usable_parameters_are_right_on_average_whatever_the_fault() {
 
 #[test]
 fn data_without_a_fault_are_used() {
-    for robot in by_tier([&["five_bar", "ankle"][..], &["dualv", "rx90"][..]]) {
+    for robot in by_tier([&["five_bar"][..], &["five_bar", "ankle", "dualv"][..]]) {
         for row in of_robot(robot, &["none"]) {
             assert_eq!(row.unusable + row.listed + row.refused, 0, "{row}");
         }
