@@ -6,9 +6,17 @@ use crate::{
     formats::{row_range::RowRange, table::Table},
     mapping::{expression::Expression, transmission::Transmission},
     resampling::Resampled,
-    run::{signals::Signals, time_range::RangeRows},
+    run::signals::Signals,
     unwrapping::{Rotation, Wrap},
 };
+
+/// Rows of each table of a run in a range of time.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RangeRows {
+    pub(crate) tables: Vec<RowRange>,
+    /// Note to the user.
+    pub(crate) note: String,
+}
 
 /// Location of a wrapped position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,7 +10,10 @@ use crate::{
     error::{Error, Problem},
     formats::row_range::RowRange,
     mapping::Time,
-    run::{rows::Joined, source::Files},
+    run::{
+        rows::Joined,
+        source::{Files, RangeRows},
+    },
     significant::significant,
 };
 
@@ -24,14 +27,6 @@ pub struct TimeRange {
     pub start: f64,
     /// End; ∞ without one.
     pub end: f64,
-}
-
-/// Rows of each table of a run in a range of time.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct RangeRows {
-    pub(crate) tables: Vec<RowRange>,
-    /// Note to the user.
-    pub(crate) note: String,
 }
 
 impl TimeRange {

@@ -4,11 +4,13 @@
 //! numbers count as numbers, and so do booleans. The file is read record by record.
 //!
 //! - `records`: splits the file into objects, in bounded memory;
+//! - `parse`: parses an object;
 //! - `names`: columns of an object;
 //! - `values`: numbers of the requested columns of an object;
 //! - `rows`: rows of the requested columns, with located problems.
 
 mod names;
+mod parse;
 mod records;
 mod rows;
 mod values;

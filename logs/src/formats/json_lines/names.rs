@@ -6,8 +6,8 @@ use overact::Code;
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 use super::{
+    parse::parse,
     records::{Fault, Record},
-    values::parse,
 };
 use crate::error::{Error, Problem};
 
