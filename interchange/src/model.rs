@@ -317,7 +317,7 @@ impl Joint {
 
 impl Joint {
     /// Part of a torque parameter that actuators and tendons of the file contribute.
-    pub(crate) fn from_others(&self, symbol: &str) -> f64 {
+    pub(crate) fn of_others(&self, symbol: &str) -> f64 {
         let Some([armature, damping, friction]) = self.given else {
             return 0.0;
         };

@@ -262,7 +262,7 @@ impl Export<'_, '_> {
                 .find(|(s, _)| *s == symbol)
                 .map_or(0.0, |(_, v)| *v);
             if (value - before).abs() > SAME * before.abs() {
-                let others = file_joint.from_others(symbol);
+                let others = file_joint.of_others(symbol);
                 let is_less = others > 0.0 && *value < others;
                 if is_less {
                     self.notes.push(format!(

@@ -40,6 +40,9 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
+/// Interval of a bar, and the limit beside it.
+type BarOf = dyn Fn(&ActuatorRange) -> ([f64; 2], Option<f64>);
+
 /// Plots of position, velocity and acceleration of the joints with this unit.
 fn plots(ranges: &[ActuatorRange], unit: &str) -> Vec<String> {
     let own: Vec<&ActuatorRange> = ranges.iter().filter(|one| one.unit == unit).collect();
@@ -47,27 +50,26 @@ fn plots(ranges: &[ActuatorRange], unit: &str) -> Vec<String> {
         return Vec::new();
     }
     let symmetric = |largest: f64| [-largest, largest];
-    let plot =
-        |what: &str, unit: String, bar: &dyn Fn(&ActuatorRange) -> ([f64; 2], Option<f64>)| {
-            let row = |one: &&ActuatorRange| {
-                let (interval, limit) = bar(one);
-                let bar = Bar {
-                    look: Look::First,
-                    value: 0.5 * (interval[0] + interval[1]),
-                    interval,
-                    other: limit,
-                    label: format!("{}: {what}", one.actuator),
-                };
-                (one.actuator.clone(), vec![bar])
+    let plot = |what: &str, unit: String, bar: &BarOf| {
+        let row = |one: &&ActuatorRange| {
+            let (interval, limit) = bar(one);
+            let bar = Bar {
+                look: Look::First,
+                value: 0.5 * (interval[0] + interval[1]),
+                interval,
+                other: limit,
+                label: format!("{}: {what}", one.actuator),
             };
-            Forest {
-                title: format!("{what} ({unit})"),
-                description: format!("range of the {what} of each joint"),
-                x: Axis::linear(unit),
-                rows: own.iter().map(row).collect(),
-            }
-            .svg()
+            (one.actuator.clone(), vec![bar])
         };
+        Forest {
+            title: format!("{what} ({unit})"),
+            description: format!("range of the {what} of each joint"),
+            x: Axis::linear(unit),
+            rows: own.iter().map(row).collect(),
+        }
+        .svg()
+    };
     vec![
         plot("position", unit.to_owned(), &|one| {
             // The nearer limit, since a bar has one mark.
