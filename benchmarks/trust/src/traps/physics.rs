@@ -149,7 +149,7 @@ fn weights(
         for (model, torques) in models.into_iter().zip(&mut torques) {
             let of_body = |one: &&str| **one == *body;
             let names = model.info().parameters.iter().map(|one| one.name);
-            let unit: Vec<f64> = names.map(|one| f64::from(of_body(&&one))).collect();
+            let unit: Vec<f64> = names.map(|one| f64::from(of_body(&one))).collect();
             let function = Function::InverseDynamics(Columns::Standard);
             model
                 .evaluate(function, &[&pose, &rest, &rest, &unit], torques)

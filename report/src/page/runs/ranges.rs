@@ -41,7 +41,7 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
 }
 
 /// Interval of a bar, and the limit beside it.
-type BarOf = dyn Fn(&ActuatorRange) -> ([f64; 2], Option<f64>);
+type BarOf<'a> = dyn Fn(&ActuatorRange) -> ([f64; 2], Option<f64>) + 'a;
 
 /// Plots of position, velocity and acceleration of the joints with this unit.
 fn plots(ranges: &[ActuatorRange], unit: &str) -> Vec<String> {
@@ -50,7 +50,7 @@ fn plots(ranges: &[ActuatorRange], unit: &str) -> Vec<String> {
         return Vec::new();
     }
     let symmetric = |largest: f64| [-largest, largest];
-    let plot = |what: &str, unit: String, bar: &BarOf| {
+    let plot = |what: &str, unit: String, bar: &BarOf<'_>| {
         let row = |one: &&ActuatorRange| {
             let (interval, limit) = bar(one);
             let bar = Bar {
