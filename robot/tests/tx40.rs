@@ -88,8 +88,8 @@ fn errors_are_those_that_were_published() {
         assert!(value("fs_m6") > 5.0 * value("fs_6"));
         // The published elimination ends with two parameters more.
         //
-        // There the ratio of standard deviations is a few percent above 30; slightly different
-        // filtering decides on which side it is.
+        // There the ratio of standard deviations is about ten percent above 30; slightly different
+        // filtering and the choice of base parameters decide on which side it is.
         let essential = stage(Stage::Essential);
         let beyond = ESSENTIAL - essential.parameters.len();
         assert!(beyond <= 2, "{beyond}");
@@ -102,7 +102,7 @@ fn errors_are_those_that_were_published() {
             .map(ratio)
             .collect();
         assert!(
-            ratios.iter().all(|ratio| *ratio < 1.1 * R_SIGMA) || !weighted,
+            ratios.iter().all(|ratio| *ratio < 1.15 * R_SIGMA) || !weighted,
             "{ratios:?}"
         );
     }
