@@ -56,6 +56,36 @@ fn a_joint_that_never_moves_is_locked_or_has_a_dead_encoder() {
 }
 
 #[test]
+fn sessions_of_logs_are_in_the_result() {
+    let bench = serial();
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let logs = ["log_identification.csv", "log_validation.csv"];
+    let identify = |sessions: &[&str]| {
+        let mut arguments = vec!["identify", "my.toml", "--json", "--data", logs[0], logs[1]];
+        arguments.extend(sessions);
+        bench.run(&arguments)
+    };
+    let result = |sessions: &[&str]| -> Value {
+        let outcome = identify(sessions);
+        assert_eq!(outcome.code, Some(0), "{}", outcome.err);
+        serde_json::from_str(&outcome.out).expect("JSON")
+    };
+    let (two, one) = (result(&["--sessions", "mon", "tue"]), result(&[]));
+    assert_eq!(two["runs"][1]["session"], "tue");
+    assert!(one["runs"][1]["session"].is_null());
+    let assumed = |result: &Value, words: &str| result["assumptions"].to_string().contains(words);
+    let [between, without] = ["variation between them", "do not contain changes"];
+    assert!(assumed(&two, between) && !assumed(&two, without));
+    assert!(assumed(&one, without) && !assumed(&one, between));
+    let wrong = identify(&["--sessions", "mon"]);
+    assert_eq!(wrong.code, Some(2), "{}", wrong.err);
+    assert!(wrong.err.contains("names 1 for 2 logs"), "{}", wrong.err);
+    let made = bench.run(&["identify", "my.toml", "--sessions", "mon"]);
+    assert_eq!(made.code, Some(2), "{}", made.err);
+    assert!(made.err.contains("give logs"), "{}", made.err);
+}
+
+#[test]
 fn simulated_logs_give_what_the_virtual_experiment_gives() {
     let bench = serial();
     let made = bench.run(&["simulate", "my.toml", "-o", "log.csv"]);

@@ -39,17 +39,21 @@ pub(crate) fn base_words(identification: &Identification, one: &Consistent) -> S
     relative_words(lines, overall, 4)
 }
 
-/// Largest relative error of a line on the validation runs of an estimate, in percent.
-pub(crate) fn worst_of_validation(
+/// Relative error of an estimate on its worst validation run, in words; `None` without such runs.
+///
+/// It is the same figure as [`relative_words`] of the training runs.
+pub(crate) fn validation_words(
     identification: &Identification,
     estimate: &Estimate,
-) -> Option<f64> {
+) -> Option<String> {
+    let error = |run: &CrossValidation| relative(&run.lines, run.relative_error_percent);
     let runs = validations(identification, estimate);
-    let worst = runs.map(|run| {
-        let worst = LineError::worst(&run.lines);
-        worst.map_or(run.relative_error_percent, |one| one.relative_error_percent)
-    });
-    worst.reduce(f64::max)
+    let worst = runs.max_by(|a, b| error(a).total_cmp(&error(b)))?;
+    let words = relative_words(&worst.lines, worst.relative_error_percent, 3);
+    Some(match validations(identification, estimate).count() {
+        1 => format!("{words} (validation)"),
+        _ => format!("{words} (worst validation run)"),
+    })
 }
 
 /// Validation runs of an estimate.

@@ -5,7 +5,7 @@
 use overact_tier::{by_tier, is_full};
 use overact_trust::{
     Subject,
-    faults::{FaultRow, rows},
+    faults::{Draws, FaultRow, rows},
 };
 use std::path::Path;
 
@@ -32,9 +32,11 @@ fn of_robot(name: &str, words: &[&str]) -> Vec<FaultRow> {
     let mut subject = Subject::load(&path).expect("a robot");
     subject.shorten(PART);
     let wanted = |fault: &str| words.iter().any(|word| fault.contains(word));
-    let rows = rows(&path, &subject, (PART, by_tier([2, 5])), &wanted, &|row| {
-        println!("{row}");
-    });
+    let draws = Draws {
+        part: PART,
+        count: by_tier([2, 5]),
+    };
+    let rows = rows(&path, &subject, draws, &wanted, &|row| println!("{row}"));
     rows.expect("rows")
 }
 

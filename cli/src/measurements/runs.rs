@@ -101,7 +101,10 @@ impl Arguments {
     /// # Errors
     /// Logs that cannot be used, or an invalid virtual experiment.
     pub(crate) fn runs(&self, robot: &Robot, as_json: bool) -> Result<Runs, Failure> {
-        if self.are_virtual() {
+        if self.are_virtual() && !self.sessions.is_empty() {
+            let message = "`--sessions` names the recording sessions of logs: give logs with `--data` or `--payload-data`";
+            Err(Failure::Usage(message.to_owned()))
+        } else if self.are_virtual() {
             self.made(robot, as_json)
         } else if self.seed.is_some() {
             let message = "`--seed` sets the noise of the virtual experiment: leave it out with `--data` and `--payload-data`";
@@ -171,7 +174,7 @@ impl Arguments {
             return Ok(());
         }
         Err(Failure::Usage(format!(
-            "`--sessions` names {names} sessions for {logs} logs: name one for each log of `--data`, then of `--payload-data`"
+            "`--sessions` names {names} for {logs} logs: name one session for each log of `--data`, then of `--payload-data`"
         )))
     }
 

@@ -42,7 +42,7 @@ use crate::{
     gains::Gains,
     gravity::GravityDirection,
     regression::projection::{ModelKind, Projection},
-    result::{Estimate, Stage},
+    result::{Estimate, RunSummary, Stage},
     settings::Settings,
     thresholds::Thresholds,
 };
@@ -182,14 +182,7 @@ pub fn identify_after(
     // Detection limits are irrelevant for a refused result.
     let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
     let unseen = if refused { Vec::new() } else { unseen(&checks) };
-    let mut sessions: Vec<Option<&String>> = prepared
-        .runs
-        .iter()
-        .map(|run| run.session.as_ref())
-        .collect();
-    sessions.sort_unstable();
-    sessions.dedup();
-    let sessions = sessions.len();
+    let sessions = RunSummary::sessions(&prepared.runs);
     Ok(Identification {
         robot: info.name.to_owned(),
         base_parameters: BaseParameter::all(&prepared.columns, &prepared.base, dataset.true_values),

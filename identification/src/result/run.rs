@@ -1,6 +1,7 @@
 //! Summary of a training run.
 
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 use crate::regression::observation::RunObservation;
 use overact_logs::Log;
@@ -32,6 +33,12 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
+    /// Number of recording sessions of some runs.
+    pub(crate) fn sessions(runs: &[Self]) -> usize {
+        let names: BTreeSet<Option<&str>> = runs.iter().map(|run| run.session.as_deref()).collect();
+        names.len()
+    }
+
     /// Summary of a run.
     pub(crate) fn new(log: &Log, observation: &RunObservation) -> Self {
         Self {

@@ -12,7 +12,7 @@ use crate::{
     mapping::Time,
     run::{
         rows::Joined,
-        source::{Files, RangeRows},
+        source::{FileClock, Files, RangeRows},
     },
     significant::significant,
 };
@@ -84,18 +84,7 @@ impl Files {
         let found = joined.found().ok_or_else(|| joined.outside(&self.name))?;
         let mut tables = vec![found; self.tables.len()];
         for clock in &self.clocks {
-            let columns: Vec<_> = self.signals.columns().nth(clock.table).unwrap_or_default();
-            let mut rows = self.tables[clock.table].rows(&columns)?;
-            let mut search = Search::new(range, joined.origin);
-            let mut row = vec![f64::NAN; columns.len()];
-            loop {
-                row.fill(f64::NAN);
-                let read = rows.next(&mut row);
-                let is_at_end = matches!(read, Ok(false)) || rows.is_broken();
-                if is_at_end || !search.take(row[clock.column]) {
-                    break;
-                }
-            }
+            let search = self.search_file(clock, Search::new(range, joined.origin))?;
             let name = self.tables[clock.table].file();
             let found = search.found().ok_or_else(|| search.outside(name))?;
             tables[clock.table] = found;
@@ -107,21 +96,26 @@ impl Files {
         Ok(())
     }
 
+    /// Searches the rows of a file with its own clock.
+    fn search_file(&self, clock: &FileClock, mut search: Search) -> Result<Search, Error> {
+        let columns: Vec<_> = self.signals.columns().nth(clock.table).unwrap_or_default();
+        let mut rows = self.tables[clock.table].rows(&columns)?;
+        let mut row = vec![f64::NAN; columns.len()];
+        loop {
+            row.fill(f64::NAN);
+            let read = rows.next(&mut row);
+            let is_at_end = matches!(read, Ok(false)) || rows.is_broken();
+            if is_at_end || !search.take(row[clock.column]) {
+                return Ok(search);
+            }
+        }
+    }
+
     /// Searches the rows of the first file, or of files with a common clock.
     fn search(&self, range: TimeRange, time: &Time) -> Result<Search, Error> {
         let mut search = Search::new(range, None);
         if let Some(clock) = self.clocks.first() {
-            let columns: Vec<_> = self.signals.columns().nth(clock.table).unwrap_or_default();
-            let mut rows = self.tables[clock.table].rows(&columns)?;
-            let mut row = vec![f64::NAN; columns.len()];
-            loop {
-                row.fill(f64::NAN);
-                let read = rows.next(&mut row);
-                let is_at_end = matches!(read, Ok(false)) || rows.is_broken();
-                if is_at_end || !search.take(row[clock.column]) {
-                    return Ok(search);
-                }
-            }
+            return self.search_file(clock, search);
         }
         let mut joined = Joined::new(self)?;
         let mut row = vec![f64::NAN; self.width()];

@@ -10,7 +10,7 @@ use crate::{
     intervals::{excludes_zero, half_width_percent},
     judgement::{grade_words, other_warnings, passed},
     layout::{line, paragraph},
-    line_errors::{base_words, is_mixed, relative, relative_words, worst_of_validation},
+    line_errors::{base_words, is_mixed, relative, relative_words, validation_words},
     terminal::{calibration, gains, gravity, motors},
 };
 use overact_identification::{
@@ -150,6 +150,8 @@ fn model(
             projection(estimate)
         ),
     );
+    let validation = validation_words(identification, estimate);
+    let validation = validation.map_or_else(String::new, |words| format!(", {words}"));
     let count = estimate.parameters.len();
     let own = match estimate.stage {
         Stage::Base => format!("All {count} base parameters"),
@@ -159,9 +161,8 @@ fn model(
         &mut text,
         "  ",
         &format!(
-            "{own}: relative residual {} (training){}.{}",
+            "{own}: relative residual {} (training){validation}.{}",
             training_words(estimate),
-            held_out(identification, estimate),
             sureness(estimate)
         ),
     );
@@ -212,13 +213,6 @@ fn training_words(estimate: &Estimate) -> String {
     } else {
         format!("{percent:.4} %")
     }
-}
-
-/// Largest prediction error of a torque on the validation runs.
-fn held_out(identification: &Identification, estimate: &Estimate) -> String {
-    worst_of_validation(identification, estimate).map_or_else(String::new, |worst| {
-        format!(", at most {} % (validation)", significant(worst, 3))
-    })
 }
 
 /// Precision of the parameters, if some are poorly known.

@@ -3,7 +3,7 @@
 use clap::Parser;
 use overact_trust::{
     Failure, Subject,
-    faults::{FaultRow, header, rows},
+    faults::{Draws, FaultRow, header, rows},
 };
 use std::{
     fs,
@@ -45,13 +45,11 @@ fn of_robot(arguments: &Arguments, path: &Path) -> Result<Vec<FaultRow>, Failure
                 .any(|part| name.contains(part.as_str()))
     };
     let print = |row: &FaultRow| println!("{row}");
-    rows(
-        path,
-        &subject,
-        (arguments.part, arguments.draws),
-        &wanted,
-        &print,
-    )
+    let draws = Draws {
+        part: arguments.part,
+        count: arguments.draws,
+    };
+    rows(path, &subject, draws, &wanted, &print)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -14,17 +14,25 @@ use rayon::prelude::*;
 use row::Draw;
 use std::path::Path;
 
+/// Draws of the noise for each fault.
+#[derive(Debug, Clone, Copy)]
+pub struct Draws {
+    /// Fraction of each run's duration, which the subject has already.
+    pub part: f64,
+    /// Number of draws.
+    pub count: u64,
+}
+
 /// Identifies every fault whose name is `wanted`, and the faultless data, in all draws.
 ///
-/// `part` is the fraction of each run's duration, which the subject has already. `print` is called
-/// for each row.
+/// `print` is called for each row.
 ///
 /// # Errors
 /// A plant that cannot be simulated.
 pub fn rows(
     path: &Path,
     subject: &Subject,
-    (part, draws): (f64, u64),
+    draws: Draws,
     wanted: &dyn Fn(&str) -> bool,
     print: &dyn Fn(&FaultRow),
 ) -> Result<Vec<FaultRow>, Failure> {
@@ -38,7 +46,7 @@ pub fn rows(
             faultless.clone()
         } else {
             let mut plant = Subject::altered(path, &trap.plant)?;
-            plant.shorten(part);
+            plant.shorten(draws.part);
             if let Some(change) = &trap.plan {
                 change(&mut plant.experiment);
             }
@@ -48,13 +56,10 @@ pub fn rows(
         let one = |number: u64| {
             let logs = draw::logs(subject, &records, 1.0, number);
             let result = logs.and_then(|logs| identified_logs(subject, &logs));
-            result.map_or_else(
-                |error| Draw::refused(&error.to_string()),
-                |one| Draw::new(&one),
-            )
+            result.map_or_else(|_| Draw::refused(), |one| Draw::new(&one))
         };
-        let draws: Vec<Draw> = (1..=draws).into_par_iter().map(one).collect();
-        let row = FaultRow::new(subject.info().name, &trap.name, &draws);
+        let results: Vec<Draw> = (1..=draws.count).into_par_iter().map(one).collect();
+        let row = FaultRow::new(subject.info().name, &trap.name, &results);
         print(&row);
         rows.push(row);
     }

@@ -23,7 +23,7 @@ pub(super) struct Draw {
 
 impl Draw {
     /// Data that are refused with an error.
-    pub(super) fn refused(_: &str) -> Self {
+    pub(super) const fn refused() -> Self {
         Self {
             grade: None,
             errors: Vec::new(),

@@ -40,7 +40,7 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// Interval of a bar, and the limit beside it.
+/// Interval of a bar, and the limit that it shows.
 type BarOf<'a> = dyn Fn(&ActuatorRange) -> ([f64; 2], Option<f64>) + 'a;
 
 /// Plots of position, velocity and acceleration of the joints with this unit.

@@ -1,16 +1,13 @@
 //! Tests of the page with an artificial identification that has hostile names.
 
+mod estimates;
 mod example;
-
 mod words;
 
 use super::{Attachment, Contents, page};
 use crate::{Extent, Units, compare_with_published, numbers, summary, tables};
 use example::{HOSTILE, identification, published, series, settings, units};
-use overact_identification::{
-    CalibratedParameter, Calibration, CalibrationScope, Estimate, Figures, Grade, HeldParameter,
-    Identification, LineError, LineNorms, ParameterEstimate, ParameterKind, Stage, Thresholds,
-};
+use overact_identification::{Estimate, Figures, Identification, ParameterEstimate, Thresholds};
 use roxmltree::{Document, ParsingOptions};
 
 /// Page with everything that can be shown.
@@ -30,6 +27,19 @@ fn full(identification: &Identification) -> String {
             what: HOSTILE,
             text: "a,b\n",
         }],
+    })
+}
+
+/// Page of an identification alone.
+fn bare(identification: &Identification) -> String {
+    page(&Contents {
+        identification,
+        units: &Units::default(),
+        summary: None,
+        source: None,
+        drawing: None,
+        published: None,
+        attachments: &[],
     })
 }
 
@@ -201,114 +211,6 @@ fn a_short_summary_has_fifty_lines_and_what_may_be_used() {
 }
 
 #[test]
-fn a_regrouped_parameter_has_its_sum_beside_it() {
-    let mut identification = identification();
-    let base = &mut identification.base_parameters[0];
-    base.name = String::from("m_platformR");
-    base.parameter = String::from("m_platform");
-    base.regrouping.truncate(1);
-    base.regrouping[0].parameter = String::from("ia_1");
-    let text = summary(&identification, None, Extent::Whole);
-    let sum = "m_platform + 0.0784 ia_1";
-    assert!(text.contains(&format!("\nm_platformR = {sum}\n")), "{text}");
-    let html = page(&Contents {
-        identification: &identification,
-        units: &Units::default(),
-        summary: None,
-        source: None,
-        drawing: None,
-        published: None,
-        attachments: &[],
-    });
-    let cell = format!("m_platformR<span class=\"sum\">= {sum}</span>");
-    assert!(html.contains(&cell));
-}
-
-#[test]
-fn friction_correlation_and_range_have_plots() {
-    let identification = identification();
-    let html = full(&identification);
-    let document = parsed(&html);
-    let ids: Vec<&str> = { document.descendants() }
-        .filter_map(|node| node.attribute("id"))
-        .collect();
-    for id in [
-        "figure-first",
-        "figure-friction-actuators",
-        "figure-correlation-platform",
-        "figure-ranges",
-    ] {
-        assert!(ids.contains(&id), "{id}");
-    }
-    let place = |id: &str| ids.iter().position(|one| *one == id);
-    assert!(place("figure-first") < place("verdict"));
-    assert!(place("verdict") < place("parameters") && place("parameters") < place("checks"));
-    assert!(html.contains("Strongest: ") && html.contains("−0.87"));
-    let dots = { document.descendants() }
-        .find(|node| node.attribute("id") == Some("figure-friction-actuators"))
-        .map(|figure| {
-            let all = figure.descendants();
-            all.filter(|node| node.tag_name().name() == "circle")
-                .count()
-        });
-    // One residual has no velocity.
-    assert_eq!(dots, Some(1));
-}
-
-#[test]
-fn every_line_has_its_errors_in_one_unit() {
-    let identification = identification();
-    let text = summary(&identification, None, Extent::Whole);
-    let row = |name: &str| {
-        let mut lines = text.lines();
-        let line = lines.find(|line| line.starts_with(name));
-        let words = line.map(|line| line.split_whitespace().map(str::to_owned));
-        words.into_iter().flatten().collect::<Vec<String>>()
-    };
-    let line = row("x (platform)");
-    assert_eq!(
-        line[..6],
-        ["x", "(platform)", "N", "0.0316", "2.5", "97.50"],
-        "{text}"
-    );
-    let torque = row("leg1 (torque)");
-    assert_eq!(torque[7..], ["0.1", "5", "95.00"], "{torque:?}");
-    // The largest error of a line, since forces and moments have no common norm.
-    let mut mixed = identification;
-    let platform = mixed
-        .estimates
-        .iter_mut()
-        .find(|one| one.stage == Stage::Recommended);
-    let lines = &mut platform.expect("an estimate").lines;
-    let norms = LineNorms {
-        residual: 3.0,
-        measured: 10.0,
-        variation: 10.0,
-    };
-    lines.push(LineError::new("phi", "N m", &norms, 1000));
-    let text = summary(&mixed, None, Extent::Whole);
-    assert!(
-        text.contains("at most 30.0000 % of a torque (training)"),
-        "{text}"
-    );
-}
-
-#[test]
-fn a_reason_of_two_models_is_reported_once() {
-    let mut identification = identification();
-    let check = &mut identification.checks[0];
-    (check.passed, check.grade) = (false, Grade::DoNotUse);
-    (check.models, check.stages) = (Vec::new(), Vec::new());
-    check.words = String::from("the torques are late");
-    let name = check.kind.name();
-    identification.warnings.push(check.words.clone());
-    let text = summary(&identification, None, Extent::Whole);
-    assert_eq!(text.matches("the torques are late").count(), 1, "{text}");
-    let again = text.lines().find(|line| line.contains("as reported above"));
-    assert!(again.is_some_and(|line| line.contains(name)), "{text}");
-}
-
-#[test]
 fn what_there_is_not_is_not_spoken_of() {
     let mut identification = identification();
     let of = |identification: &Identification, units: &Units| {
@@ -453,68 +355,6 @@ fn tables_hold_the_numbers() {
 }
 
 #[test]
-fn what_was_calibrated_is_told_with_its_intervals() {
-    let offset = CalibratedParameter {
-        name: HOSTILE.to_owned(),
-        unit: "rad",
-        kind: ParameterKind::EncoderOffset,
-        described: 0.0,
-        change: 3.4907e-3,
-        standard_deviation: 1.2e-7,
-        interval_95: [3.4905e-3, 3.4909e-3],
-        alternatives: vec![String::from("base_x_leg2")],
-        index: 1,
-    };
-    let held = |name: &str, reason: Option<&str>| HeldParameter {
-        name: name.to_owned(),
-        unit: "m",
-        kind: ParameterKind::BasePoint,
-        described: 0.0,
-        deviation_of_a_change: reason.is_none().then_some(2.3e-7),
-        reason: reason.map(str::to_owned),
-    };
-    let html = full(&Identification {
-        calibration: Some(Calibration {
-            scope: CalibrationScope::Smallest,
-            sensors: 4,
-            coordinates: 3,
-            samples: 2000,
-            noise: Vec::new(),
-            misfit_before: 492.73,
-            misfit_after: 1.0,
-            estimated: vec![offset],
-            held: vec![
-                held("base_x_leg1", None),
-                held("base_z_leg1", Some("it has no effect")),
-                held("base_z_leg2", Some("it has no effect")),
-            ],
-            converged: true,
-            remarks: vec![String::from("angles do not determine the scale")],
-            warnings: Vec::new(),
-        }),
-        ..identification()
-    });
-    let document = parsed(&html);
-    let calibration = text(element(&document, "calibration"));
-    for words in [
-        "4 sensors measure 3 coordinates",
-        "One value is changed.",
-        "493",
-        "0.0034907",
-        "0.00349050 … 0.00349090",
-        "0.2",
-        "base_x_leg1 (2.3e−7 m)",
-        "since it has no effect: base_z_leg1, base_z_leg2.",
-        "explains the data equally well",
-        "Angles do not determine the scale.",
-    ] {
-        assert!(calibration.contains(words), "{words} in {calibration}");
-    }
-    // Without calibration there is no section on it.
-    assert!(!full(&identification()).contains("id=\"calibration\""));
-}
-
-#[test]
 fn the_part_that_is_plotted_holds_the_worst_miss() {
     let part = super::elements::select::worst_part(&[series("x")]);
     assert_eq!(part.len(), 300);
@@ -548,15 +388,7 @@ fn an_identification_without_anything_still_has_a_page() {
         settings: settings(),
         figures: Figures::default(),
     };
-    let html = page(&Contents {
-        identification: &empty,
-        units: &Units::default(),
-        summary: None,
-        source: None,
-        drawing: None,
-        published: None,
-        attachments: &[],
-    });
+    let html = bare(&empty);
     let document = parsed(&html);
     assert!(
         document
