@@ -34,6 +34,42 @@ fn a_result_that_is_not_to_be_used_fails_where_that_is_asked_for() {
 }
 
 #[test]
+fn basic_checks_give_the_same_estimates_and_seek_no_faults() {
+    let bench = serial();
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let identify = |scope: &str| -> Value {
+        let log = "log_identification.csv";
+        bench.json(&["identify", "my.toml", "--data", log, "--checks", scope])
+    };
+    let (all, basic) = (identify("all"), identify("basic"));
+    let values = |document: &Value| -> Vec<Value> {
+        let estimates = document["estimates"].as_array().expect("estimates");
+        let base = estimates
+            .iter()
+            .find(|one| one["stage"] == "base" && one["estimator"] == "least-squares");
+        let parameters = base.expect("base parameters")["parameters"].as_array();
+        let own = parameters.expect("parameters").iter();
+        own.map(|one| serde_json::json!([one["name"], one["value"], one["interval_95"]]))
+            .collect()
+    };
+    assert!(!values(&all).is_empty());
+    assert_eq!(values(&all), values(&basic));
+    assert_eq!(basic["settings"]["checks"], "basic");
+    let kinds = |document: &Value| -> Vec<String> {
+        let checks = document["checks"].as_array().expect("checks").iter();
+        checks.map(|one| one["kind"].to_string()).collect()
+    };
+    assert!(kinds(&all).iter().any(|kind| kind.contains("delay")));
+    assert!(!kinds(&basic).iter().any(|kind| kind.contains("delay")));
+    assert!(kinds(&basic).iter().all(|kind| kinds(&all).contains(kind)));
+    let warned = |document: &Value| {
+        let sentence = document["verdicts"][0]["rests_on"].as_str();
+        sentence.is_some_and(|sentence| sentence.contains("Only the basic checks were run"))
+    };
+    assert!(warned(&basic) && !warned(&all));
+}
+
+#[test]
 fn a_joint_that_never_moves_is_locked_or_has_a_dead_encoder() {
     let bench = serial();
     bench.good(&["simulate", "my.toml", "-o", "log.csv"]);

@@ -95,6 +95,6 @@ pub use result::{
 pub use series::{
     ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series, VelocitySeries,
 };
-pub use settings::{Instruments, Normalisation, Settings};
+pub use settings::{CheckScope, Instruments, Normalisation, Settings};
 pub use thresholds::Thresholds;
 pub use validation::{TorqueComparison, Validation};

@@ -63,6 +63,37 @@ impl Instruments {
     }
 }
 
+/// Checks that an identification runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CheckScope {
+    /// All checks.
+    #[default]
+    All,
+    /// Checks of the raw samples and of the residuals only.
+    ///
+    /// Fault hypotheses, position noise and instruments need further passes over the data. They are
+    /// left out, so a wrong gain, a delay or missing physics may pass unnoticed.
+    Basic,
+}
+
+impl CheckScope {
+    /// `all` or `basic`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Basic => "basic",
+        }
+    }
+
+    /// Whether faults are sought in further passes over the data.
+    #[must_use]
+    pub const fn has_fault_hypotheses(self) -> bool {
+        matches!(self, Self::All)
+    }
+}
+
 /// Settings of an identification.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -128,6 +159,9 @@ pub struct Settings {
     pub weighted: bool,
     /// Source of the instruments.
     pub instruments: Instruments,
+    /// Checks that are run.
+    #[serde(default)]
+    pub checks: CheckScope,
     /// Period of the motion, s, for instruments from other periods; `None` to find it in each run.
     pub period_s: Option<f64>,
     /// Prior of the standard parameters, for the consistent estimate.
@@ -184,6 +218,7 @@ impl Settings {
             asymmetric_friction: false,
             weighted: true,
             instruments: Instruments::default(),
+            checks: CheckScope::default(),
             period_s: None,
             prior: Prior::default(),
             known: BTreeMap::new(),

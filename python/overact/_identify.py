@@ -30,6 +30,7 @@ def identify(
     friction: str | None = None,
     calibrate: bool | str | None = None,
     gains: bool | None = None,
+    checks: str = "all",
     tracking: bool | None = None,
     published: str | os.PathLike[str] | None | bool = None,
     progress: Callable[[float, str], None] | None = None,
@@ -58,6 +59,7 @@ def identify(
         friction: "symmetric" or "asymmetric".
         calibrate: Encoder offsets and lengths first: "smallest" (or True), "offsets" or "all".
         gains: Whether drive gains are identified first.
+        checks: "all", or "basic" for those of the raw samples and residuals only, which take less time.
         tracking: Whether the virtual robot follows the validation runs with the result. By default, if
             runs are virtual and there are published results.
         published: Published results for comparison. By default ``published/NAME.toml`` next to the
@@ -89,6 +91,7 @@ def identify(
         "friction": friction,
         "calibrate": "smallest" if calibrate is True else calibrate or None,
         "gains": gains,
+        "checks": checks,
         "tracking": tracking,
         "published": _published(robot, published),
         "progress": progress,

@@ -7,7 +7,7 @@ use crate::{
 };
 use overact::Model;
 use overact_cli::report;
-use overact_identification::{CalibrationScope, Grade, Identification, Progress};
+use overact_identification::{CalibrationScope, CheckScope, Grade, Identification, Progress};
 use overact_report::{Extent, Published};
 use overact_robot::{Error, Identifier, Robot, Runs, kept_actuators, tracking};
 use pyo3::{
@@ -29,6 +29,7 @@ struct Wishes {
     asymmetric: Option<bool>,
     calibrate: Option<CalibrationScope>,
     gains: Option<bool>,
+    checks: CheckScope,
     tracking: bool,
 }
 
@@ -54,6 +55,7 @@ pub(crate) fn identify(
     let published = published.map_err(|failure| errors::of_command(py, &failure))?;
     let friction = option::<String>(options, "friction")?;
     let calibrate = option::<String>(options, "calibrate")?;
+    let checks = option::<String>(options, "checks")?;
     let is_virtual = runs.is_empty();
     let tracked = option(options, "tracking")?;
     let wishes = Wishes {
@@ -65,6 +67,7 @@ pub(crate) fn identify(
         asymmetric: friction.as_deref().map(is_asymmetric).transpose()?,
         calibrate: calibrate.as_deref().map(scope).transpose()?,
         gains: option(options, "gains")?,
+        checks: checks.as_deref().map_or(Ok(CheckScope::All), check_scope)?,
         tracking: tracked.unwrap_or(is_virtual && published.is_some()),
     };
     let teller = Teller::new(option(options, "progress")?);
@@ -112,6 +115,14 @@ fn scope(calibrate: &str) -> PyResult<CalibrationScope> {
     }
 }
 
+fn check_scope(checks: &str) -> PyResult<CheckScope> {
+    match checks {
+        "all" => Ok(CheckScope::All),
+        "basic" => Ok(CheckScope::Basic),
+        other => Err(unknown("checks", other, "\"all\" or \"basic\"")),
+    }
+}
+
 fn unknown(name: &str, found: &str, wanted: &str) -> PyErr {
     PyValueError::new_err(format!("{name}=\"{found}\" is none of {wanted}"))
 }
@@ -125,6 +136,7 @@ fn identified(robot: &Robot, wishes: &Wishes, teller: &Teller) -> Result<Identif
     let mut settings = robot.settings(runs.sampling_frequency());
     settings.asymmetric_friction = wishes.asymmetric.unwrap_or(settings.asymmetric_friction);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
+    settings.checks = wishes.checks;
     let tell = |doing: Progress<'_>| tell(teller, doing);
     let mut identifier = Identifier::new(robot)
         .data(&runs)

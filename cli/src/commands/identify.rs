@@ -14,7 +14,9 @@ use crate::{
 use clap::ValueEnum;
 use overact::Model;
 use overact_codegen::diagnostic::Code;
-use overact_identification::{CalibrationScope, Grade, Identification, Progress as Doing};
+use overact_identification::{
+    CalibrationScope, CheckScope, Grade, Identification, Progress as Doing,
+};
 use overact_report::Extent;
 use overact_robot::{Identifier, tracking};
 use std::path::PathBuf;
@@ -43,6 +45,9 @@ pub(crate) struct Arguments {
     /// [default: if the runs are virtual and published results are in the folder of the description]
     #[arg(long)]
     tracking: bool,
+    /// Checks to run: all, or only those of the raw samples and residuals, which take less time
+    #[arg(long, value_enum, value_name = "SCOPE", default_value_t)]
+    checks: Checks,
     /// Exit with code 3 if the verdict is "do not use it"
     #[arg(long)]
     strict: bool,
@@ -82,6 +87,25 @@ pub(crate) struct Arguments {
     parameters: Option<PathBuf>,
     #[command(flatten)]
     reports: files::Arguments,
+}
+
+/// Checks that are run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum Checks {
+    /// All checks
+    #[default]
+    All,
+    /// Raw samples and residuals
+    Basic,
+}
+
+impl From<Checks> for CheckScope {
+    fn from(checks: Checks) -> Self {
+        match checks {
+            Checks::All => Self::All,
+            Checks::Basic => Self::Basic,
+        }
+    }
 }
 
 /// What is calibrated.
@@ -131,6 +155,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let runs = arguments.runs.runs(&robot, as_json)?;
     let mut settings = arguments.runs.settings(&robot, &runs);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
+    settings.checks = arguments.checks.into();
     let scope = arguments.calibrate.map(CalibrationScope::from);
     let identifier = Identifier::new(&robot).data(&runs).settings(settings);
     let identifier = if arguments.gains {

@@ -12,6 +12,7 @@ use super::{
 use crate::{
     kinematics::conditioning::couples,
     regression::{columns::ColumnSet, projection::ModelKind},
+    settings::CheckScope,
 };
 use overact_logs::significant;
 
@@ -86,21 +87,45 @@ pub(crate) fn assumptions(
     all
 }
 
+/// What basic checks leave untested, as an assumption.
+pub(crate) fn not_tested(checks: CheckScope) -> Vec<String> {
+    match checks {
+        CheckScope::All => Vec::new(),
+        CheckScope::Basic => vec![String::from(
+            "there are no faults that only the complete checks find, such as a wrong gain of one drive, a delay, an encoder offset, missing physics or position noise: identify once with `--checks all`",
+        )],
+    }
+}
+
 /// Whether no closure constrains the loop lengths: a closed chain with n = r.
 fn lengths_are_untold(model: &dyn Model) -> bool {
     let sizes = model.info().sizes;
     sizes.actuators == sizes.dof && couples(model)
 }
 
-/// The assumptions that are violated most often, as a sentence for the verdict.
-pub(crate) fn rests_on(model: &dyn Model, before: PreviouslyIdentified) -> Option<String> {
+/// The assumptions that are violated most often, as sentences for the verdict.
+///
+/// With basic checks, these are also that the other checks would pass.
+pub(crate) fn rests_on(
+    model: &dyn Model,
+    before: PreviouslyIdentified,
+    checks: CheckScope,
+) -> Option<String> {
     let what = match (lengths_are_untold(model), before.gains) {
-        (true, false) => "lengths, units and torque constants",
-        (false, false) => "units and torque constants",
-        (true, true) => "lengths",
-        (false, true) => return None,
+        (true, false) => Some("lengths, units and torque constants"),
+        (false, false) => Some("units and torque constants"),
+        (true, true) => Some("lengths"),
+        (false, true) => None,
     };
-    Some(format!("Assumption that these data cannot test: {what}."))
+    let untestable = what.map(|what| format!("Assumption that these data cannot test: {what}."));
+    let left_out = match checks {
+        CheckScope::All => None,
+        CheckScope::Basic => Some(String::from(
+            "Only the basic checks were run: faults that `--checks all` finds may be present.",
+        )),
+    };
+    let all: Vec<String> = left_out.into_iter().chain(untestable).collect();
+    (!all.is_empty()).then(|| all.join(" "))
 }
 
 /// A fault whose detection limit is reported.

@@ -33,7 +33,7 @@ use prepare::{check_runs, prepared_warnings};
 use crate::{
     assessment::{
         self, Context, RunMonitor,
-        assumptions::{PreviouslyIdentified, assumptions, rests_on, unseen},
+        assumptions::{PreviouslyIdentified, assumptions, not_tested, rests_on, unseen},
         check::{Check, Grade},
         hypotheses::{PositionRange, ScoreTest},
         verdict::verdicts,
@@ -134,6 +134,7 @@ pub fn identify_after(
     let watched: Vec<RunMonitor> = identified.chain(held_out.watched).collect();
     let position_ranges = position_ranges(&watched[..dataset.runs.len()]);
     let base = estimates.iter().find(|(_, one)| one.stage == Stage::Base);
+    let base = base.filter(|_| settings.checks.has_fault_hypotheses());
     let test = base.map(|(_, estimate)| ScoreTest {
         model,
         dataset,
@@ -146,7 +147,11 @@ pub fn identify_after(
     });
     let scores = test.as_ref().map(|test| test.scores(1)).transpose()?;
     let narrow = || test.as_ref().map(|test| test.scores(2)).transpose();
-    let column_noise = prepared.column_noise(model, dataset.runs, settings)?;
+    let column_noise = if settings.checks.has_fault_hypotheses() {
+        prepared.column_noise(model, dataset.runs, settings)?
+    } else {
+        Vec::new()
+    };
     let ranges = prepared.ranges(model);
     let checks = assessment::checks(&Context {
         model,
@@ -177,7 +182,7 @@ pub fn identify_after(
     )?;
     let models: Vec<ModelKind> = projections.iter().map(Projection::model).collect();
     let estimates: Vec<Estimate> = estimates.into_iter().map(|(_, one)| one).collect();
-    let rests_on = rests_on(model, found);
+    let rests_on = rests_on(model, found, settings.checks);
     let verdicts = verdicts(&estimates, &checks, rests_on.as_deref());
     // Detection limits are irrelevant for a refused result.
     let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
@@ -189,7 +194,11 @@ pub fn identify_after(
         without_effect: prepared.without_effect(),
         runs: prepared.runs,
         warnings,
-        assumptions: assumptions(model, &prepared.columns, &models, found, sessions),
+        assumptions: [
+            not_tested(settings.checks),
+            assumptions(model, &prepared.columns, &models, found, sessions),
+        ]
+        .concat(),
         unseen,
         verdicts,
         checks,

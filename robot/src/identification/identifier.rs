@@ -281,7 +281,7 @@ impl<'a> Identifier<'a> {
     /// Identification in the current state, after the preceding stages.
     fn estimated(&self, before: PriorStage<'_>) -> Result<Identification, Error> {
         self.robot.check_prior()?;
-        let settings = self.with_defaults();
+        let settings = self.with_checks();
         let essential = self.essential();
         let instrumented = match settings.instruments {
             Instruments::Simulated => Some(self.robot.simulated(self.runs, &settings)?),
@@ -354,6 +354,18 @@ impl<'a> Identifier<'a> {
         let frequency = self.runs.first().map_or(0.0, Log::sampling_frequency);
         let own = || self.robot.settings(frequency);
         self.settings.clone().unwrap_or_else(own)
+    }
+
+    /// Settings without what basic checks leave out.
+    fn with_checks(&self) -> Settings {
+        let settings = self.with_defaults();
+        if settings.checks.has_fault_hypotheses() {
+            return settings;
+        }
+        Settings {
+            instruments: Instruments::None,
+            ..settings
+        }
     }
 
     /// Whether the description requests essential parameters.

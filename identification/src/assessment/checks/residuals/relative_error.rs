@@ -15,6 +15,12 @@ use overact_logs::{Error, significant};
 /// Gautier, Brunot 2019).
 const LARGEST_PERCENT: f64 = 20.0;
 
+/// Relative residual, in percent, above which the torques contain almost no trace of the robot.
+///
+/// The model then explains less than a fifth of their square. Torques that were not recorded, and
+/// have noise only, leave 97 % and more.
+const ONLY_NOISE_PERCENT: f64 = 90.0;
+
 /// Fraction of white noise power that passes decimation by d, times d.
 ///
 /// The cutoff of the filter is this fraction of the new Nyquist frequency.
@@ -45,9 +51,9 @@ pub(crate) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
     let part = found().filter_map(|check| check.explained);
     let part = part.fold(0.0, f64::max);
     let rest = (1.0 - part).max(0.0).sqrt();
-    let (error, ratio) = (base.relative_error_percent, times_the_noise(context));
+    let (error, ratio) = (base.relative_error_percent, times_the_noise(context)?);
     let is_named = found().any(|check| check.grade != Grade::Use);
-    let left = beyond(rest * error, noise_percent(context));
+    let left = beyond(rest * error, noise_percent(context).unwrap_or(0.0));
     if is_named && left <= ORDINARY_PERCENT {
         return None;
     }
@@ -97,47 +103,57 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let of_estimate = |estimate: &Estimate| {
         let error = estimate.relative_error_percent;
         // The actuator projection weights actuators differently; its noise is only approximate.
-        let beyond = beyond(error, noise);
-        let good = beyond <= LARGEST_PERCENT;
+        let beyond = beyond(error, noise.unwrap_or(0.0));
+        let is_noise = beyond <= LARGEST_PERCENT && error > ONLY_NOISE_PERCENT;
+        let good = beyond <= LARGEST_PERCENT && !is_noise;
+        let noise_words = noise.map_or_else(String::new, |noise| {
+            let noise = significant(noise, 2);
+            format!("; noise of the torques, estimated from neighbouring samples, {noise} %")
+        });
+        let cause = match (good, is_noise, noise) {
+            (true, ..) => "",
+            (_, true, _) => {
+                ": the torques are almost only noise. Check that they were recorded, and their columns in [data]"
+            }
+            (.., Some(_)) => {
+                ": the model does not explain the torques. Check signs, units, gains and labels"
+            }
+            (.., None) => {
+                ": the torques have much noise, or the model does not explain them. The complete checks, `--checks all`, distinguish these causes"
+            }
+        };
         let words = format!(
-            "{} {} parameters: relative residual {} %; noise of the torques, estimated from neighbouring samples, {} %{}",
+            "{} {} parameters: relative residual {} %{noise_words}{cause}",
             estimate.parameters.len(),
             estimate.stage.name(),
             significant(error, 3),
-            significant(noise, 2),
-            if good {
-                ""
-            } else {
-                ": the model does not explain the torques. Check signs, units, gains and labels"
-            }
         );
-        Check::new(CheckKind::RelativeError, About::Fit, words)
+        let check = Check::new(CheckKind::RelativeError, About::Fit, words)
             .of_model(estimate.model)
             .of_stage(estimate.stage)
-            .measured(beyond, "%")
-            .against(
-                LARGEST_PERCENT,
-                "published identifications have 2 to 12 %, including noise",
-            )
-            .with_grade(if good { Grade::Use } else { Grade::DoNotUse })
+            .with_grade(if good { Grade::Use } else { Grade::DoNotUse });
+        if is_noise {
+            let origin = "the model then explains less than a fifth of the torques' square";
+            check
+                .measured(error, "%")
+                .against(ONLY_NOISE_PERCENT, origin)
+        } else {
+            let origin = "published identifications have 2 to 12 %, including noise";
+            check.measured(beyond, "%").against(LARGEST_PERCENT, origin)
+        }
     };
     Ok(context.least_squares().map(of_estimate).collect())
 }
 
-/// Residual of the base parameters divided by the torque noise.
-pub(crate) fn times_the_noise(context: &Context<'_>) -> f64 {
-    let base = context.estimates_of(Stage::Base).next();
-    base.map_or(f64::NAN, |base| {
-        base.relative_error_percent / noise_percent(context)
-    })
+/// Residual of the base parameters divided by the torque noise; `None` if the noise is unknown.
+pub(crate) fn times_the_noise(context: &Context<'_>) -> Option<f64> {
+    let base = context.estimates_of(Stage::Base).next()?;
+    Some(base.relative_error_percent / noise_percent(context)?)
 }
 
-/// Torque noise in percent of the inputs of the first model.
-fn noise_percent(context: &Context<'_>) -> f64 {
-    let (Some(scores), Some(base)) = (context.scores, context.estimates_of(Stage::Base).next())
-    else {
-        return 0.0;
-    };
+/// Torque noise in percent of the inputs of the first model; `None` without scores.
+fn noise_percent(context: &Context<'_>) -> Option<f64> {
+    let (scores, base) = (context.scores?, context.estimates_of(Stage::Base).next()?);
     let runs = context.dataset.runs.len();
     let variances: Vec<Vec<f64>> = context
         .watched
@@ -154,5 +170,5 @@ fn noise_percent(context: &Context<'_>) -> f64 {
     };
     let part = scores.noise(&variances, passed) / base.residual_deviation.powi(2);
     let part = if part.is_finite() { part.min(1.0) } else { 1.0 };
-    base.relative_error_percent * part.sqrt()
+    Some(base.relative_error_percent * part.sqrt())
 }
