@@ -29,6 +29,11 @@ pub struct Description {
     pub payloads: Vec<Spanned<String>>,
     /// Named constants that are not angles, in SI units.
     pub constants: Vec<(String, f64)>,
+    /// Magnitudes of the numbers of platform and legs without a name, in SI units, sorted.
+    ///
+    /// A number in generated code that follows from one of them is not named after a constant of
+    /// the same value.
+    pub magnitudes: Vec<f64>,
     /// The platform; `None` for a serial or tree robot.
     pub platform: Option<Platform>,
     /// The legs in the order of their placement.

@@ -92,6 +92,8 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let scope = constants
         .map(|table| Scope::constants(&table))
         .unwrap_or_default();
+    // Numbers of the constants themselves are not compared with the constants.
+    table.context.take_magnitudes();
     let gravity = table
         .get("gravity")
         .and_then(|i| i.vector(Dimension::ACCELERATION, &scope));
@@ -101,6 +103,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         .and_then(|item| platform::read(item, &scope));
     let shapes = shapes(table, &scope);
     let mut legs = legs(table, &shapes, &scope);
+    let magnitudes = table.context.take_magnitudes();
     check_joint_count(table, name.as_ref(), &legs)?;
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
@@ -145,6 +148,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         gravity,
         payloads,
         constants: scope.values(),
+        magnitudes,
         platform,
         legs,
         experiment,

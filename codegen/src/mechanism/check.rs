@@ -137,6 +137,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         source: description.source.clone(),
         gravity: description.gravity,
         constants: description.constants.clone(),
+        magnitudes: description.magnitudes.clone(),
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
         home: Home::default(),

@@ -153,6 +153,8 @@ pub struct Mechanism {
     pub gravity: [Number; 3],
     /// Named constants of the description, in SI units, for readers of generated code.
     pub constants: Vec<(String, f64)>,
+    /// Magnitudes of the description's numbers without a name, in SI units.
+    pub magnitudes: Vec<f64>,
     /// The platform; `None` for a serial or tree robot.
     pub platform: Option<Platform>,
     /// The legs.

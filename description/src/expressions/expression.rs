@@ -42,6 +42,8 @@ pub(crate) trait Names {
     fn meaning(&self, name: &str) -> Meaning;
     /// All names, for suggestions.
     fn all(&self) -> Vec<String>;
+    /// Called with the magnitude of every number that is written with its units, in SI.
+    fn record(&self, _magnitude: f64) {}
 }
 
 /// Reason why an expression has no value.
@@ -69,6 +71,8 @@ pub(crate) trait Quantity: Sized + Clone {
     fn power(self, exponent: &Self) -> Result<Self, Fault>;
     /// Value of a function; the number of arguments is already checked.
     fn apply(name: &str, arguments: Vec<Self>) -> Result<Self, Fault>;
+    /// The constant part in SI units; angles in rad.
+    fn constant_part(&self) -> Option<f64>;
 }
 
 impl Quantity for Value {
@@ -98,6 +102,10 @@ impl Quantity for Value {
 
     fn apply(name: &str, arguments: Vec<Self>) -> Result<Self, Fault> {
         apply(name, arguments)
+    }
+
+    fn constant_part(&self) -> Option<f64> {
+        Some(self.scalar.value())
     }
 }
 
@@ -318,6 +326,9 @@ impl<'r, 't, Q: Quantity> Reader<'r, 't, Q> {
         while let Some(factor) = self.unit_factor(first)? {
             value = self.located(start, value.times(factor))?;
             first = false;
+        }
+        if let Some(magnitude) = value.constant_part() {
+            self.names.record(magnitude);
         }
         Ok(value)
     }

@@ -158,6 +158,13 @@ fn parts(one: Positional, two: Positional) -> Result<[Box<Formula>; 2], Fault> {
 }
 
 impl Quantity for Positional {
+    fn constant_part(&self) -> Option<f64> {
+        match self {
+            Self::Exact(value) => value.constant_part(),
+            Self::Formula(..) => None,
+        }
+    }
+
     fn from_value(value: Value) -> Self {
         Self::Exact(value)
     }

@@ -6,6 +6,7 @@
 use crate::diagnostic::Spanned;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use toml::de::{DeTable, DeValue};
 
 /// The source text and the errors found so far.
@@ -14,6 +15,8 @@ pub(crate) struct Context<'t> {
     errors: RefCell<Diagnostics>,
     /// Warnings about text that is probably not intended.
     warnings: RefCell<Vec<Spanned<String>>>,
+    /// Magnitudes of the numbers that are not named constants, as bits, in SI units.
+    magnitudes: RefCell<BTreeSet<u64>>,
 }
 
 impl<'t> Context<'t> {
@@ -22,7 +25,19 @@ impl<'t> Context<'t> {
             source,
             errors: RefCell::default(),
             warnings: RefCell::default(),
+            magnitudes: RefCell::default(),
         }
+    }
+
+    /// Records a number of the text.
+    pub(crate) fn record(&self, number: f64) {
+        self.magnitudes.borrow_mut().insert(number.abs().to_bits());
+    }
+
+    /// Removes and returns the magnitudes of all recorded numbers, sorted.
+    pub(crate) fn take_magnitudes(&self) -> Vec<f64> {
+        let bits = self.magnitudes.take();
+        bits.into_iter().map(f64::from_bits).collect()
     }
 
     pub(crate) fn report(&self, diagnostic: Diagnostic) {

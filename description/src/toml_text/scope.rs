@@ -7,8 +7,9 @@ use crate::expressions::expression::{Failure, Meaning, Names, Quantity, evaluate
 use crate::expressions::function::FUNCTIONS;
 use crate::expressions::scalar::Scalar;
 use crate::expressions::value::{Fault, Value};
-use crate::toml_text::reader::{Item, Table};
+use crate::toml_text::reader::{Context, Item, Table};
 use overact_exact::{Angle, Number};
+use std::cell::Cell;
 use toml::de::DeValue;
 
 /// Named constants and, inside a joint's expression, joint variables.
@@ -29,6 +30,32 @@ impl Names for Scope {
 
     fn all(&self) -> Vec<String> {
         self.entries.iter().map(|(name, _)| name.clone()).collect()
+    }
+}
+
+/// The names of an expression whose numbers are recorded.
+struct RecordedNames<'s, 'c, 't> {
+    scope: &'s Scope,
+    context: &'c Context<'t>,
+    /// Whether the expression uses a named constant.
+    uses_constants: Cell<bool>,
+}
+
+impl Names for RecordedNames<'_, '_, '_> {
+    fn meaning(&self, name: &str) -> Meaning {
+        let meaning = self.scope.meaning(name);
+        if matches!(&meaning, Meaning::Value(value) if value.terms.is_empty()) {
+            self.uses_constants.set(true);
+        }
+        meaning
+    }
+
+    fn all(&self) -> Vec<String> {
+        self.scope.all()
+    }
+
+    fn record(&self, magnitude: f64) {
+        self.context.record(magnitude);
     }
 }
 
@@ -124,7 +151,7 @@ impl Item<'_, '_> {
     pub(crate) fn evaluate_as<Q: Quantity>(&self, scope: &Scope) -> Option<Q> {
         let plain = |number| Q::from_value(Value::plain(number));
         let outcome = match self.value {
-            DeValue::String(text) => evaluate(text, scope),
+            DeValue::String(text) => self.evaluate_text(text, scope),
             DeValue::Integer(text) => {
                 let digits = text.as_str();
                 let decimal = if text.radix() == 10 {
@@ -136,10 +163,30 @@ impl Item<'_, '_> {
                 };
                 decimal.map(plain).ok_or_else(out_of_range)
             }
-            DeValue::Float(text) => number(text.as_str()).map(plain).ok_or_else(out_of_range),
+            DeValue::Float(text) => {
+                let decimal = number(text.as_str());
+                decimal.inspect(|decimal| self.context.record(decimal.value()));
+                decimal.map(plain).ok_or_else(out_of_range)
+            }
             _ => return self.mismatch("a number or an expression"),
         };
         self.kept(outcome)
+    }
+
+    /// The value of an expression.
+    ///
+    /// Its numbers are recorded, and its result if it uses no named constant.
+    fn evaluate_text<Q: Quantity>(&self, text: &str, scope: &Scope) -> Result<Q, Failure> {
+        let names = RecordedNames {
+            scope,
+            context: self.context,
+            uses_constants: Cell::new(false),
+        };
+        let value: Q = evaluate(text, &names)?;
+        if let (Some(magnitude), false) = (value.constant_part(), names.uses_constants.get()) {
+            self.context.record(magnitude);
+        }
+        Ok(value)
     }
 
     /// The result, or `None` after its fault is reported.

@@ -3,7 +3,9 @@
 //! Constant folding turns the numbers of a description into others. A number that is a simple
 //! expression of named constants, a power, product or quotient of two, gets a name and the
 //! expression. If several equally simple expressions have the same value, none is used, since the
-//! intended one is unknown. Numbers of one or two digits may equal a long expression by chance.
+//! intended one is unknown. The same holds for a number that an equally simple or simpler expression
+//! of a number without a name has, as 1/(20 mm) of a pitch and `50 rad/m` of a gear. Numbers of one
+//! or two digits may equal a long expression by chance.
 
 use crate::model::RobotModel;
 
@@ -17,6 +19,8 @@ pub struct Dimension {
     value: f64,
     /// Complexity of the expression: the simplest one of a value is used.
     size: usize,
+    /// Whether the expression is one of named constants.
+    has_name: bool,
 }
 
 /// All numbers that have names.
@@ -38,11 +42,11 @@ impl Dimensions {
             .iter()
             .map(|(name, value)| (name.as_str(), value.abs()))
             .collect();
-        Self::expressions_of(&values)
+        Self::expressions_of(&values, &model.mechanism.magnitudes)
     }
 
-    /// All expressions of named values.
-    fn expressions_of(values: &[(&str, f64)]) -> Self {
+    /// All expressions of named values, and the powers of numbers without a name.
+    fn expressions_of(values: &[(&str, f64)], magnitudes: &[f64]) -> Self {
         let mut bases: Vec<Base> = Vec::new();
         for &(name, value) in values {
             if !value.is_normal() || is_plain_number(value) {
@@ -65,18 +69,22 @@ impl Dimensions {
                 all.extend((at < other_at).then(|| base.times(other)));
             }
         }
+        let unnamed = magnitudes.iter().filter(|value| value.is_normal());
+        let unnamed = unnamed.filter(|&&value| !is_plain_number(value));
+        all.extend(unnamed.flat_map(|&value| powers_without_name(value)));
         all.retain(|dimension| !is_plain_number(dimension.value) && !is_by_chance(dimension));
         all.sort_by_key(|dimension| dimension.size);
         Self(all)
     }
 
-    /// The name of a positive number, if one expression is simpler than all others.
+    /// The name of a positive number, if one expression is simpler than all others and is one of
+    /// named constants.
     #[must_use]
     pub fn find(&self, value: f64) -> Option<&Dimension> {
         let mut fitting = self.0.iter().filter(|d| is_same(d.value, value));
         let first = fitting.next()?;
         let is_only = fitting.next().is_none_or(|second| second.size > first.size);
-        is_only.then_some(first)
+        (is_only && first.has_name).then_some(first)
     }
 }
 
@@ -97,6 +105,20 @@ fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * a.abs()
 }
 
+/// The powers of a number without a name.
+fn powers_without_name(value: f64) -> impl Iterator<Item = Dimension> {
+    let base = Base {
+        name: String::new(),
+        others: Vec::new(),
+        value,
+    };
+    let unnamed = |dimension| Dimension {
+        has_name: false,
+        ..dimension
+    };
+    base.powers().into_iter().map(unnamed)
+}
+
 /// A named constant, and others of the same value.
 struct Base {
     name: String,
@@ -111,6 +133,7 @@ impl Base {
             expression: expression.to_owned(),
             value,
             size,
+            has_name: true,
         }
     }
 
@@ -186,7 +209,7 @@ mod tests {
     use super::Dimensions;
 
     fn name(values: &[(&str, f64)], value: f64) -> Option<String> {
-        let dimensions = Dimensions::expressions_of(values);
+        let dimensions = Dimensions::expressions_of(values, &[]);
         dimensions
             .find(value)
             .map(|d| format!("{}: {}", d.name, d.expression))
@@ -225,6 +248,21 @@ mod tests {
             Some("R_PER_L_SQUARED: r / l²".to_owned())
         );
         assert_eq!(name(&[("l", 0.5), ("r", 0.6)], 2.4), None);
+    }
+
+    #[test]
+    fn numbers_that_the_text_has_without_a_name_have_none() {
+        let named = |value: f64| {
+            let dimensions = Dimensions::expressions_of(&[("pitch", 0.02)], &[50.0, 0.3]);
+            dimensions.find(value).map(|d| d.name.clone())
+        };
+        // 50 rad/m of the text, not the reciprocal of the pitch.
+        assert_eq!(named(50.0), None);
+        assert_eq!(named(0.3), None);
+        // 0.02 may be 1/50, but the pitch itself is the simpler expression.
+        assert_eq!(named(0.02).as_deref(), Some("PITCH"));
+        assert_eq!(named(0.01).as_deref(), None);
+        assert_eq!(named(0.0004).as_deref(), None);
     }
 
     #[test]
