@@ -53,12 +53,46 @@ pub(crate) struct Link {
 /// Fails with all broken links.
 pub(crate) fn check() -> Result<(), Failure> {
     let texts = texts()?;
-    let problems = broken(&texts);
+    let mut problems = broken(&texts);
+    problems.extend(broken_addresses(&texts)?);
     if problems.is_empty() {
         println!("{} texts: all links lead somewhere", texts.len());
         return Ok(());
     }
     Err(problems.join("\n").into())
+}
+
+/// Every broken link to the repository on the front pages of the packages' documentation.
+fn broken_addresses(texts: &BTreeMap<String, String>) -> Result<Vec<String>, Failure> {
+    let mut problems = Vec::new();
+    for folder in PACKAGES {
+        let file = format!("{folder}/src/lib.rs");
+        for link in addresses(&read(&file)?) {
+            if let Some(why) = fault(&file, &link.target, texts) {
+                problems.push(format!("{file}:{}: `{}`: {why}", link.line, link.target));
+            }
+        }
+    }
+    Ok(problems)
+}
+
+/// All addresses of the repository's files in a text.
+fn addresses(text: &str) -> Vec<Link> {
+    let mut found = Vec::new();
+    for (at, content) in text.lines().enumerate() {
+        for own in OWN_ADDRESSES {
+            for (start, _) in content.match_indices(own) {
+                let rest = &content[start..];
+                let end = rest.find([')', '>', '"', ' ']).unwrap_or(rest.len());
+                let target = rest[..end].to_owned();
+                found.push(Link {
+                    line: at + 1,
+                    target,
+                });
+            }
+        }
+    }
+    found
 }
 
 /// All texts by path relative to the root.
@@ -209,7 +243,10 @@ pub(crate) fn anchors(text: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Link, PACKAGES, anchors, broken, links, resolved, texts};
+    use super::{
+        Link, OWN_ADDRESSES, PACKAGES, addresses, anchors, broken, broken_addresses, links,
+        resolved, texts,
+    };
     use crate::files::repository;
     use crate::metadata::packages;
     use std::collections::BTreeMap;
@@ -297,11 +334,28 @@ mod tests {
     }
 
     #[test]
+    fn addresses_are_found_in_comments() {
+        let own = OWN_ADDRESSES[0];
+        let text = format!("//! a <{own}a.md>,\n//! [b]: {own}b.md#c\n//! https://b.c/d\n");
+        let found: Vec<(usize, String)> = addresses(&text)
+            .into_iter()
+            .map(|link| (link.line, link.target))
+            .collect();
+        assert_eq!(
+            found,
+            [(1, format!("{own}a.md")), (2, format!("{own}b.md#c"))]
+        );
+    }
+
+    #[test]
     fn all_published_packages_are_checked() {
         let packages = packages().expect("the packages");
         let published = packages.iter().filter(|p| p.is_member && p.is_published);
         // The package for Python is in a workspace of its own.
         assert_eq!(published.count() + 1, PACKAGES.len());
+        let texts = texts().expect("the texts");
+        let found = broken_addresses(&texts).expect("the front pages");
+        assert_eq!(found, [""; 0]);
         for folder in PACKAGES {
             let page = repository(folder).join("README.md");
             assert!(page.is_file(), "{}", page.display());
