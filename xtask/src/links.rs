@@ -247,7 +247,7 @@ mod tests {
         Link, OWN_ADDRESSES, PACKAGES, addresses, anchors, broken, broken_addresses, links,
         resolved, texts,
     };
-    use crate::files::repository;
+    use crate::files::{read, repository, stems};
     use crate::metadata::packages;
     use std::collections::BTreeMap;
 
@@ -264,6 +264,22 @@ mod tests {
                 named.iter().any(|one| one == page),
                 "docs/SUMMARY.md leaves {page} out"
             );
+        }
+    }
+
+    #[test]
+    fn the_gallery_has_every_robot() {
+        let text = read("docs/gallery.md").expect("the gallery");
+        for stem in stems("robots", "toml").expect("the robots") {
+            for link in [
+                format!("robots/{stem}.svg"),
+                format!("../robots/{stem}.toml"),
+            ] {
+                assert!(
+                    text.contains(&format!("]({link})")),
+                    "{link} is not in the gallery"
+                );
+            }
         }
     }
 
