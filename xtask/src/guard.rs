@@ -263,12 +263,11 @@ mod tests {
 
     #[test]
     fn empty_tokens_are_missing() {
-        let both = |name: &str| TOKENS.contains(&name).then(|| "secret".to_owned());
+        let both = |name: &str| TOKENS.contains(&name).then(|| "a token".to_owned());
         assert_eq!(tokens(both), [""; 0]);
         assert_eq!(tokens(|_| None).len(), TOKENS.len());
         let problems = tokens(|name| Some(" ".repeat(usize::from(name == TOKENS[0]))));
         assert_eq!(problems.len(), TOKENS.len());
-        assert!(problems.iter().all(|one| !one.contains("secret")));
         assert!(problems[0].contains(TOKENS[0]), "{problems:?}");
     }
 

@@ -11,7 +11,7 @@ const LONGEST: usize = 20;
 /// Categories of <https://crates.io/category_slugs> that packages of this repository use.
 ///
 /// The registry ignores unknown ones without an error.
-const CATEGORIES: [&str; 9] = [
+const CATEGORIES: [&str; 10] = [
     "algorithms",
     "command-line-utilities",
     "development-tools::procedural-macro-helpers",
@@ -21,6 +21,7 @@ const CATEGORIES: [&str; 9] = [
     "science",
     "science::robotics",
     "simulation",
+    "visualization",
 ];
 
 /// All faults of a published package's page.
