@@ -59,7 +59,9 @@ pub(crate) fn check(tag: &str) -> Result<(), Failure> {
     problems.extend(tree(&git(&["status", "--porcelain"])?));
     problems.extend(tagged_commit(tag)?);
     problems.extend(tokens(|name| std::env::var(name).ok()));
-    problems.extend(yanked(&repository(""))?);
+    let private = packages.iter().filter(|p| p.is_member && !p.is_published);
+    let private: Vec<&str> = private.map(|p| p.name.as_str()).collect();
+    problems.extend(yanked(&repository(""), &private)?);
     if problems.is_empty() {
         println!("{tag} may be published");
         return Ok(());
@@ -153,12 +155,14 @@ fn tokens(variable: impl Fn(&str) -> Option<String>) -> Vec<String> {
         .collect()
 }
 
-/// Problem for each dependency of Cargo.lock that its registry has yanked.
+/// Problem for each dependency in Cargo.lock that its registry has yanked.
 ///
-/// Cargo warns about them when it packages a crate.
-fn yanked(folder: &Path) -> Result<Vec<String>, Failure> {
+/// Cargo warns about them when it packages a crate; `private` are packages of the workspace that
+/// it does not package.
+fn yanked(folder: &Path, private: &[&str]) -> Result<Vec<String>, Failure> {
     let mut command = cargo_command();
     command.args(["package", "--workspace", "--no-verify", "--locked"]);
+    command.args(private.iter().flat_map(|name| ["--exclude", name]));
     command.arg("--allow-dirty").current_dir(folder);
     let output = command.env("CARGO_TERM_COLOR", "never").output()?;
     let messages = String::from_utf8_lossy(&output.stderr);
@@ -307,11 +311,11 @@ mod tests {
         );
         write("registry/index/de/po/depo", &entry(false));
         assert_eq!(
-            yanked(&folder.join("user")).expect("a packaged crate"),
+            yanked(&folder.join("user"), &[]).expect("a packaged crate"),
             [""; 0]
         );
         write("registry/index/de/po/depo", &entry(true));
-        let problems = yanked(&folder.join("user")).expect("a packaged crate");
+        let problems = yanked(&folder.join("user"), &[]).expect("a packaged crate");
         assert!(
             problems.len() == 1 && problems[0].contains("`depo v0.1.0`"),
             "{problems:?}"
