@@ -1,5 +1,14 @@
 //! Command line of `overact`: parses arguments, calls the libraries and writes results.
 //!
+//! ```
+//! // `overact explain OA102`; the value is the exit code.
+//! let arguments = ["overact", "explain", "OA102"];
+//! assert_eq!(overact_cli::run_with(arguments.map(Into::into).to_vec()), 0);
+//! ```
+//!
+//! Use the command itself first: `overact --help` lists its subcommands. Programs in Rust call
+//! [`overact_robot`] instead of this crate.
+//!
 //! Most of the work is done by [`overact_robot`]. There is one file per subcommand in `commands`.
 //! They share:
 //!

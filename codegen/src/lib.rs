@@ -7,6 +7,34 @@
 //! force on u_i of the wrench of p alone: Γ¹ = (J_p^inv)ᵀ τ = IDM_red χ, eq. (30) of Briot, Krut,
 //! Gautier 2015. All is linear in the parameters, and the only divisors are the leg determinants.
 //!
+//! ```
+//! use overact_codegen::{Source, backends, compile};
+//!
+//! let text = r#"
+//! name = "Pendulum"
+//! gravity = [0, 0, "-9.81 m/s^2"]
+//!
+//! [[leg.arm.joint]]
+//! type = "revolute"
+//! alpha = "90 deg"
+//! actuated = true
+//! parameters = ["zz", "mx", "fv"]
+//!
+//! [[place]]
+//! name = "arm"
+//! shape = "arm"
+//! "#;
+//! let robot = compile(&Source::new("pendulum.toml", text)).expect("a correct description");
+//! let rust = backends::rust::file(&robot.model, "pendulum.toml");
+//! assert!(rust.contains("pub fn inverse_dynamics"));
+//! assert_eq!(robot.model.base.len(), 3);
+//! ```
+//!
+//! [`compile_with`] generates a choice of functions ([`Request`]). A build script is in [generated
+//! Rust].
+//!
+//! [generated Rust]: https://github.com/overact/overact/blob/main/docs/rust.md#build-script
+//!
 //! The stages, in the order of [`compile`](fn@compile), each a folder or file with its theory:
 //!
 //! | stage | from | to |

@@ -10,6 +10,19 @@
 //! - [`text`] defines the characters that are removed from text of descriptions.
 //!
 //! The crate is `no_std`, has no dependencies and allocates nothing.
+//!
+//! ```
+//! use overact_core::{Code, Columns, Function, StandardParameter};
+//!
+//! let regressor = Function::IdmRedPlatform(Columns::Standard);
+//! assert_eq!(regressor.name(), "idm_red_platform");
+//! assert_eq!(StandardParameter::from_name("fv").map(|one| one.unit(false)), Some("N m s/rad"));
+//! let code = Code::named("OA102").ok_or("no such code")?;
+//! assert!(!code.explanation().cure.is_empty());
+//! # Ok::<(), &str>(())
+//! ```
+//!
+//! Start at [`Function`], the list of everything that a robot can compute.
 #![no_std]
 
 pub mod code;

@@ -5,6 +5,30 @@
 //! evaluated with values of their own). Tables about experiments follow, which refer to the former
 //! by name. All errors are collected with their locations and reported together.
 //!
+//! ```
+//! use overact_description::{Source, parse};
+//!
+//! let text = r#"
+//! name = "Pendulum"
+//! gravity = [0, 0, "-9.81 m/s^2"]
+//!
+//! [[leg.arm.joint]]
+//! type = "revolute"
+//! alpha = "90 deg"
+//! actuated = true
+//!
+//! [[place]]
+//! name = "arm"
+//! shape = "arm"
+//! "#;
+//! let robot = parse(&Source::new("pendulum.toml", text)).expect("a correct description");
+//! assert_eq!(robot.name.value, "Pendulum");
+//!
+//! let source = Source::new("pendulum.toml", text.replace("90 deg", "90 dag"));
+//! let errors = parse(&source).expect_err("an unknown unit");
+//! println!("{}", errors.render_plain(&source)); // with line, cause and remedy
+//! ```
+//!
 //! Numbers are exact: decimals are fractions, angles are multiples of π plus fractions of a radian.
 
 pub mod diagnostic;

@@ -5,6 +5,16 @@
 //! finite [`field`], in which two expressions are equal if they are equal as real numbers (Schwartz
 //! and Zippel).
 //!
+//! ```
+//! use overact_exact::{Angle, Number, Ratio};
+//!
+//! let angle = Angle::degrees(Ratio::decimal("30").ok_or("no number")?).ok_or("overflow")?;
+//! let (cosine, sine) = angle.cosine_and_sine();
+//! assert_eq!(sine, Number::ratio(Ratio::new(1, 2).ok_or("overflow")?));
+//! assert_eq!(cosine.image() * cosine.image() + sine.image() * sine.image(), Number::ONE.image());
+//! # Ok::<(), &str>(())
+//! ```
+//!
 //! The crate knows nothing about robots. The parser of descriptions and the computer algebra use
 //! it.
 

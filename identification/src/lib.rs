@@ -6,15 +6,39 @@
 //! [`overact::Model`] only, so compiled and interpreted models are equivalent. Runs are
 //! [`Log`]s, read by [`overact_logs`].
 //!
+//! ```
+//! use overact_identification::{Dataset, Error, Identification, Log, Settings, identify};
+//!
+//! /// Identifies a robot, and keeps the last of its logs for validation.
+//! fn parameters(
+//!     robot: &dyn overact::Model,
+//!     logs: &[Log],
+//!     settings: &Settings,
+//! ) -> Result<Identification, Error> {
+//!     let (validation, runs) = logs.split_last().map_or((logs, logs), |(last, rest)| {
+//!         (std::slice::from_ref(last), rest)
+//!     });
+//!     let dataset = Dataset { runs, validation, true_values: None, variants: &[], scales: None };
+//!     let result = identify(robot, &dataset, settings, &|_| {})?;
+//!     for verdict in &result.verdicts {
+//!         println!("{}: {:?} {:?}", verdict.subject, verdict.grade, verdict.reasons);
+//!     }
+//!     Ok(result)
+//! }
+//! ```
+//!
+//! The crate `overact-robot` makes model, logs and settings from a description; start there unless
+//! you have a model of your own.
+//!
 //! Each folder imports only from those above it in this table, and a test checks the order:
 //!
 //! | folder | content |
 //! |---|---|
 //! | `with_avx`, `units`, `blocks` | vectorisation; plausible ranges of quantities; evaluation of a model in blocks |
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series for plots |
-//! //! | [`filters`] | zero-phase filtering, decimation, differences |
+//! | [`filters`] | zero-phase filtering, decimation, differences |
 //! | `prior`, `settings` | prior values of standard parameters; settings of an identification |
-//! //! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
+//! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
 //! | `regression` | columns of the model; decimated systems (39)-(41) of all projections, as R factors |
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
 //! | `calibration` | encoder offsets and lengths from the closure of redundant loops |

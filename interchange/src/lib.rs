@@ -1,5 +1,27 @@
 //! Import of robots from MJCF, URDF, SDFormat and .par, and export of identified parameters.
 //!
+//! ```
+//! use overact_interchange::{Options, import};
+//!
+//! let file = std::env::temp_dir().join("overact-interchange-pendulum.xml");
+//! std::fs::write(&file, r#"
+//! <mujoco model="pendulum">
+//!   <worldbody>
+//!     <body name="arm">
+//!       <joint name="swing" axis="0 1 0"/>
+//!       <inertial pos="0 0 -0.2" mass="1.5" diaginertia="0.02 0.02 0.001"/>
+//!     </body>
+//!   </worldbody>
+//!   <actuator><motor joint="swing"/></actuator>
+//! </mujoco>"#)?;
+//! let imported = import(&file, &Options::default()).expect("a readable file");
+//! assert!(imported.text.contains("actuated = true")); // a description in TOML
+//! assert!(imported.account.reported.is_empty()); // nothing was left out
+//! # Ok::<(), std::io::Error>(())
+//! ```
+//!
+//! Call [`import()`] first; [`export()`] writes identified parameters back into the file.
+//!
 //! | stage | from | to |
 //! |---|---|---|
 //! | `mjcf`, `urdf`, `sdf`, `par` | a file, with those that it includes | bodies, joints and closures (`model`) |

@@ -1,6 +1,9 @@
 //! The attribute macro `#[redundant_robot("robot.toml")]`.
 //!
-//! It reads the description, whose path is relative to the crate's manifest, and adds the generated
+//! Use it through the crate `overact`, which re-exports it and has an example on its front page:
+//! `#[redundant_robot("robot.toml")] struct Robot;`.
+//!
+//! The attribute reads the description, whose path is relative to the crate's manifest, and adds the generated
 //! items after the struct. The compiler tracks the description as an input, so that a changed file
 //! rebuilds the crate. Errors of the description are shown with their lines. Generated code is
 //! cached in the target folder (`expansions`), because the compiler expands the attribute at every

@@ -23,5 +23,16 @@ def test_dualv(capsys):
     np.testing.assert_allclose(found["torques"], exact, atol=0.1)
 
 
+def test_pendulum(tmp_path, monkeypatch):
+    # Away from the repository, as after `pip install overact`.
+    copy = tmp_path / "pendulum.py"
+    copy.write_text((EXAMPLES / "pendulum.py").read_text(encoding="utf-8"), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    found = runpy.run_path(str(copy), run_name="__main__")
+    assert set(found["result"].recommended) == set(found["truth"])
+    for name, one in found["result"].recommended.items():
+        assert abs(one.value - found["truth"][name]) < 6 * one.correlated_standard_deviation, name
+
+
 def test_no_example_is_left_out():
-    assert [path.name for path in EXAMPLES.glob("*.py")] == ["dualv.py"]
+    assert sorted(path.name for path in EXAMPLES.glob("*.py")) == ["dualv.py", "pendulum.py"]

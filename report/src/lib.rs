@@ -3,6 +3,17 @@
 //! There are a [`summary()`] and tables for a [`terminal`], an HTML page ([`page()`]) and a flat
 //! table of all numbers ([`numbers()`]).
 //!
+//! ```
+//! use overact_identification::{Error, Identification};
+//! use overact_report::{About, Extent, document, summary, whole_page};
+//!
+//! /// Prints the summary of a result, and returns its page and its numbers as JSON.
+//! fn report(result: &Identification, about: &About<'_>) -> Result<(String, String), Error> {
+//!     println!("{}", summary(result, None, Extent::Short));
+//!     Ok((whole_page(result, about, "robot")?, document(result)?))
+//! }
+//! ```
+//!
 //! The page is one self-contained file: plots are embedded SVG, the style follows the reader's
 //! choice of light or dark, and there is no script. Each section has a file in [`page()`]; axes and
 //! lines of plots are in the module `plot`.

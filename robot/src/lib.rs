@@ -19,6 +19,15 @@
 //! # }
 //! ```
 //!
+//! What to do first:
+//!
+//! - read measured logs with [`Robot::read_logs`] instead of simulating them;
+//! - import a URDF or MJCF file with [`import()`];
+//! - look at the verdict before the parameters: [how to read a result];
+//! - evaluate the model with [`Robot::model`] and [`overact::Model::evaluate`].
+//!
+//! [how to read a result]: https://github.com/overact/overact/blob/main/docs/reading.md
+//!
 //! Modules, from the bottom up:
 //!
 //! - `counted`: counts with nouns;
@@ -45,6 +54,11 @@
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/interfaces.md")]
 mod interfaces {}
+
+/// Compiles the program of the package's page.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 
 mod calibration;
 mod check;

@@ -1,6 +1,34 @@
-//! Runtime of generated robot models.
+//! Generated dynamics of robots: the attribute `#[redundant_robot]` and its runtime.
 //!
-//! It has the [`Model`] trait, [`Error`], a few functions of [`math`], and the macro
+//! The attribute turns a struct into a robot. Its functions follow from a description in TOML, here
+//! of a pendulum:
+//!
+#![cfg_attr(not(feature = "macro"), doc = "```ignore")]
+#![cfg_attr(feature = "macro", doc = "```")]
+//! use overact::redundant_robot;
+//!
+//! #[redundant_robot("examples/pendulum.toml")] // relative to the folder of Cargo.toml
+//! struct Pendulum;
+//!
+//! let (q, velocity, acceleration) = ([0.0], [1.0], [2.0]); // rad, rad/s, rad/s²
+//! let row = Pendulum::idm_red_platform(&q, &velocity, &acceleration)?;
+//! let names = Pendulum::PARAMETERS.map(|parameter| parameter.name);
+//! assert_eq!(names, ["zz_1", "mx_1", "fv_1"]);
+//! assert_eq!(row, [[2.0, 9.81, 1.0]]); // torque = zz · 2 + mx · 9.81 + fv · 1
+//! # Ok::<(), overact::Error>(())
+//! ```
+//!
+//! What to do first:
+//!
+//! - write a description with the [tutorial]; the [keys] are documented with the robots;
+//! - read [generated Rust] for build scripts, choices of functions and 32-bit numbers;
+//! - identify the parameters with `overact-robot`, or the command `overact` of `overact-cli`.
+//!
+//! [tutorial]: https://github.com/overact/overact/blob/main/docs/tutorial.md
+//! [keys]: https://github.com/overact/overact/blob/main/robots/README.md
+//! [generated Rust]: https://github.com/overact/overact/blob/main/docs/rust.md
+//!
+//! The runtime has the [`Model`] trait, [`Error`], a few functions of [`math`], and the macro
 //! `#[redundant_robot("robot.toml")]`. Forward kinematics is in [`forward`], numeric inverse
 //! kinematics in [`inverse`], poses of platforms with parasitic motion in [`parasitic_motion`], and the
 //! actuator projection for any kept actuators in [`partition`].
@@ -18,6 +46,11 @@
 compile_error!(
     "overact needs square roots and trigonometry: enable the feature `std`, or `libm` where there is no standard library"
 );
+
+/// Compiles the program of the package's page.
+#[cfg(all(doctest, feature = "macro"))]
+#[doc = include_str!("../README.md")]
+mod readme {}
 
 pub mod block;
 pub mod float;

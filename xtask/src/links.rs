@@ -7,14 +7,40 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 /// Folders whose texts are checked; the root is the empty one.
-const FOLDERS: [&str; 7] = [
+const FOLDERS: [&str; 9] = [
     "",
+    ".github",
     "benchmarks",
     "docs",
     "examples/cpp_controller",
+    "fleet",
     "generated",
     "python",
     "robots",
+];
+
+/// Folders of packages, whose pages are also shown by a registry.
+const PACKAGES: [&str; 14] = [
+    "cli",
+    "codegen",
+    "core",
+    "description",
+    "exact",
+    "identification",
+    "interchange",
+    "logs",
+    "macros",
+    "python",
+    "report",
+    "robot",
+    "runtime",
+    "simulation",
+];
+
+/// Addresses of files and folders of the repository.
+const OWN_ADDRESSES: [&str; 2] = [
+    "https://github.com/overact/overact/blob/main/",
+    "https://github.com/overact/overact/tree/main/",
 ];
 
 /// A link in a text.
@@ -27,7 +53,8 @@ pub(crate) struct Link {
 /// Fails with all broken links.
 pub(crate) fn check() -> Result<(), Failure> {
     let texts = texts()?;
-    let problems = broken(&texts);
+    let mut problems = broken(&texts);
+    problems.extend(broken_addresses(&texts)?);
     if problems.is_empty() {
         println!("{} texts: all links lead somewhere", texts.len());
         return Ok(());
@@ -35,10 +62,43 @@ pub(crate) fn check() -> Result<(), Failure> {
     Err(problems.join("\n").into())
 }
 
+/// Every broken link to the repository on the front pages of the packages' documentation.
+fn broken_addresses(texts: &BTreeMap<String, String>) -> Result<Vec<String>, Failure> {
+    let mut problems = Vec::new();
+    for folder in PACKAGES {
+        let file = format!("{folder}/src/lib.rs");
+        for link in addresses(&read(&file)?) {
+            if let Some(why) = fault(&file, &link.target, texts) {
+                problems.push(format!("{file}:{}: `{}`: {why}", link.line, link.target));
+            }
+        }
+    }
+    Ok(problems)
+}
+
+/// All addresses of the repository's files in a text.
+fn addresses(text: &str) -> Vec<Link> {
+    let mut found = Vec::new();
+    for (at, content) in text.lines().enumerate() {
+        for own in OWN_ADDRESSES {
+            for (start, _) in content.match_indices(own) {
+                let rest = &content[start..];
+                let end = rest.find([')', '>', '"', ' ']).unwrap_or(rest.len());
+                let target = rest[..end].to_owned();
+                found.push(Link {
+                    line: at + 1,
+                    target,
+                });
+            }
+        }
+    }
+    found
+}
+
 /// All texts by path relative to the root.
 pub(crate) fn texts() -> Result<BTreeMap<String, String>, Failure> {
     let mut all = BTreeMap::new();
-    for folder in FOLDERS {
+    for folder in FOLDERS.iter().chain(&PACKAGES) {
         let Ok(entries) = fs::read_dir(repository(folder)) else {
             continue;
         };
@@ -69,13 +129,21 @@ fn broken(texts: &BTreeMap<String, String>) -> Vec<String> {
 
 /// Why a link is broken, if it is.
 fn fault(file: &str, target: &str, texts: &BTreeMap<String, String>) -> Option<String> {
-    if is_foreign(target) {
+    let own = OWN_ADDRESSES
+        .iter()
+        .find_map(|own| target.strip_prefix(own));
+    if own.is_none() && is_foreign(target) {
         return None;
     }
-    let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
-    let resolved = match path {
-        "" => file.to_owned(),
-        _ => resolved(file, path)?,
+    let location = own.unwrap_or(target);
+    let (path, anchor) = location.split_once('#').unwrap_or((location, ""));
+    if own.is_none() && !path.is_empty() && is_packaged(file) {
+        return Some("a package's page has no relative links".to_owned());
+    }
+    let resolved = match (own, path) {
+        (Some(_), path) => path.to_owned(),
+        (None, "") => file.to_owned(),
+        (None, path) => resolved(file, path)?,
     };
     if !texts.contains_key(&resolved) && !repository(&resolved).exists() {
         return Some("there is no such file".to_owned());
@@ -88,6 +156,12 @@ fn fault(file: &str, target: &str, texts: &BTreeMap<String, String>) -> Option<S
     };
     let known = anchors(text);
     (!known.iter().any(|one| one == anchor)).then(|| format!("`{resolved}` has no such heading"))
+}
+
+/// Whether a text is the page of a package in a registry.
+fn is_packaged(file: &str) -> bool {
+    let folder = file.strip_suffix("/README.md");
+    folder.is_some_and(|folder| PACKAGES.contains(&folder))
 }
 
 /// Whether a link leaves the repository.
@@ -169,7 +243,12 @@ pub(crate) fn anchors(text: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Link, anchors, broken, links, resolved, texts};
+    use super::{
+        Link, OWN_ADDRESSES, PACKAGES, addresses, anchors, broken, broken_addresses, links,
+        resolved, texts,
+    };
+    use crate::files::{read, repository, stems};
+    use crate::metadata::packages;
     use std::collections::BTreeMap;
 
     #[test]
@@ -185,6 +264,22 @@ mod tests {
                 named.iter().any(|one| one == page),
                 "docs/SUMMARY.md leaves {page} out"
             );
+        }
+    }
+
+    #[test]
+    fn the_gallery_has_every_robot() {
+        let text = read("docs/gallery.md").expect("the gallery");
+        for stem in stems("robots", "toml").expect("the robots") {
+            for link in [
+                format!("robots/{stem}.svg"),
+                format!("../robots/{stem}.toml"),
+            ] {
+                assert!(
+                    text.contains(&format!("]({link})")),
+                    "{link} is not in the gallery"
+                );
+            }
         }
     }
 
@@ -223,5 +318,63 @@ mod tests {
             resolved("docs/a.md", "../robots/b.md").as_deref(),
             Some("robots/b.md")
         );
+    }
+
+    #[test]
+    fn pages_of_packages_link_by_address() {
+        let broken = |link: &str| {
+            let text = format!("# A\n[x]({link})");
+            broken(&BTreeMap::from([("core/README.md".to_owned(), text)]))
+        };
+        let main = "https://github.com/overact/overact";
+        for good in [
+            "#a".to_owned(),
+            main.to_owned(),
+            format!("{main}/blob/main/Cargo.toml"),
+            format!("{main}/tree/main/robots"),
+            format!("{main}/blob/main/core/README.md#a"),
+        ] {
+            assert_eq!(broken(&good), [""; 0], "{good}");
+        }
+        for (bad, why) in [
+            ("../README.md".to_owned(), "no relative links"),
+            (format!("{main}/blob/main/none.md"), "no such file"),
+            (
+                format!("{main}/blob/main/core/README.md#b"),
+                "no such heading",
+            ),
+        ] {
+            let found = broken(&bad);
+            assert!(found.len() == 1 && found[0].contains(why), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn addresses_are_found_in_comments() {
+        let own = OWN_ADDRESSES[0];
+        let text = format!("//! a <{own}a.md>,\n//! [b]: {own}b.md#c\n//! https://b.c/d\n");
+        let found: Vec<(usize, String)> = addresses(&text)
+            .into_iter()
+            .map(|link| (link.line, link.target))
+            .collect();
+        assert_eq!(
+            found,
+            [(1, format!("{own}a.md")), (2, format!("{own}b.md#c"))]
+        );
+    }
+
+    #[test]
+    fn all_published_packages_are_checked() {
+        let packages = packages().expect("the packages");
+        let published = packages.iter().filter(|p| p.is_member && p.is_published);
+        // The package for Python is in a workspace of its own.
+        assert_eq!(published.count() + 1, PACKAGES.len());
+        let texts = texts().expect("the texts");
+        let found = broken_addresses(&texts).expect("the front pages");
+        assert_eq!(found, [""; 0]);
+        for folder in PACKAGES {
+            let page = repository(folder).join("README.md");
+            assert!(page.is_file(), "{}", page.display());
+        }
     }
 }

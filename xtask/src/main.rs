@@ -7,6 +7,7 @@ mod deny;
 mod files;
 mod freshness;
 mod generated;
+mod guard;
 mod hash;
 mod licence;
 mod links;
@@ -14,6 +15,7 @@ mod manifest;
 mod measure;
 mod metadata;
 mod page;
+mod registry;
 mod release;
 mod robots;
 mod times;
@@ -40,6 +42,8 @@ cargo xtask package [OPTION]... archives of all published packages, built as the
 cargo xtask page                build the page for browsers into target/page; skipped without a Rust for them
 cargo xtask page test           build it and test it in a browser
 cargo xtask release             versions, licences, Rust versions and registry keys of all packages
+cargo xtask release --tag TAG   all reasons not to publish a tag: those above, a version or date that does not match,
+                                a dirty tree, a missing token, yanked dependencies
 cargo xtask tests               all test binaries, one for each processor at a time
 cargo xtask tests of-tier       the same without binaries whose tests are the same in all tiers
 cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
@@ -60,6 +64,7 @@ fn main() -> ExitCode {
         ["page"] => page::build(),
         ["page", "test"] => page::test(),
         ["release"] => release::check(),
+        ["release", "--tag", tag] => guard::check(tag),
         ["tests"] => at_once::run(at_once::Binaries::All),
         ["tests", "of-tier"] => at_once::run(at_once::Binaries::OfTier),
         ["times"] => times::table(None),

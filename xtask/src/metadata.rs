@@ -21,14 +21,54 @@ pub(crate) struct Package {
     pub(crate) description: Option<String>,
     /// Items that its archive or the registry's page lacks.
     pub(crate) lacks: Vec<&'static str>,
+    /// What the registry shows of it.
+    pub(crate) page: Page,
     /// Version requirements on packages of the workspace by name, except development dependencies.
     pub(crate) siblings: Vec<(String, String)>,
 }
 
+/// A package's page in the registry.
+pub(crate) struct Page {
+    pub(crate) keywords: Vec<String>,
+    pub(crate) categories: Vec<String>,
+    /// Path of its text, from the package's folder.
+    pub(crate) readme: Option<String>,
+    /// Whether the manifest has settings for docs.rs.
+    pub(crate) has_docs_rs_settings: bool,
+}
+
+#[cfg(test)]
+impl Package {
+    /// A sound package of version 1.2.0.
+    pub(crate) fn named(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            version: "1.2.0".to_owned(),
+            licence: Some("MIT".to_owned()),
+            rust_version: Some("1.89".to_owned()),
+            is_member: true,
+            is_published: true,
+            description: Some("a package".to_owned()),
+            lacks: Vec::new(),
+            page: Page {
+                keywords: vec!["robotics".to_owned()],
+                categories: vec!["science::robotics".to_owned()],
+                readme: Some("README.md".to_owned()),
+                has_docs_rs_settings: true,
+            },
+            siblings: Vec::new(),
+        }
+    }
+}
+
+/// The cargo that runs this task.
+pub(crate) fn cargo_command() -> Command {
+    Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
 /// Runs cargo and returns its standard output.
 pub(crate) fn cargo(arguments: &[&str]) -> Result<String, Failure> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
+    let mut command = cargo_command();
     command.args(arguments).current_dir(repository(""));
     let output = command.stderr(std::process::Stdio::inherit()).output()?;
     if !output.status.success() {
@@ -75,6 +115,12 @@ fn package(one: &Value, members: &[Value]) -> Package {
         is_published: one["publish"].is_null(),
         description: text("description"),
         lacks: lacks(one),
+        page: Page {
+            keywords: texts(&one["keywords"]),
+            categories: texts(&one["categories"]),
+            readme: text("readme"),
+            has_docs_rs_settings: one["metadata"]["docs"]["rs"].is_object(),
+        },
         siblings: siblings.collect(),
     }
 }
@@ -105,6 +151,12 @@ pub(crate) fn without_examples() -> Result<Vec<String>, Failure> {
     let silent = list(&document["packages"]).iter().filter(is_silent);
     let names = silent.filter_map(|package| package["name"].as_str().map(str::to_owned));
     Ok(names.collect())
+}
+
+/// Texts of a list in a document.
+fn texts(value: &Value) -> Vec<String> {
+    let texts = list(value).iter().filter_map(Value::as_str);
+    texts.map(str::to_owned).collect()
 }
 
 /// List in a document; empty if absent.

@@ -4,21 +4,30 @@ use crate::Failure;
 use crate::files::read;
 use crate::licence::is_permitted;
 use crate::metadata::{Package, cargo, packages};
+use crate::registry;
 
-/// Checks versions, licences and Rust versions; reports all problems.
+/// Checks all packages; reports all problems.
 pub(crate) fn check() -> Result<(), Failure> {
     let packages = packages()?;
-    let mut problems = versions(&packages, &read("CHANGELOG.md")?);
-    problems.extend(licences(&packages));
-    problems.extend(rust_versions(&packages));
+    let problems = problems(&packages)?;
     if problems.is_empty() {
         println!(
-            "{} packages: versions, licences and Rust versions are sound",
+            "{} packages: versions, licences, Rust versions and pages are sound",
             packages.len()
         );
         return Ok(());
     }
     Err(problems.join("\n").into())
+}
+
+/// Problems of versions, licences, Rust versions and of the registry's pages.
+pub(crate) fn problems(packages: &[Package]) -> Result<Vec<String>, Failure> {
+    let mut problems = versions(packages, &read("CHANGELOG.md")?);
+    problems.extend(licences(packages));
+    problems.extend(rust_versions(packages));
+    let published = packages.iter().filter(|p| p.is_member && p.is_published);
+    problems.extend(published.flat_map(registry::faults));
+    Ok(problems)
 }
 
 /// Packages all published crates and builds each from its archive; `--no-verify` skips the builds.
@@ -42,11 +51,14 @@ fn versions(packages: &[Package], changelog: &str) -> Vec<String> {
         return vec!["no package is published".to_owned()];
     };
     let mut problems = Vec::new();
-    let sections = ["## Unreleased".to_owned(), format!("## {}", first.version)];
-    if !changelog
-        .lines()
-        .any(|line| sections.contains(&line.trim_end().to_owned()))
-    {
+    let section = format!("## {}", first.version);
+    // The date follows when the version is released.
+    let is_section = |line: &str| {
+        let rest = line.strip_prefix(&section);
+        let is_own = rest.is_some_and(|rest| rest.trim().is_empty() || rest.starts_with(" - "));
+        is_own || line.trim_end() == "## Unreleased"
+    };
+    if !changelog.lines().any(is_section) {
         problems.push(format!("CHANGELOG.md: no section `## {}`", first.version));
     }
     for package in &published {
@@ -114,17 +126,7 @@ mod tests {
     use crate::metadata::Package;
 
     fn package(name: &str) -> Package {
-        Package {
-            name: name.to_owned(),
-            version: "1.2.0".to_owned(),
-            licence: Some("MIT".to_owned()),
-            rust_version: Some("1.89".to_owned()),
-            is_member: true,
-            is_published: true,
-            description: Some("a package".to_owned()),
-            lacks: Vec::new(),
-            siblings: Vec::new(),
-        }
+        Package::named(name)
     }
 
     #[test]
@@ -135,6 +137,8 @@ mod tests {
         };
         let packages = [package("lower"), upper];
         assert!(versions(&packages, "## 1.2.0\n").is_empty());
+        assert!(versions(&packages, "## 1.2.0 - 2026-01-31\n").is_empty());
+        assert!(!versions(&packages, "## 1.2.0-rc.1\n## 1.2.01\n").is_empty());
         assert!(licences(&packages).is_empty());
         assert!(rust_versions(&packages).is_empty());
     }
