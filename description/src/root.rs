@@ -107,7 +107,6 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     check_actuators(table, platform.as_ref(), &legs);
     let is_closed = legs.iter().any(|leg| leg.end.is_some());
     check_motors(table, platform.is_some() || is_closed, &legs);
-    check_springs(table, platform.is_some() || is_closed, &legs);
     let robot = Inventory {
         platform: platform.as_ref(),
         legs: &legs,
@@ -277,33 +276,6 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
         table
             .context
             .report(Diagnostic::new(Code::STRUCTURE, message, second.span.clone()).help(help));
-    }
-}
-
-/// Springs and known torques are supported in robots without loops, whose joints are measured.
-fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
-    if !is_closed {
-        return;
-    }
-    let joints = || legs.iter().flat_map(|leg| &leg.joints);
-    let report = |joint: &crate::robot::model::Joint, what: &str, key: &str| {
-        let message = format!("{what} are described of robots without loops only");
-        let instead = match key {
-            "friction_load" => "",
-            _ => ", and subtract a known torque in `torques` of [data]",
-        };
-        let help = format!("leave `{key}` out{instead}");
-        let error = Diagnostic::new(Code::ACTUATED, message, joint.span.clone());
-        table.context.report_once(error.help(help));
-    };
-    if let Some(joint) = joints().find(|joint| joint.spring.is_some()) {
-        report(joint, "springs", "spring");
-    }
-    if let Some(joint) = joints().find(|joint| joint.load.is_some()) {
-        report(joint, "loads of friction", "friction_load");
-    }
-    if let Some(joint) = joints().find(|joint| joint.known.is_some()) {
-        report(joint, "known torques", "known");
     }
 }
 

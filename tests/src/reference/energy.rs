@@ -1,14 +1,15 @@
 //! Energy of all bodies, from positions and velocities only.
 //!
-//! Kinetic: ½ m v·v + v·(ω x s) + ½ ω·I ω and ½ ia q̇² for every rotor. Potential: -g·(m p + s).
+//! Kinetic: ½ m v·v + v·(ω x s) + ½ ω·I ω and ½ ia q̇² for every rotor. Potential: -g·(m p + s), and
+//! the work against springs and known torques from home, by quadrature.
 //! Neither uses accelerations or the inverse dynamics. The frictionless power balance dE/dt = vᵀ Γ¹
 //! is therefore an independent check.
 
 use super::closure::State;
 use super::kinematics::BodyMotion;
-use super::mechanism::{JointKind, Mechanism};
+use super::mechanism::{JointKind, Mechanism, Spring};
 use super::newton_euler::inertia;
-use super::parameters::{BODY, INERTIAL, leg_start, platform_start};
+use super::parameters::{BODY, INERTIAL, STIFFNESS, leg_start, platform_start};
 use nalgebra::{DVector, Vector3};
 
 /// Kinetic and potential energy of a body, its parameters those of [`inertia`].
@@ -34,13 +35,20 @@ pub fn total_energy(mechanism: &Mechanism, state: &State, parameters: &DVector<f
         .zip(mechanism.leg_ranges())
         .enumerate()
     {
-        let rates = leg.joint_values(&state.qd.as_slice()[range]);
+        let rates = leg.joint_values(&state.qd.as_slice()[range.clone()]);
+        let positions = leg.joint_values(&state.q.as_slice()[range]);
+        let homes = leg.joint_values(&leg.start);
         for (j, body) in motions[k].iter().enumerate() {
             let own = &all[leg_start(mechanism, k) + BODY * j..];
             energy += body_energy(body, own, &mechanism.gravity);
             if leg.joints[j].kind != JointKind::Fixed {
                 energy += 0.5 * own[INERTIAL] * rates[j] * rates[j];
             }
+            let work = |spring: &Option<Spring>| {
+                let spring = spring.as_ref();
+                spring.map_or(0.0, |spring| spring.work(homes[j], positions[j]))
+            };
+            energy += own[STIFFNESS] * work(&leg.joints[j].spring) + work(&leg.joints[j].known);
         }
     }
     if mechanism.motion.has_platform() {

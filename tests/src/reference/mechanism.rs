@@ -15,6 +15,15 @@ use nalgebra::Vector3;
 use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
+/// Points and weights of Gauss's quadrature with six points on [-1, 1], each for both signs.
+const GAUSS: [(f64, f64); 3] = [
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691_04),
+    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (0.932_469_514_203_152, 0.171_324_492_379_170_35),
+];
+/// Pieces of an interval of integration.
+const PIECES: usize = 16;
+
 /// What a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
@@ -75,6 +84,21 @@ impl Spring {
     #[must_use]
     pub fn torque(&self, position: f64) -> f64 {
         (self.0)(position)
+    }
+
+    /// Work against the torque between two positions, by Gauss's quadrature.
+    #[must_use]
+    pub fn work(&self, from: f64, to: f64) -> f64 {
+        let length = (to - from) / PIECES as f64;
+        let piece = |piece: usize| {
+            let middle = from + length * (piece as f64 + 0.5);
+            let point = |&(at, weight): &(f64, f64)| {
+                let apart = 0.5 * length * at;
+                weight * (self.torque(middle - apart) + self.torque(middle + apart))
+            };
+            0.5 * length * GAUSS.iter().map(point).sum::<f64>()
+        };
+        (0..PIECES).map(piece).sum()
     }
 }
 

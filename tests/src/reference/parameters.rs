@@ -17,6 +17,8 @@ pub const SYMBOLS: [&str; 21] = [
 pub const BODY: usize = 21;
 /// Number of inertial parameters, those of the platform and of the payload.
 pub const INERTIAL: usize = 10;
+/// Place of the coefficient of a joint's spring among the parameters of its body.
+pub const STIFFNESS: usize = 14;
 
 /// Total number of standard parameters; a serial robot has no platform and no payload.
 #[must_use]

@@ -8,7 +8,7 @@ use super::Error;
 use super::closure::State;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
-use super::parameters::{BODY, INERTIAL, count, platform_start};
+use super::parameters::{BODY, INERTIAL, STIFFNESS, count, platform_start};
 use super::parasitic_motion;
 use super::units::unitless_condition;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -119,12 +119,12 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
     DVector::from_vec(all)
 }
 
-/// Parameters without dissipation: viscous and dry friction and offset are zero.
+/// Parameters without dissipation: friction and offset are zero, springs stay.
 #[must_use]
 pub fn frictionless(mechanism: &Mechanism, parameters: &DVector<f64>) -> DVector<f64> {
     let mut kept = parameters.clone();
     for at in 0..platform_start(mechanism) {
-        if at % BODY > INERTIAL {
+        if at % BODY > INERTIAL && at % BODY != STIFFNESS {
             kept[at] = 0.0;
         }
     }
