@@ -1,4 +1,5 @@
-//! Springs, known torques and load-dependent friction on all joints of robots with loops.
+//! Springs, known torques and load-dependent friction on all joints of robots with loops, and
+//! springs and dampers between points of all robots.
 //!
 //! The elements are added to robots of `robots/` and to random mechanisms, on actuated and passive
 //! joints of legs, chains, skeletons and branches. All dynamic functions are compared with the
@@ -14,7 +15,7 @@ use overact_tests::reference::energy::total_energy;
 use overact_tests::reference::states::frictionless;
 use overact_tests::reference::trajectory;
 use overact_tests::support::conversion::reference;
-use overact_tests::support::elements::with_springs;
+use overact_tests::support::elements::{with_point_springs, with_springs};
 use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
 use overact_tests::support::random::{Sketch, parasitic_motion, skeleton};
@@ -70,6 +71,12 @@ const MORE: [&str; 12] = [
     "schoenflies_4",
     "spherical_4rrr",
     "three_leg_point",
+];
+
+/// Robots without loops of the default tier and of the full one.
+const SERIAL: [&[&str]; 2] = [
+    &["rx90", "emps"],
+    &["rx90", "emps", "dvrk_mtm", "kuka_lwr", "stanford", "tx40"],
 ];
 
 /// Model of a description with the functions that contain forces, and J_p^inv.
@@ -174,6 +181,28 @@ fn the_power_of_motors_is_the_change_of_the_energy_with_springs() -> Result<(), 
     Ok(())
 }
 
+#[test]
+fn robots_of_the_library_agree_with_springs_between_points() -> Result<(), Failure> {
+    let all = robots().into_iter().chain(by_tier(SERIAL).iter().copied());
+    for (seed, stem) in all.enumerate() {
+        let text = with_point_springs(&description(stem)?.text, seed as u64, true)?;
+        compare(stem, &text)?;
+        println!("{stem}");
+    }
+    Ok(())
+}
+
+#[test]
+fn the_power_of_motors_is_the_change_of_the_energy_with_springs_between_points()
+-> Result<(), Failure> {
+    let all = robots().into_iter().chain(by_tier(SERIAL).iter().copied());
+    for (seed, stem) in all.enumerate() {
+        let text = with_point_springs(&description(stem)?.text, 100 + seed as u64, false)?;
+        balance(stem, &text)?;
+    }
+    Ok(())
+}
+
 /// Compares random robots from `draw`; draws that do not close, or are nearly singular, do not
 /// count.
 fn random(draw: impl Fn(u64) -> String, count: u64) -> Result<(), Failure> {
@@ -184,6 +213,7 @@ fn random(draw: impl Fn(u64) -> String, count: u64) -> Result<(), Failure> {
     let mut failures = Vec::new();
     while compared < count {
         let text = with_springs(&draw(seed), seed);
+        let text = with_point_springs(&text, seed, true)?;
         if own.is_some() {
             println!("{text}");
         }

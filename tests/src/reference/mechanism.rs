@@ -270,6 +270,70 @@ impl Leg {
     }
 }
 
+/// A force along the line between two points of two bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// The points.
+    pub ends: [ElementEnd; 2],
+    /// Force for a unit coefficient.
+    pub force: Option<Law>,
+    /// Known force.
+    pub known: Option<Law>,
+}
+
+/// An end of an element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementEnd {
+    /// The body.
+    pub body: ElementBody,
+    /// The point in the body's frame.
+    pub at: Vector3<f64>,
+}
+
+/// A body that carries an end of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementBody {
+    /// The base frame.
+    Ground,
+    /// The platform.
+    Platform,
+    /// The body of a leg and joint.
+    Joint(usize, usize),
+}
+
+/// Force as a function of length and rate; a positive force pulls the points together.
+#[derive(Clone)]
+pub struct Law(Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>);
+
+impl Law {
+    /// A law of this force.
+    #[must_use]
+    pub fn new(force: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(force))
+    }
+
+    /// The force at a length and a rate.
+    #[must_use]
+    pub fn force(&self, length: f64, rate: f64) -> f64 {
+        (self.0)(length, rate)
+    }
+}
+
+impl Debug for Law {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Law({}, {})", self.force(1.0, 0.0), self.force(1.0, 1.0))
+    }
+}
+
+/// Compares laws at a few lengths and rates.
+impl PartialEq for Law {
+    fn eq(&self, other: &Self) -> bool {
+        [(0.3, -0.2), (0.7, 0.0), (1.1, 0.9)]
+            .into_iter()
+            .all(|(length, rate)| self.force(length, rate) == other.force(length, rate))
+    }
+}
+
 /// A whole robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
@@ -283,6 +347,8 @@ pub struct Mechanism {
     pub workspace: Vec<f64>,
     /// Legs.
     pub legs: Vec<Leg>,
+    /// Springs and dampers between two points.
+    pub elements: Vec<Element>,
 }
 
 impl Mechanism {

@@ -1,6 +1,10 @@
-//! Adds springs, known torques and loads of friction to the joints of a description.
+//! Adds springs, known torques and loads of friction to the joints of a description, and springs
+//! and dampers between points.
 
+use super::Failure;
 use super::random::Dice;
+use overact_codegen::Source;
+use overact_codegen::description::{Description, parse};
 
 /// A table of joints: its first line and those after it.
 const JOINT: &str = "[[leg.";
@@ -120,6 +124,59 @@ fn load(dice: &mut Dice, turns: bool) -> String {
         ]
     };
     forms[dice.below(forms.len())].clone()
+}
+
+/// Laws of forces between points: the keys of a table, without and with the rate of the length.
+const LAWS: [&str; 6] = [
+    "force = \"l - 0.1 m\"",
+    "force = \"1 / (l + 0.2 m)^2\"\nknown = \"20 N + 30 N/m * l\"",
+    "force = \"sqrt((0.3 m)^2 + l^2)\"",
+    "known = \"5 N\"",
+    "force = \"dl\"\nknown = \"40 N/m * (l - 0.2 m)\"",
+    "force = \"l * dl\"\nknown = \"20 N - 3 N s/m * dl\"",
+];
+/// Number of the laws that do not contain the rate.
+const WITHOUT_RATE: usize = 4;
+
+/// The description with three springs between random points of random bodies, drawn by seed.
+///
+/// Without `dampers` no force depends on a rate.
+///
+/// # Errors
+///
+/// An invalid description.
+pub fn with_point_springs(text: &str, seed: u64, dampers: bool) -> Result<String, Failure> {
+    let source = Source::new("springs.toml", text);
+    let robot = parse(&source).map_err(|errors| errors.render_plain(&source))?;
+    let bodies = bodies(&robot);
+    let mut dice = Dice::new(seed ^ 0x0a11_5b7a);
+    let mut changed = text.to_owned();
+    for number in 0..3 {
+        let (from, to) = loop {
+            let (from, to) = (dice.below(bodies.len()), dice.below(bodies.len()));
+            if from != to {
+                break (&bodies[from], &bodies[to]);
+            }
+        };
+        let [a, b] = [(); 2].map(|()| [0; 3].map(|_| dice.length(0.3)));
+        let law = LAWS[dice.below(if dampers { LAWS.len() } else { WITHOUT_RATE })];
+        changed.push_str(&format!(
+            "\n[[spring]]\nname = \"s{number}\"\nfrom = {{ body = \"{from}\", at = {a:?} }}\n\
+             to = {{ body = \"{to}\", at = {b:?} }}\n{law}\n"
+        ));
+    }
+    Ok(changed)
+}
+
+/// Names of all bodies, and of the ground.
+fn bodies(robot: &Description) -> Vec<String> {
+    let mut all = vec!["ground".to_owned()];
+    all.extend(robot.platform.as_ref().map(|_| "platform".to_owned()));
+    for leg in &robot.legs {
+        let joints = leg.joints.iter().filter(|joint| joint.motor.is_none());
+        all.extend(joints.map(|joint| format!("{}.{}", leg.name.value, joint.name.value)));
+    }
+    all
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! a formula that contains the angle itself takes an arc tangent, within half a turn of home like
 //! the function of the joints.
 
+use super::formula::{Variable, expression};
 use crate::cas::{Angle, Arena, CosineSine, Direction, Expr, Number, Ratio};
 use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::guard::{Guard, GuardKind};
@@ -78,8 +79,9 @@ impl<'a> Robot<'a> {
                 let at = JointIndex { leg: index, joint };
                 let position = Position { robot: self, at };
                 let mut formulas = self.formulas(at);
-                let is_unknown =
-                    |formula: &Formula| position.expression(formula, &mut Vec::new()).is_none();
+                let is_unknown = |formula: &Formula| {
+                    expression(self.arena, &position, formula, &mut Vec::new()).is_none()
+                };
                 if formulas.any(is_unknown) {
                     let leg = leg.name.clone();
                     return Err(DerivationError::InverseKinematics { leg });
@@ -105,12 +107,13 @@ impl<'a> Robot<'a> {
         radicands: &mut Vec<Expr<'a>>,
     ) -> Expr<'a> {
         let position = Position { robot: self, at };
-        let value = formula.and_then(|formula| position.expression(formula, radicands));
+        let value =
+            formula.and_then(|formula| expression(self.arena, &position, formula, radicands));
         value.unwrap_or_else(|| self.arena.zero())
     }
 }
 
-impl<'a> Position<'_, 'a> {
+impl Position<'_, '_> {
     /// The joints of q_t that the position combines, with their factors.
     fn terms(&self) -> Option<Vec<(usize, Ratio)>> {
         let leg = &self.robot.mechanism.legs[self.at.leg];
@@ -122,7 +125,9 @@ impl<'a> Position<'_, 'a> {
         };
         variable.map(term).collect()
     }
+}
 
+impl<'a> Variable<'a> for Position<'_, 'a> {
     /// The position without its constant, rad or m.
     fn number(&self) -> Option<Expr<'a>> {
         let robot = self.robot;
@@ -151,29 +156,6 @@ impl<'a> Position<'_, 'a> {
         let times = (factor.denominator() == 1).then(|| factor.numerator())?;
         let unit = multiple(arena, configuration.unit(&turn)?, times);
         Some(unit.plus(arena.cosine_and_sine(&offset)))
-    }
-
-    /// A formula at the position; `None` if the configuration does not determine it, or an angle
-    /// exceeds the range of numbers.
-    fn expression(&self, formula: &Formula, radicands: &mut Vec<Expr<'a>>) -> Option<Expr<'a>> {
-        let arena = self.robot.arena;
-        let mut of = |part: &Formula| self.expression(part, radicands);
-        Some(match formula {
-            Formula::Linear { offset, factor } if factor.is_zero() => arena.number(*offset),
-            Formula::Linear { offset, factor } => {
-                self.number()? * Number::ratio(*factor) + arena.number(*offset)
-            }
-            Formula::Cosine { offset, factor } => self.unit(*offset, *factor)?.cosine,
-            Formula::Sine { offset, factor } => self.unit(*offset, *factor)?.sine,
-            Formula::Sum(a, b) => of(a)? + of(b)?,
-            Formula::Product(a, b) => of(a)? * of(b)?,
-            Formula::Quotient(a, b) => of(a)? * of(b)?.reciprocal(),
-            Formula::SquareRoot(a) => {
-                let radicand = of(a)?;
-                radicands.push(radicand);
-                radicand.sqrt()
-            }
-        })
     }
 }
 

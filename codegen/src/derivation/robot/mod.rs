@@ -185,6 +185,7 @@ impl<'a> Robot<'a> {
             both.map(|(pose, motion)| PlatformBody::new(pose, motion, gravity, mount))
         };
         let mut motion = RobotMotion {
+            twist: twist.to_vec(),
             u: vec![],
             u_dot: vec![],
             bodies: vec![],

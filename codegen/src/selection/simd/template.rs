@@ -26,13 +26,10 @@ impl Template {
         };
         // The home angles of passive joints, near which formulas take them, differ between legs, and
         // known torques belong to no parameter of a leg.
-        let has_formula =
+        let is_one =
             |joint: &Joint| joint.spring.is_some() || joint.known.is_some() || joint.load.is_some();
-        if mechanism
-            .legs
-            .iter()
-            .any(|leg| leg.joints.iter().any(has_formula))
-        {
+        let has_formula = |leg: &Leg| leg.joints.iter().any(is_one);
+        if !mechanism.springs.is_empty() || mechanism.legs.iter().any(has_formula) {
             return None;
         }
         if others.is_empty() || !others.iter().all(|leg| shape(leg) == shape(first)) {
