@@ -1,4 +1,5 @@
-//! Springs and known torques on joints of a loop, from description to identification.
+//! Springs and known forces on joints of a loop and between points, from description to
+//! identification.
 
 use overact_identification::{Estimator, Identification, Stage};
 use overact_robot::{Identifier, Robot};
@@ -80,4 +81,26 @@ fn known_torques_that_are_left_out_matter() {
     });
     let (worst, _) = errors(&identified(&robot, &runs_of));
     assert!(worst > 20.0, "{worst:.1} deviations");
+}
+
+/// A gas spring of known force and unknown stiffness, and an unknown damper at the tool.
+#[test]
+fn springs_between_points_are_identified() {
+    let springs = "\n[[spring]]\nname = \"gas\"\n\
+                   from = { body = \"ground\", at = [\"-0.25 m\", \"0.05 m\", 0] }\n\
+                   to = { body = \"left.1\", at = [\"0.12 m\", \"0.01 m\", 0] }\n\
+                   force = \"l - 0.12 m\"\nknown = \"15 N\"\n\
+                   [[spring]]\nname = \"damper\"\n\
+                   from = { body = \"right.1\", at = [\"0.05 m\", \"0.03 m\", 0] }\n\
+                   to = { body = \"platform\" }\nforce = \"dl\"\n";
+    let values = "[experiment.parameters]\nk_gas = 60\nk_damper = 5\n";
+    let text = sprung().replace("[experiment.parameters]\n", values) + springs;
+    let robot = Robot::from_text("sprung.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    let (worst, found) = errors(&identified(&robot, &robot));
+    assert!(worst < 4.5, "{worst:.1} deviations");
+    assert_eq!(found.len(), 4);
+    let has = |truth: f64| found.iter().any(|one| (one - truth).abs() < 0.05 * truth);
+    for truth in [0.8, 0.5, 60.0, 5.0] {
+        assert!(has(truth), "{truth} in {found:?}");
+    }
 }

@@ -274,3 +274,19 @@ fn a_fraction_of_a_passive_angle_takes_newtons_method() -> Result<(), Failure> {
     }
     Ok(())
 }
+
+/// A force between points that coincide has no direction.
+#[test]
+fn points_that_coincide_at_home_are_refused() -> Result<(), Failure> {
+    let spring = "\n[[spring]]\nname = \"gas\"\nfrom = { body = \"ground\", at = [\"-half\", 0, 0] }\n\
+                  to = { body = \"left.1\" }\nforce = \"l\"\n";
+    let text = description("five_bar")?.text + spring;
+    let line = text.lines().position(|line| line == "name = \"gas\"");
+    let line = line.ok_or("no spring")? + 1;
+    let error = model_of("five_bar", &text).err().ok_or("accepted")?;
+    let error = error.to_string();
+    let message = "the points of the spring `gas` coincide at the home configuration";
+    assert!(error.contains(message), "{error}");
+    assert!(error.contains(&format!("five_bar.toml:{line}")), "{error}");
+    Ok(())
+}

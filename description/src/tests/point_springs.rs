@@ -25,7 +25,7 @@ fn forces_have_their_values_and_units() {
     let cases = [
         ("l - 0.3 m", 0.2, "N/m"),
         ("dl", rate, "N s/m"),
-        ("l * dl", length * rate, "N s/m^2"),
+        ("l * dl", length * rate, "m^-1 kg s^-1"),
         ("1", 1.0, "N"),
         ("sqrt(l^2 - (0.3 m)^2)", 0.4, "N/m"),
         ("1/l", 2.0, "N m"),
@@ -71,40 +71,43 @@ fn errors() {
     let cases = [
         (
             with(""),
-            "10:1 the spring has neither a `force` nor a `known` force; for instance force = \"l - 0.3 m\", with an unknown coefficient, or known = \"2 N/mm * (l - 0.3 m)\"",
+            "11:1 the spring has neither a `force` nor a `known` force; for instance force = \"l - 0.3 m\", with an unknown coefficient, or known = \"2 N/mm * (l - 0.3 m)\"",
         ),
         (
-            with("force = \"q - 0.3 m\""),
-            "14:10 unknown name `q`; known names: l, dl",
+            with("force = \"stretch - 0.3 m\""),
+            "15:10 unknown name `stretch`; known here: l, dl",
         ),
-        (with("force = \"l - \""), "14:13 a value is missing"),
+        (
+            with("force = \"l - \""),
+            "15:12 the expression ends where a value is expected",
+        ),
         (
             with("force = \"l + dl\""),
-            "14:10 a length and a speed cannot be added",
+            "15:10 a length and a speed cannot be added",
         ),
         (
             with("force = \"sin(l/(1 m))\""),
-            "14:9 sines of a length are not supported; write the force with powers, roots and quotients of `l` and `dl`",
+            "15:9 sines of a length are not supported; write the force with powers, roots and quotients of `l` and `dl`",
         ),
         (
             with("known = \"2 * l\""),
-            "14:9 expected a force (N), found a length; give its factors their units, for instance \"2 N/m * l\"",
+            "15:9 expected a force (N), found a length; give its factors their units, for instance \"2 N/m * l\"",
         ),
         (
-            of("from = { body = \"ground\" }\nto = { body = \"2\" }\nforce = \"l\""),
-            "13:15 the robot has no body `2`; bodies are ground, 1, arm.1",
+            of("from = { body = \"ground\" }\nto = { body = \"elbow\" }\nforce = \"l\""),
+            "14:15 the robot has no body `elbow`; bodies are ground, 1, arm.1",
         ),
         (
             of("from = { body = \"1\" }\nto = { body = \"arm.1\" }\nforce = \"l\""),
-            "10:1 both ends of the spring are on the same body; a spring connects two bodies; name another one in `from` or `to`",
+            "11:1 both ends of the spring are on the same body; a spring connects two bodies; name another one in `from` or `to`",
         ),
         (
             of("from = { at = [0, 0, 0] }\nto = { body = \"1\" }\nforce = \"l\""),
-            "12:8 the end of a spring has no `body`; for instance body = \"ground\"",
+            "13:8 the end of a spring has no `body`; for instance body = \"ground\"",
         ),
         (
             of("to = { body = \"1\" }\nforce = \"l\""),
-            "10:1 the spring has no `from`; for instance from = { body = \"ground\", at = [0, 0, \"0.2 m\"] }",
+            "11:1 the spring has no `from`; for instance from = { body = \"ground\", at = [0, 0, \"0.2 m\"] }",
         ),
     ];
     for (found, expected) in cases {
@@ -118,13 +121,13 @@ fn names_are_words_and_unique() {
         "{ENDS}\nforce = \"l\"\n[[spring]]\nname = \"gas\"\n{ENDS}\nknown = \"1 N\""
     ));
     let expected =
-        "16:8 there are two springs `gas`; parameters are named after springs: rename one of them";
+        "17:8 there are two springs `gas`; parameters are named after springs: rename one of them";
     assert_eq!(listed(&twice), [expected]);
     let bad = arm(&format!("{ENDS}\nforce = \"l\"")).replace("\"gas\"", "\"gas spring\"");
-    let expected = "11:8 `gas spring` cannot be the name of a spring; its parameter is named after it: use letters, digits and underscores";
+    let expected = "12:8 `gas spring` cannot be the name of a spring; its parameter is named after it: use letters, digits and underscores";
     assert_eq!(listed(&bad), [expected]);
     let joint = single("", "spring = \"q\"");
     let same = format!("{joint}[[spring]]\nname = \"1\"\n{ENDS}\nforce = \"l\"\n");
-    let expected = "11:8 another parameter is also called `k_1`; the coefficient of a joint's spring has this name: rename this spring";
+    let expected = "12:8 another parameter is also called `k_1`; the coefficient of a joint's spring has this name: rename this spring";
     assert_eq!(listed(&same), [expected]);
 }
