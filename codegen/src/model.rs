@@ -209,6 +209,10 @@ impl RobotModel {
                     None => symbol.unit(joint.kind == JointKind::Prismatic),
                 }
             }
+            BodyParameter::Spring(index) => {
+                let force = self.mechanism.springs[index].force.as_ref();
+                force.map_or("", |force| &force.unit)
+            }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => symbol.unit(false),
         }
     }

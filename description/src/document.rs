@@ -8,6 +8,7 @@ use crate::experiments::experiment::Experiment;
 use crate::experiments::prior::Prior;
 use crate::experiments::settings::Identification;
 use crate::robot::model::{Leg, Platform, Spanned, actuators};
+use crate::robot::point_spring::PointSpring;
 use overact_exact::Number;
 
 /// A robot as its author describes it.
@@ -38,6 +39,8 @@ pub struct Description {
     pub platform: Option<Platform>,
     /// The legs in the order of their placement.
     pub legs: Vec<Leg>,
+    /// Springs and dampers between two points.
+    pub springs: Vec<PointSpring>,
     /// The virtual experiment.
     pub experiment: Option<Experiment>,
     /// Limits of the search for exciting trajectories.

@@ -64,6 +64,7 @@ pub use robot::model::{
     BodyIndex, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, SIX, Spanned,
 };
 pub use robot::motion::TwistCoordinate;
+pub use robot::point_spring::{PointSpring, SpringBody, SpringEnd};
 pub use toml_text::place::place;
 
 /// Reads a description.

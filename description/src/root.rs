@@ -8,9 +8,10 @@ use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::{Leg, Platform, Spanned, actuators};
 use crate::robot::shape::Shape;
-use crate::robot::{chain, leg, platform, shape};
+use crate::robot::{chain, leg, platform, point_spring, shape};
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
+use overact_core::StandardParameter;
 use overact_exact::{Number, Ratio};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeTable;
@@ -110,14 +111,16 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     check_actuators(table, platform.as_ref(), &legs);
     let is_closed = legs.iter().any(|leg| leg.end.is_some());
     check_motors(table, platform.is_some() || is_closed, &legs);
-    check_springs(table, platform.is_some() || is_closed, &legs);
+    let springs = point_spring::read(table, &scope, platform_item.is_some(), &legs);
     let robot = Inventory {
         platform: platform.as_ref(),
         legs: &legs,
+        springs: &springs,
         scope: &scope,
         payloads: &[],
     };
     check_parameter_names(table, &robot);
+    check_spring_names(table, &robot);
     let payloads = payloads::read(table, &robot);
     let robot = Inventory {
         payloads: &payloads,
@@ -151,6 +154,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         magnitudes,
         platform,
         legs,
+        springs,
         experiment,
         excitation,
         data,
@@ -284,33 +288,6 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     }
 }
 
-/// Springs and known torques are supported in robots without loops, whose joints are measured.
-fn check_springs(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
-    if !is_closed {
-        return;
-    }
-    let joints = || legs.iter().flat_map(|leg| &leg.joints);
-    let report = |joint: &crate::robot::model::Joint, what: &str, key: &str| {
-        let message = format!("{what} are described of robots without loops only");
-        let instead = match key {
-            "friction_load" => "",
-            _ => ", and subtract a known torque in `torques` of [data]",
-        };
-        let help = format!("leave `{key}` out{instead}");
-        let error = Diagnostic::new(Code::ACTUATED, message, joint.span.clone());
-        table.context.report_once(error.help(help));
-    };
-    if let Some(joint) = joints().find(|joint| joint.spring.is_some()) {
-        report(joint, "springs", "spring");
-    }
-    if let Some(joint) = joints().find(|joint| joint.load.is_some()) {
-        report(joint, "loads of friction", "friction_load");
-    }
-    if let Some(joint) = joints().find(|joint| joint.known.is_some()) {
-        report(joint, "known torques", "known");
-    }
-}
-
 /// Motors of several joints are supported in robots without loops: a leg's last frame has to be
 /// that of a joint.
 fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
@@ -354,6 +331,7 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
     let robot = Inventory {
         platform: Some(platform),
         legs,
+        springs: &[],
         scope: &Scope::default(),
         payloads: &[],
     };
@@ -409,6 +387,21 @@ fn check_joint_count(
     let help = "describe it in parts, each as a robot of its own";
     table.context.report(diagnostic.help(help));
     None
+}
+
+/// Reports springs between points whose parameters have the names of others.
+fn check_spring_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
+    let all = robot.parameters();
+    let unknown = robot.springs.iter().filter(|spring| spring.force.is_some());
+    for spring in unknown {
+        let name = format!("{}_{}", StandardParameter::K.name(), spring.name.value);
+        if all.iter().filter(|(other, ..)| *other == name).count() > 1 {
+            let message = format!("another parameter is also called `{name}`");
+            let error = Diagnostic::new(Code::SAME_NAME, message, spring.name.span.clone());
+            let help = "the coefficient of a joint's spring has this name: rename this spring";
+            table.context.report(error.help(help));
+        }
+    }
 }
 
 /// Leg and joint names are joined by underscores, so two bodies may get the same name.

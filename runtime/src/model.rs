@@ -49,6 +49,22 @@ impl Parameter {
         }
     }
 
+    /// The coefficient of a spring between two points; see [`Body::Spring`].
+    #[must_use]
+    pub const fn of_spring(
+        name: &'static str,
+        symbol: StandardParameter,
+        unit: &'static str,
+        index: u16,
+    ) -> Self {
+        Self {
+            name,
+            symbol,
+            unit,
+            body: Body::Spring { index },
+        }
+    }
+
     /// A parameter of the payload.
     #[must_use]
     pub const fn of_payload(
@@ -109,6 +125,11 @@ pub enum Body {
         /// Index of the leg's shape, equal for legs that are described once and placed several
         /// times.
         shape: u16,
+    },
+    /// A spring between points of two bodies.
+    Spring {
+        /// Index of the spring.
+        index: u16,
     },
 }
 

@@ -1,4 +1,4 @@
-//! Robots with direction-dependent friction, Stribeck friction and known torques agree with the
+//! Robots with direction-dependent friction, Stribeck friction, springs and known torques agree with the
 //! numeric reference.
 //!
 //! They are compiled and evaluated.
@@ -6,7 +6,9 @@
 use overact::{Columns, Function, Model, StandardParameter};
 use overact_codegen::derivation::BodyParameter;
 use overact_codegen::{Effort, Request, RobotModel, Source};
-use overact_compiled::friction::{ARM, BAR, FrictionArm, FrictionBar, SCREW, ScrewArm};
+use overact_compiled::friction::{
+    ARM, BAR, FrictionArm, FrictionBar, SCREW, SPRING, ScrewArm, SpringBar,
+};
 use overact_tests::support::conversion::reference;
 use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
@@ -65,6 +67,11 @@ fn an_arm_with_a_follower_and_a_coupled_motor() -> Result<(), Failure> {
 #[test]
 fn a_five_bar_with_passive_joints() -> Result<(), Failure> {
     compare(BAR, &FrictionBar)
+}
+
+#[test]
+fn a_five_bar_with_springs_and_known_torques() -> Result<(), Failure> {
+    compare(SPRING, &SpringBar)
 }
 
 #[test]

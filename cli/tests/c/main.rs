@@ -345,6 +345,16 @@ fn robots_of_the_library_agree() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Springs and known torques of passive joints take arc tangents.
+#[test]
+fn a_robot_with_springs_agrees() -> Result<(), Failure> {
+    let path = repository("tests/compiled/friction/spring_bar.toml");
+    let model = model(&path, Effort::Quick, &[], Float::F64)?;
+    let seen = compare("spring_bar", model, by_tier([20, 100]), Compiler::all())?;
+    assert!(seen.is_none_or(|seen| seen.values > 0));
+    Ok(())
+}
+
 /// No robot of the library needs Newton's method for its joints.
 #[test]
 fn robots_that_iterate_agree() -> Result<(), Failure> {

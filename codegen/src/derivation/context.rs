@@ -53,7 +53,7 @@ impl<'a, 's> DerivationContext<'a, 's> {
     /// Derives the robot; `still` are pose coordinates that are known to be zero.
     ///
     /// # Errors
-    /// See [`Robot::new`].
+    /// See [`Robot::new`] and [`Robot::check_formulas`].
     pub(super) fn new(
         arena: &'a Arena,
         mechanism: &'a Mechanism,
@@ -72,6 +72,7 @@ impl<'a, 's> DerivationContext<'a, 's> {
             &selection.formulation,
             still,
         )?;
+        robot.check_formulas()?;
         Ok(Self {
             inputs: configuration_inputs(&robot, configuration),
             robot,

@@ -18,11 +18,13 @@ pub enum BodyParameter {
     Platform(StandardParameter),
     /// Of the payload.
     Payload(StandardParameter),
+    /// The coefficient of the spring between two points of this index.
+    Spring(usize),
 }
 
 impl BodyParameter {
     /// All parameters that are not absent, in column order: leg by leg, body by body, then the
-    /// platform's.
+    /// platform's and those of springs between two points.
     #[must_use]
     pub fn all(mechanism: &Mechanism) -> Vec<Self> {
         let mut parameters = Vec::new();
@@ -34,6 +36,9 @@ impl BodyParameter {
         }
         let platform = mechanism.platform.iter().flat_map(|p| &p.parameters);
         parameters.extend(platform.map(|&symbol| Self::Platform(symbol)));
+        let springs = mechanism.springs.iter().enumerate();
+        let springs = springs.filter(|(_, spring)| spring.force.is_some());
+        parameters.extend(springs.map(|(index, _)| Self::Spring(index)));
         parameters
     }
 
@@ -44,6 +49,10 @@ impl BodyParameter {
             Self::Leg { leg, joint, symbol } => mechanism.parameter_name(symbol, leg, joint),
             Self::Platform(symbol) => format!("{}_platform", symbol.name()),
             Self::Payload(symbol) => format!("{}_payload", symbol.name()),
+            Self::Spring(index) => {
+                let name = &mechanism.springs[index].name;
+                format!("{}_{name}", self.symbol().name())
+            }
         }
     }
 
@@ -52,6 +61,7 @@ impl BodyParameter {
     pub const fn symbol(self) -> StandardParameter {
         match self {
             Self::Leg { symbol, .. } | Self::Platform(symbol) | Self::Payload(symbol) => symbol,
+            Self::Spring(_) => StandardParameter::K,
         }
     }
 
@@ -78,7 +88,7 @@ impl BodyParameter {
     pub(super) const fn of_platform(self) -> Option<StandardParameter> {
         match self {
             Self::Platform(symbol) | Self::Payload(symbol) => Some(symbol),
-            Self::Leg { .. } => None,
+            Self::Leg { .. } | Self::Spring(_) => None,
         }
     }
 }

@@ -5,10 +5,11 @@ use super::explain;
 use super::home::{Home, approach};
 use super::mobility::Mobility;
 use super::parasitic::{Parasitic, closed, rated};
+use super::springs::check_lengths;
 use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
-use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
+use super::{BaseColumns, Joint, Leg, Mechanism, Platform, PointSpring, SpringBody, SpringEnd};
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
 
@@ -60,6 +61,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     for leg in 0..mechanism.legs.len() {
         check_mobility(description, &mechanism, leg, &mut errors);
     }
+    check_lengths(description, &mechanism, &mut errors);
     errors.into_result(())?;
     keep_actuators(description, &mut mechanism)?;
     check_held(description, &mechanism)?;
@@ -126,6 +128,21 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         base_body: l.base_body,
         end_body: l.end_body,
     };
+    let end = |end: &SpringEnd| {
+        let mut end = end.clone();
+        if let (SpringBody::Ground, Some(platform)) = (end.body, &description.platform) {
+            for (at, origin) in end.at.iter_mut().zip(platform.axis_at) {
+                *at = *at - origin;
+            }
+        }
+        end
+    };
+    let spring = |spring: &overact_description::PointSpring| PointSpring {
+        name: spring.name.value.clone(),
+        ends: [end(&spring.from), end(&spring.to)],
+        force: spring.force.clone(),
+        known: spring.known.clone(),
+    };
     let platform = description.platform.as_ref().map(|p| Platform {
         motion: p.motion.value,
         parameters: p.parameters.clone(),
@@ -140,6 +157,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         magnitudes: description.magnitudes.clone(),
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
+        springs: description.springs.iter().map(spring).collect(),
         home: Home::default(),
         // Chosen after the home configuration is known, unless the description gives them.
         base_columns: base_columns(description),

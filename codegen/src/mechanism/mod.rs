@@ -17,6 +17,7 @@ pub mod numeric;
 mod parasitic;
 mod reach;
 mod singular_values;
+mod springs;
 pub(crate) mod states;
 mod still;
 mod structure;
@@ -31,7 +32,7 @@ pub use overact_description::TwistCoordinate;
 pub use crate::cas::{Angle, Number, Ratio};
 pub use overact_description::{
     ActuatorNames, BaseColumns, BodyIndex, End, Formula, JointKind, Motion, Placement, Spring,
-    StandardParameter,
+    SpringBody, SpringEnd, StandardParameter,
 };
 
 /// A joint and the body that it moves.
@@ -129,6 +130,19 @@ impl Leg {
     }
 }
 
+/// A spring or damper between two points on two bodies.
+#[derive(Debug, Clone)]
+pub struct PointSpring {
+    /// Name, unique in the robot.
+    pub name: String,
+    /// The points between which it acts, in the frames of their bodies.
+    pub ends: [SpringEnd; 2],
+    /// Force per unit of an unknown coefficient; a positive force pulls the points together.
+    pub force: Option<Spring>,
+    /// Known force.
+    pub known: Option<Formula>,
+}
+
 /// The platform.
 #[derive(Debug, Clone)]
 pub struct Platform {
@@ -159,6 +173,8 @@ pub struct Mechanism {
     pub platform: Option<Platform>,
     /// The legs.
     pub legs: Vec<Leg>,
+    /// Springs and dampers between two points.
+    pub springs: Vec<PointSpring>,
     /// The home configuration, which fixes assembly and working modes.
     pub home: Home,
     /// Kept actuators of the actuator projection, as indices among the actuators.

@@ -40,6 +40,7 @@ pub(super) fn symmetric_order(mechanism: &Mechanism, parameters: &[BodyParameter
         BodyParameter::Leg { leg, joint, symbol } => {
             (1, mechanism.legs[leg].shape, joint, symbol, leg)
         }
+        BodyParameter::Spring(index) => (1, usize::MAX, 0, parameters[i].symbol(), index),
         BodyParameter::Payload(symbol) => (2, 0, 0, symbol, 0),
     });
     order

@@ -81,7 +81,8 @@ pub(crate) fn gains(item: &Item<'_, '_>, known: &[(String, f64)], robot: &Invent
             .report(item.error(Code::CONTRADICTION, COUPLED_MOTORS).help(help));
         return false;
     }
-    if robot.legs.iter().any(Leg::has_known_torques) {
+    let is_known = robot.springs.iter().any(|spring| spring.known.is_some());
+    if is_known || robot.legs.iter().any(Leg::has_known_torques) {
         let help = "leave out `gains`, or the key `known` of the joints";
         item.context
             .report(item.error(Code::CONTRADICTION, KNOWN_TORQUES).help(help));

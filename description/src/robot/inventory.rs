@@ -5,6 +5,7 @@ use crate::robot::actuator_names::ActuatorNames;
 use crate::robot::joint;
 use crate::robot::model::{JointKind, Leg, Motion, Platform, Spanned, actuators};
 use crate::robot::parameter::dimension;
+use crate::robot::point_spring::PointSpring;
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
 
@@ -22,12 +23,15 @@ pub enum Body {
     Platform,
     /// The payload.
     Payload,
+    /// The spring between two points of this index.
+    Spring(usize),
 }
 
 /// Data of the robot for the tables after the legs.
 pub(crate) struct Inventory<'r> {
     pub(crate) platform: Option<&'r Platform>,
     pub(crate) legs: &'r [Leg],
+    pub(crate) springs: &'r [PointSpring],
     pub(crate) scope: &'r Scope,
     /// Names of the payloads, if there are several.
     pub(crate) payloads: &'r [Spanned<String>],
@@ -75,24 +79,31 @@ impl Inventory<'_> {
                 }
             }
         }
-        let mut free = |body, name: &str, symbols: &[StandardParameter]| {
-            for symbol in symbols {
+        let free = |body: Body, name: &str, symbols: &[StandardParameter]| {
+            let own = symbols.iter().map(|symbol| {
                 let dimension = dimension(*symbol, JointKind::Fixed);
-                all.push((
+                (
                     format!("{}_{name}", symbol.name()),
                     body,
                     *symbol,
                     dimension,
-                ));
-            }
+                )
+            });
+            own.collect::<Vec<_>>()
         };
         if let Some(platform) = self.platform {
-            free(Body::Platform, "platform", &platform.parameters);
-            free(
-                Body::Payload,
-                "payload",
-                platform.payload.as_deref().unwrap_or_default(),
-            );
+            all.extend(free(Body::Platform, "platform", &platform.parameters));
+        }
+        let springs = self.springs.iter().enumerate();
+        let springs = springs.filter_map(|(index, one)| {
+            let (symbol, force) = (StandardParameter::K, one.force.as_ref()?);
+            let name = format!("{}_{}", symbol.name(), one.name.value);
+            Some((name, Body::Spring(index), symbol, force.dimension))
+        });
+        all.extend(springs);
+        if let Some(platform) = self.platform {
+            let payload = platform.payload.as_deref().unwrap_or_default();
+            all.extend(free(Body::Payload, "payload", payload));
         }
         let named = self.of_payloads(&all);
         all.extend(named);

@@ -16,6 +16,7 @@ pub(crate) mod motor;
 pub(crate) mod parameter;
 pub(crate) mod parameters;
 pub(crate) mod platform;
+pub(crate) mod point_spring;
 pub(crate) mod shape;
 pub(crate) mod spring;
 pub(crate) mod warnings;

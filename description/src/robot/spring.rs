@@ -35,6 +35,36 @@ pub(crate) fn load(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Optio
     with_coefficient(item, scope, effort, constant, help)
 }
 
+/// Variable of the rate of a spring's length; others are positions.
+pub(crate) const RATE: usize = usize::MAX;
+
+/// Reads the key `force` of a spring between two points; the scope has its length and rate.
+///
+/// It may be constant, as that of a long gas spring.
+pub(crate) fn force(item: &Item<'_, '_>, scope: &Scope) -> Option<Spring> {
+    let found = of_length(item, scope)?;
+    per_unit(item, found, Dimension::FORCE)
+}
+
+/// Reads the key `known` of a spring between two points, N.
+pub(crate) fn known_force(item: &Item<'_, '_>, scope: &Scope) -> Option<Formula> {
+    let found = of_length(item, scope)?;
+    given(item, found, Dimension::FORCE, "l")
+}
+
+/// A formula of a length, which no sine contains.
+fn of_length(item: &Item<'_, '_>, scope: &Scope) -> Option<Positional> {
+    let found: Positional = item.evaluate_as(scope)?;
+    if matches!(&found, Positional::Formula(formula, _) if formula.has_angle()) {
+        let message = "sines of a length are not supported";
+        let help = "write the force with powers, roots and quotients of `l` and `dl`";
+        item.context
+            .report_once(item.error(Code::SPRING, message).help(help));
+        return None;
+    }
+    Some(found)
+}
+
 /// A formula of an effort per unit of a coefficient.
 ///
 /// A constant formula is an error with the message `constant` and `help`.
@@ -51,6 +81,11 @@ fn with_coefficient(
             .report_once(item.error(Code::SPRING, constant).help(help));
         return None;
     }
+    per_unit(item, found, effort)
+}
+
+/// A formula with the unit of its coefficient.
+fn per_unit(item: &Item<'_, '_>, found: Positional, effort: Dimension) -> Option<Spring> {
     let inverse = found.dimension().power(-1);
     let Some(dimension) = inverse.and_then(|inverse| effort.times(inverse)) else {
         item.context
@@ -71,13 +106,27 @@ fn with_coefficient(
 pub(crate) fn known(item: &Item<'_, '_>, kind: JointKind, scope: &Scope) -> Option<Formula> {
     let effort = effort(item, kind, "no torque acts on a fixed joint")?;
     let found: Positional = item.evaluate_as(scope)?;
+    given(item, found, effort, "cos(q)")
+}
+
+/// A formula of a known effort; `example` is an expression of the variable.
+fn given(
+    item: &Item<'_, '_>,
+    found: Positional,
+    effort: Dimension,
+    example: &str,
+) -> Option<Formula> {
     if !found.dimension().fits(effort) {
         let (name, unit) = (effort.name(), effort.unit());
         let message = format!(
             "expected {name} ({unit}), found {}",
             found.dimension().name()
         );
-        let help = format!("give its factors their units, for instance \"2 {unit} * cos(q)\"");
+        let unit = match example {
+            "l" => "N/m",
+            _ => unit,
+        };
+        let help = format!("give its factors their units, for instance \"2 {unit} * {example}\"");
         item.context
             .report_once(item.error(Code::UNIT, message).help(help));
         return None;
@@ -127,13 +176,7 @@ impl Positional {
 
     fn formula(self) -> Formula {
         match self {
-            Self::Exact(value) => Formula::Linear {
-                offset: value.scalar.to_number(),
-                factor: value
-                    .terms
-                    .first()
-                    .map_or(Ratio::ZERO, |(_, factor)| *factor),
-            },
+            Self::Exact(value) => linear(&value),
             Self::Formula(formula, _) => formula,
         }
     }
@@ -144,6 +187,25 @@ impl Positional {
         let dimension = dimension.ok_or_else(|| Fault::new(TOO_LARGE))?;
         let [above, below] = parts(self, divisor)?;
         Ok(Self::Formula(Formula::Quotient(above, below), dimension))
+    }
+}
+
+/// The formula of a value that is linear in a position and a rate.
+fn linear(value: &Value) -> Formula {
+    let of = |is_rate: bool| {
+        let mut terms = value.terms.iter();
+        terms.find(|(variable, _)| (*variable == RATE) == is_rate)
+    };
+    let position = Formula::Linear {
+        offset: value.scalar.to_number(),
+        factor: of(false).map_or(Ratio::ZERO, |(_, factor)| *factor),
+    };
+    match of(true) {
+        Some((_, factor)) => {
+            let rate = Formula::Rate { factor: *factor };
+            Formula::Sum(Box::new(position), Box::new(rate))
+        }
+        None => position,
     }
 }
 

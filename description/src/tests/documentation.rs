@@ -55,6 +55,12 @@ velocity_gain = 1
 zzzz17 = 1
 [excitation]
 zzzz18 = 1
+[[spring]]
+zzzz19 = 1
+name = "gas"
+from = { zzzz20 = 1, body = "ground" }
+to = { body = "platform" }
+force = "l"
 [experiment]
 zzzz11 = 1
 [experiment.drives]
@@ -67,7 +73,7 @@ terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and the text before the keys there.
-const SECTIONS: [(&str, &str); 19] = [
+const SECTIONS: [(&str, &str); 21] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -90,6 +96,14 @@ const SECTIONS: [(&str, &str); 19] = [
     ),
     ("## `[prior]`: prior values and bounds", ""),
     ("## `[excitation]`: limits of exciting runs", ""),
+    (
+        "### `[[spring]]`: springs and dampers between two points",
+        "",
+    ),
+    (
+        "### `[[spring]]`: springs and dampers between two points",
+        "from.",
+    ),
 ];
 
 fn folder(path: &str) -> PathBuf {

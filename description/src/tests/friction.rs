@@ -112,7 +112,7 @@ fn errors() {
 }
 
 #[test]
-fn only_joints_that_move_have_friction_and_only_measured_ones_known_torques() {
+fn only_joints_that_move_have_friction_and_known_torques() {
     let fixed = |key: &str| {
         let text = format!(
             "name = \"Arm\"\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n\
@@ -130,12 +130,6 @@ fn only_joints_that_move_have_friction_and_only_measured_ones_known_torques() {
     assert_eq!(fixed("parameters = [\"fv_pos\"]"), [expected]);
     let expected = "7:17 a fixed joint has no friction; give it to a joint that moves";
     assert_eq!(fixed("friction_load = \"q\""), [expected]);
-    let platform = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
-                    [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\nknown = \"3 N\"\n\
-                    [leg.slide.end]\n[[place]]\nname = \"slide\"\nshape = \"slide\"\n";
-    let expected = "5:1 known torques are described of robots without loops only; \
-                    leave `known` out, and subtract a known torque in `torques` of [data]";
-    assert_eq!(listed(platform), [expected]);
 }
 
 #[test]

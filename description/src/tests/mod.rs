@@ -7,6 +7,7 @@ mod errors;
 mod experiments;
 mod friction;
 mod motors;
+mod point_springs;
 mod robots;
 mod springs;
 mod structure;

@@ -99,15 +99,27 @@ fn errors() {
 }
 
 #[test]
-fn only_joints_that_move_and_are_measured_have_springs() {
+fn only_joints_that_move_have_springs() {
     let fixed = "name = \"Arm\"\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n\
                  [[leg.arm.joint]]\ntype = \"fixed\"\nspring = \"q\"\n\
                  [[place]]\nname = \"arm\"\nshape = \"arm\"\n";
     assert!(listed(fixed)[0].starts_with("7:10 a fixed joint has no spring"));
+}
+
+#[test]
+fn joints_of_loops_have_springs_known_torques_and_loads() {
     let platform = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
-                    [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\nspring = \"q\"\n\
+                    [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\n\
+                    spring = \"q - 1 cm\"\nknown = \"3 N\"\nfriction_load = \"2 N/m * q\"\n\
                     [leg.slide.end]\n[[place]]\nname = \"slide\"\nshape = \"slide\"\n";
-    let expected = "5:1 springs are described of robots without loops only; \
-                    leave `spring` out, and subtract a known torque in `torques` of [data]";
-    assert_eq!(listed(platform), [expected]);
+    let robot = good(platform);
+    let joint = &robot.legs[0].joints[0];
+    let spring = joint.spring.as_ref().expect("a spring");
+    assert_eq!(spring.unit, "N/m");
+    assert!((spring.formula.value(0.03) - 0.02).abs() < 1e-15);
+    assert_eq!(
+        joint.known.as_ref().map(|known| known.value(0.03)),
+        Some(3.0)
+    );
+    assert!(joint.load.is_some());
 }

@@ -332,6 +332,7 @@ fn symmetric_order(columns: &ColumnSet, mut indices: Vec<usize>) -> Vec<usize> {
             match column.body {
                 Body::Platform => (0, 0, column.symbol, direction, 0, 0),
                 Body::Leg { leg, index, shape } => (1, index, column.symbol, direction, shape, leg),
+                Body::Spring { index } => (1, u16::MAX, column.symbol, direction, 0, index),
                 Body::Payload => (2, 0, column.symbol, direction, 0, 0),
             }
         })

@@ -1,12 +1,18 @@
-//! Known position-dependent torques of the description, subtracted from measured ones.
+//! Known torques of the description, subtracted from measured ones.
+//!
+//! They are the inverse dynamics at rest with all parameters zero: the actuator torques that balance
+//! the known torques of all joints. With redundant actuators these are the torques of least norm,
+//! whose projections are those of the known torques.
 
 use overact::{Columns, Function, Model};
 
 use super::motion::Motion;
 use overact_logs::Error;
 
-/// Number of poses at which they are looked for.
-const PROBES: u32 = 4;
+/// Displacements from home at which they are looked for, rad or m.
+///
+/// They may vanish at home, and a large displacement may be out of a small robot's reach.
+const PROBES: [f64; 4] = [0.0, 1e-3, 1e-2, 0.1];
 
 /// Torques at rest that are independent of parameters.
 pub(super) struct KnownTorques<'a> {
@@ -16,7 +22,7 @@ pub(super) struct KnownTorques<'a> {
 }
 
 impl<'a> KnownTorques<'a> {
-    /// Finds whether a model has them; robots with a platform never do.
+    /// Finds whether a model has them.
     pub(super) fn new(model: &'a dyn Model) -> Self {
         let info = model.info();
         let sizes = info.sizes;
@@ -24,17 +30,16 @@ impl<'a> KnownTorques<'a> {
             model,
             present: false,
         };
-        let probe = |number: u32| {
-            let step = |joint: usize| 0.1 * f64::from(number) * (1.0 + 0.3 * joint as f64);
+        let probe = |size: f64| {
+            let step = |coordinate: usize| size * (1.0 + 0.3 * coordinate as f64);
             let step: Vec<f64> = (0..sizes.dof).map(step).collect();
             let mut pose = info.home_pose.to_vec();
             model.displace(&mut pose, &step);
             let found = known.at(&pose, 1);
             found.is_ok_and(|torques| torques.iter().any(|torque| *torque != 0.0))
         };
-        let is_serial = sizes.dof == sizes.joints && sizes.dof == sizes.actuators;
         Self {
-            present: is_serial && (0..PROBES).any(probe),
+            present: PROBES.into_iter().any(probe),
             ..known
         }
     }

@@ -213,9 +213,10 @@ impl<'a> Identifier<'a> {
             return Err(problem.help(help).into());
         }
         let mut legs = self.robot.description().legs.iter();
-        if legs.any(Leg::has_known_torques) {
+        let mut springs = self.robot.description().springs.iter();
+        if legs.any(Leg::has_known_torques) || springs.any(|spring| spring.known.is_some()) {
             let problem = Problem::new(Code::CONTRADICTION, KNOWN_TORQUES).file(self.robot.file());
-            let help = "identify without gains, or leave out the key `known` of the joints";
+            let help = "identify without gains, or leave out the key `known` of joints and springs";
             return Err(problem.help(help).into());
         }
         let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });

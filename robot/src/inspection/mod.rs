@@ -225,14 +225,19 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
             });
         }
     }
+    let other = |name: &str, joint, parameters| Body {
+        name: name.to_owned(),
+        joint,
+        actuated: false,
+        actuator: None,
+        parameters,
+    };
+    for (index, spring) in mechanism.springs.iter().enumerate() {
+        let own = named(&|p| *p == BodyParameter::Spring(index));
+        bodies.push(other(&spring.name, "spring", own));
+    }
     if let Some(platform) = &mechanism.platform {
-        let free = |name: &str, parameters| Body {
-            name: name.to_owned(),
-            joint: "free",
-            actuated: false,
-            actuator: None,
-            parameters,
-        };
+        let free = |name: &str, parameters| other(name, "free", parameters);
         bodies.push(free(
             "platform",
             named(&|p| matches!(p, BodyParameter::Platform(_))),

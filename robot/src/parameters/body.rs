@@ -8,6 +8,9 @@ pub(crate) fn body(mechanism: &Mechanism, parameter: BodyParameter) -> Body {
     match parameter {
         BodyParameter::Platform(_) => Body::Platform,
         BodyParameter::Payload(_) => Body::Payload,
+        BodyParameter::Spring(index) => Body::Spring {
+            index: small(index),
+        },
         BodyParameter::Leg { leg, joint, .. } => leg_body(
             leg,
             joint,
@@ -18,10 +21,13 @@ pub(crate) fn body(mechanism: &Mechanism, parameter: BodyParameter) -> Body {
 
 /// Body of a leg, by indices; descriptions are too small for these to saturate.
 pub(crate) fn leg_body(leg: usize, index: usize, shape: usize) -> Body {
-    let small = |number: usize| u16::try_from(number).unwrap_or(u16::MAX);
     Body::Leg {
         leg: small(leg),
         index: small(index),
         shape: small(shape),
     }
+}
+
+fn small(number: usize) -> u16 {
+    u16::try_from(number).unwrap_or(u16::MAX)
 }

@@ -1,8 +1,9 @@
-//! Robots with all kinds of friction and with screws, and the text of their descriptions.
+//! Robots with all kinds of friction, with springs and with screws, and the text of their descriptions.
 
 robot!(friction_arm: FrictionArm);
 robot!(friction_bar: FrictionBar);
 robot!(screw_arm: ScrewArm);
+robot!(spring_bar: SpringBar);
 
 /// The description of [`FrictionArm`].
 pub const ARM: &str = include_str!("../friction/friction_arm.toml");
@@ -10,3 +11,5 @@ pub const ARM: &str = include_str!("../friction/friction_arm.toml");
 pub const BAR: &str = include_str!("../friction/friction_bar.toml");
 /// The description of [`ScrewArm`].
 pub const SCREW: &str = include_str!("../friction/screw_arm.toml");
+/// The description of [`SpringBar`].
+pub const SPRING: &str = include_str!("../friction/spring_bar.toml");

@@ -18,6 +18,7 @@
 
 use super::Error;
 use super::closure::State;
+use super::elements::all_loads;
 use super::jacobians::Jacobians;
 use super::linear::{condition, pseudo_inverse};
 use super::mechanism::Mechanism;
@@ -77,10 +78,12 @@ impl<'a> Dynamics<'a> {
     pub fn tree_and_platform(&self, parameters: &DVector<f64>) -> DVector<f64> {
         let tree = tree_torques(self.mechanism, self.state, parameters);
         let platform = projected_platform_wrench(self.mechanism, self.state, parameters);
-        DVector::from_iterator(
+        let own = DVector::from_iterator(
             tree.len() + platform.len(),
             tree.iter().chain(platform.iter()).copied(),
-        )
+        );
+        let elements = all_loads(self.mechanism, self.state, parameters, own.len());
+        own + elements
     }
 
     /// The same for every unit parameter: IDM of the tree above DᵀIDM of the platform.

@@ -15,6 +15,15 @@ use nalgebra::Vector3;
 use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
+/// Points and weights of Gauss's quadrature with six points on [-1, 1], each for both signs.
+const GAUSS: [(f64, f64); 3] = [
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691_04),
+    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (0.932_469_514_203_152, 0.171_324_492_379_170_35),
+];
+/// Pieces of an interval of integration.
+const PIECES: usize = 16;
+
 /// What a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
@@ -75,6 +84,21 @@ impl Spring {
     #[must_use]
     pub fn torque(&self, position: f64) -> f64 {
         (self.0)(position)
+    }
+
+    /// Work against the torque between two positions, by Gauss's quadrature.
+    #[must_use]
+    pub fn work(&self, from: f64, to: f64) -> f64 {
+        let length = (to - from) / PIECES as f64;
+        let piece = |piece: usize| {
+            let middle = from + length * (piece as f64 + 0.5);
+            let point = |&(at, weight): &(f64, f64)| {
+                let apart = 0.5 * length * at;
+                weight * (self.torque(middle - apart) + self.torque(middle + apart))
+            };
+            0.5 * length * GAUSS.iter().map(point).sum::<f64>()
+        };
+        (0..PIECES).map(piece).sum()
     }
 }
 
@@ -246,6 +270,70 @@ impl Leg {
     }
 }
 
+/// A force along the line between two points of two bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// The points.
+    pub ends: [ElementEnd; 2],
+    /// Force for a unit coefficient.
+    pub force: Option<Law>,
+    /// Known force.
+    pub known: Option<Law>,
+}
+
+/// An end of an element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementEnd {
+    /// The body.
+    pub body: ElementBody,
+    /// The point in the body's frame.
+    pub at: Vector3<f64>,
+}
+
+/// A body that carries an end of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementBody {
+    /// The base frame.
+    Ground,
+    /// The platform.
+    Platform,
+    /// The body of a leg and joint.
+    Joint(usize, usize),
+}
+
+/// Force as a function of length and rate; a positive force pulls the points together.
+#[derive(Clone)]
+pub struct Law(Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>);
+
+impl Law {
+    /// A law of this force.
+    #[must_use]
+    pub fn new(force: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Arc::new(force))
+    }
+
+    /// The force at a length and a rate.
+    #[must_use]
+    pub fn force(&self, length: f64, rate: f64) -> f64 {
+        (self.0)(length, rate)
+    }
+}
+
+impl Debug for Law {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Law({}, {})", self.force(1.0, 0.0), self.force(1.0, 1.0))
+    }
+}
+
+/// Compares laws at a few lengths and rates.
+impl PartialEq for Law {
+    fn eq(&self, other: &Self) -> bool {
+        [(0.3, -0.2), (0.7, 0.0), (1.1, 0.9)]
+            .into_iter()
+            .all(|(length, rate)| self.force(length, rate) == other.force(length, rate))
+    }
+}
+
 /// A whole robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
@@ -259,6 +347,8 @@ pub struct Mechanism {
     pub workspace: Vec<f64>,
     /// Legs.
     pub legs: Vec<Leg>,
+    /// Springs and dampers between two points.
+    pub elements: Vec<Element>,
 }
 
 impl Mechanism {

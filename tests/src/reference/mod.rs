@@ -20,6 +20,7 @@
 pub mod chains;
 pub mod closure;
 pub mod dynamics;
+pub mod elements;
 pub mod energy;
 pub mod jacobians;
 pub mod kinematics;
@@ -41,7 +42,9 @@ use std::fmt;
 pub use closure::State;
 pub use dynamics::Dynamics;
 pub use jacobians::Jacobians;
-pub use mechanism::{End, Joint, JointKind, Leg, Mechanism, Spring};
+pub use mechanism::{
+    Element, ElementBody, ElementEnd, End, Joint, JointKind, Law, Leg, Mechanism, Spring,
+};
 pub use motion::Motion;
 pub use placement::Frame;
 

@@ -14,9 +14,10 @@
 //! equal to 1 and all others zero.
 
 use super::closure::State;
+use super::elements::add_columns;
 use super::kinematics::BodyMotion;
 use super::mechanism::{JointKind, Leg, Mechanism};
-use super::parameters::{BODY, INERTIAL, leg_start, platform_start};
+use super::parameters::{BODY, INERTIAL, element_start, leg_start, platform_start};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// A force and the moment about the origin of the body's frame, in the base frame.
@@ -303,7 +304,7 @@ pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
             }
         }
     }
-    for at in platform_start(mechanism)..count {
+    for at in platform_start(mechanism)..element_start(mechanism) {
         let mut unit = DVector::zeros(count);
         unit[at] = 1.0;
         let platform = projected_platform_wrench(mechanism, state, &unit);
@@ -311,5 +312,6 @@ pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
             .view_mut((joints, at), (dof, 1))
             .copy_from(&platform);
     }
+    add_columns(mechanism, state, &mut columns);
     columns
 }

@@ -4,7 +4,7 @@
 //! friction by direction, at standstill and by load: [xx xy xz yy yz zz mx my mz m ia fv fs off k
 //! fv_pos fs_pos fv_neg fs_neg fst fl]. Platform and payload have the first ten. Inertial
 //! parameters are about the origin of the body's frame, in its axes. Columns are ordered by leg,
-//! joint and parameter.
+//! joint and parameter; coefficients of elements between two points come last.
 
 use super::mechanism::Mechanism;
 
@@ -17,10 +17,18 @@ pub const SYMBOLS: [&str; 21] = [
 pub const BODY: usize = 21;
 /// Number of inertial parameters, those of the platform and of the payload.
 pub const INERTIAL: usize = 10;
+/// Place of the coefficient of a joint's spring among the parameters of its body.
+pub const STIFFNESS: usize = 14;
 
 /// Total number of standard parameters; a serial robot has no platform and no payload.
 #[must_use]
 pub fn count(mechanism: &Mechanism) -> usize {
+    element_start(mechanism) + mechanism.elements.len()
+}
+
+/// Column of the coefficient of the first element between two points.
+#[must_use]
+pub fn element_start(mechanism: &Mechanism) -> usize {
     platform_start(mechanism)
         + if !mechanism.motion.has_platform() {
             0
@@ -62,5 +70,6 @@ pub fn names(mechanism: &Mechanism) -> Vec<String> {
             names.extend(SYMBOLS[..INERTIAL].iter().map(|s| format!("{s}_{body}")));
         }
     }
+    names.extend((1..=mechanism.elements.len()).map(|index| format!("k_element{index}")));
     names
 }

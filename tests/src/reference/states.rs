@@ -8,7 +8,7 @@ use super::Error;
 use super::closure::State;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
-use super::parameters::{BODY, INERTIAL, count, platform_start};
+use super::parameters::{BODY, INERTIAL, STIFFNESS, count, element_start, platform_start};
 use super::parasitic_motion;
 use super::units::unitless_condition;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -116,16 +116,24 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
         all.extend(random_body(&mut generator));
         all.extend(random_body(&mut generator));
     }
+    let coefficient = |_| generator.random_range(1.0..10.0);
+    all.extend(mechanism.elements.iter().map(coefficient));
     DVector::from_vec(all)
 }
 
-/// Parameters without dissipation: viscous and dry friction and offset are zero.
+/// Parameters without dissipation: friction, offset and dampers are zero, springs stay.
 #[must_use]
 pub fn frictionless(mechanism: &Mechanism, parameters: &DVector<f64>) -> DVector<f64> {
     let mut kept = parameters.clone();
     for at in 0..platform_start(mechanism) {
-        if at % BODY > INERTIAL {
+        if at % BODY > INERTIAL && at % BODY != STIFFNESS {
             kept[at] = 0.0;
+        }
+    }
+    for (index, element) in mechanism.elements.iter().enumerate() {
+        let law = element.force.as_ref();
+        if law.is_some_and(|law| law.force(1.0, 0.0) != law.force(1.0, 1.0)) {
+            kept[element_start(mechanism) + index] = 0.0;
         }
     }
     kept

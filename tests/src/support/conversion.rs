@@ -1,6 +1,9 @@
 //! Converts a checked mechanism to the plain data of the numeric reference.
 
-use crate::reference::{End, Frame, Joint, JointKind, Leg, Mechanism, Motion, Spring};
+use crate::reference::{
+    Element, ElementBody, ElementEnd, End, Frame, Joint, JointKind, Law, Leg, Mechanism, Motion,
+    Spring,
+};
 use nalgebra::{Rotation3, Vector3};
 use overact_codegen::mechanism;
 use overact_codegen::mechanism::{Angle, Number};
@@ -23,6 +26,7 @@ pub fn reference(mechanism: &mechanism::Mechanism, workspace: Vec<f64>) -> Mecha
         legs: legs
             .map(|(k, own)| leg(own, &mechanism.home.joints[first(k)]))
             .collect(),
+        elements: mechanism.springs.iter().map(element).collect(),
     }
 }
 
@@ -100,6 +104,26 @@ fn joint(joint: &mechanism::Joint) -> Joint {
         known: joint.known.clone().map(torque),
         load: joint.load.clone().map(|load| torque(load.formula)),
         stribeck: joint.stribeck.map(Number::value),
+    }
+}
+
+fn element(spring: &mechanism::PointSpring) -> Element {
+    let end = |end: &mechanism::SpringEnd| ElementEnd {
+        body: match end.body {
+            mechanism::SpringBody::Ground => ElementBody::Ground,
+            mechanism::SpringBody::Platform => ElementBody::Platform,
+            mechanism::SpringBody::Joint(body) => ElementBody::Joint(body.leg, body.joint),
+        },
+        at: vector(end.at),
+    };
+    let law = |formula: &mechanism::Formula| {
+        let formula = formula.clone();
+        Law::new(move |length, rate| formula.value_at(length, rate))
+    };
+    Element {
+        ends: spring.ends.each_ref().map(end),
+        force: spring.force.as_ref().map(|force| law(&force.formula)),
+        known: spring.known.as_ref().map(law),
     }
 }
 

@@ -4,7 +4,9 @@ use super::sample::fitted_acceleration;
 use super::{Failure, Parameters, Sample};
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
-use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_start};
+use crate::reference::parameters::{
+    BODY, INERTIAL, element_start, leg_start, names, platform_start,
+};
 use crate::reference::parasitic_motion::rates;
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::{DMatrix, DVector};
@@ -71,6 +73,7 @@ impl Expected {
             BodyParameter::Payload(symbol) => {
                 platform_start(&mechanism) + INERTIAL + symbol as usize
             }
+            BodyParameter::Spring(index) => element_start(&mechanism) + index,
         };
         let columns = |of: &[BodyParameter]| of.iter().map(at).collect::<Vec<usize>>();
         Self {

@@ -164,6 +164,10 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
                 let symbol = symbol(s);
                 quote!(Parameter::of_payload(#name, StandardParameter::#symbol, #unit))
             }
+            BodyParameter::Spring(at) => {
+                let (symbol, at) = (symbol(parameter.symbol()), index(at));
+                quote!(Parameter::of_spring(#name, StandardParameter::#symbol, #unit, #at))
+            }
         }
     });
     let (name, count) = (format_ident!("{name}"), Literal::usize_unsuffixed(of.len()));

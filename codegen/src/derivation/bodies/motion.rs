@@ -9,6 +9,8 @@ use crate::derivation::names::Accelerations;
 /// Velocities and accelerations of the whole robot.
 #[derive(Debug, Clone)]
 pub struct RobotMotion<'a> {
+    /// Independent velocities v.
+    pub(crate) twist: Vec<Expr<'a>>,
     /// Quasi-velocities of every leg.
     pub u: Vec<Vec<Expr<'a>>>,
     /// Their derivatives.

@@ -2,8 +2,10 @@
 
 pub(crate) mod actuated_joint_forces;
 pub(crate) mod composite;
+mod formula;
 pub(crate) mod friction;
 pub(crate) mod masses;
 pub(crate) mod newton_euler;
-pub(crate) mod spring;
+mod point_spring;
+mod spring;
 pub(crate) mod tree_masses;

@@ -1,16 +1,23 @@
-//! Position-dependent torques of joints: per unit of a spring's unknown coefficient, and known
-//! torques.
+//! Position-dependent torques of joints: per unit of a spring's unknown coefficient, known torques,
+//! and loads of friction.
+//!
+//! From the joints their position is an input. From the pose, the closure gives the sine and cosine
+//! of a passive angle, and sines and cosines of its multiples follow by the addition theorem. Only
+//! a formula that contains the angle itself takes an arc tangent, within half a turn of home like
+//! the function of the joints.
 
-use crate::cas::{Angle, Arena, Direction, Expr, Number, Ratio};
+use super::formula::{Variable, expression};
+use crate::cas::{Angle, Arena, CosineSine, Direction, Expr, Number, Ratio};
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::guard::{Guard, GuardKind};
-use crate::derivation::kinematics::joint::{joint_slide, joint_turn};
+use crate::derivation::motion_input::MotionInput;
 use crate::derivation::robot::Robot;
-use crate::mechanism::{Formula, JointIndex, JointKind};
+use crate::mechanism::{Formula, JointIndex};
 
-/// Position of a joint as a number, and as an angle if the joint is revolute.
-struct Position<'a> {
-    number: Expr<'a>,
-    turn: Direction,
+/// The position of a joint, for formulas.
+struct Position<'r, 'a> {
+    robot: &'r Robot<'a>,
+    at: JointIndex,
 }
 
 impl<'a> Robot<'a> {
@@ -39,12 +46,11 @@ impl<'a> Robot<'a> {
         let mut guards = Vec::new();
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
             let mut radicands = Vec::new();
-            for (joint, own) in leg.joints.iter().enumerate() {
-                let spring = own.spring.as_ref().map(|spring| &spring.formula);
-                let load = own.load.as_ref().map(|load| &load.formula);
+            self.arena.enter(&leg.name);
+            for joint in 0..leg.joints.len() {
                 let at = JointIndex { leg: index, joint };
-                for formula in [spring, own.known.as_ref(), load] {
-                    let _ = self.torque_of_position(at, formula, &mut radicands);
+                for formula in self.formulas(at) {
+                    let _ = self.torque_of_position(at, Some(formula), &mut radicands);
                 }
             }
             guards.extend(radicands.into_iter().map(|value| Guard {
@@ -54,7 +60,44 @@ impl<'a> Robot<'a> {
                 leg: leg.name.clone(),
             }));
         }
+        self.arena.enter("");
         guards
+    }
+
+    /// Checks that the configuration determines the formulas of all joints.
+    ///
+    /// # Errors
+    /// A passive joint whose formula has a fraction of its angle in a sine or cosine. The closure
+    /// gives the sine and cosine of the angle only; the joints then come from Newton's method.
+    pub(crate) fn check_formulas(&self) -> Result<(), DerivationError> {
+        if self.configuration.from() == MotionInput::Joints {
+            return Ok(());
+        }
+        for (index, leg) in self.mechanism.legs.iter().enumerate() {
+            self.arena.enter(&leg.name);
+            for joint in 0..leg.joints.len() {
+                let at = JointIndex { leg: index, joint };
+                let position = Position { robot: self, at };
+                let mut formulas = self.formulas(at);
+                let is_unknown = |formula: &Formula| {
+                    expression(self.arena, &position, formula, &mut Vec::new()).is_none()
+                };
+                if formulas.any(is_unknown) {
+                    let leg = leg.name.clone();
+                    return Err(DerivationError::InverseKinematics { leg });
+                }
+            }
+        }
+        self.arena.enter("");
+        Ok(())
+    }
+
+    /// The formulas of a joint: spring, known torque, load of friction.
+    fn formulas(&self, at: JointIndex) -> impl Iterator<Item = &'a Formula> + use<'a> {
+        let joint = self.mechanism.joint(at);
+        let spring = joint.spring.as_ref().map(|spring| &spring.formula);
+        let load = joint.load.as_ref().map(|load| &load.formula);
+        [spring, joint.known.as_ref(), load].into_iter().flatten()
     }
 
     fn torque_of_position(
@@ -63,57 +106,73 @@ impl<'a> Robot<'a> {
         formula: Option<&Formula>,
         radicands: &mut Vec<Expr<'a>>,
     ) -> Expr<'a> {
-        let value = formula
-            .zip(formula.and_then(|_| self.position(at)))
-            .and_then(|(formula, position)| expression(self.arena, formula, &position, radicands));
+        let position = Position { robot: self, at };
+        let value =
+            formula.and_then(|formula| expression(self.arena, &position, formula, radicands));
         value.unwrap_or_else(|| self.arena.zero())
-    }
-
-    /// Position of a joint without its constant.
-    fn position(&self, at: JointIndex) -> Option<Position<'a>> {
-        let JointIndex { leg, joint: index } = at;
-        let (of, first) = (&self.mechanism.legs[leg], self.legs[leg].first_joint);
-        let joint = &of.joints[index];
-        let turn = joint_turn(of, index, first, &self.configuration)?.without_offset();
-        if joint.kind == JointKind::Prismatic {
-            let slide = joint_slide(self.arena, of, index, first, &self.configuration)?;
-            let number = slide - self.arena.number(joint.r);
-            return Some(Position { number, turn });
-        }
-        let mut number = self.arena.zero();
-        for (other, factor) in &joint.variable {
-            let at = first + of.independent().position(|i| i == *other)?;
-            number = number + self.arena.input("joints", at) * Number::ratio(*factor);
-        }
-        Some(Position { number, turn })
     }
 }
 
-/// A formula at a position; `None` if an angle exceeds the range of numbers.
-fn expression<'a>(
-    arena: &'a Arena,
-    formula: &Formula,
-    position: &Position<'a>,
-    radicands: &mut Vec<Expr<'a>>,
-) -> Option<Expr<'a>> {
-    let mut of = |part: &Formula| expression(arena, part, position, radicands);
-    let unit = |offset: &Angle, factor: &Ratio| {
-        let turn = position.turn.times(*factor)?;
-        Some(arena.cosine_and_sine(&turn.plus(&Direction::constant(*offset))?))
+impl Position<'_, '_> {
+    /// The joints of q_t that the position combines, with their factors.
+    fn terms(&self) -> Option<Vec<(usize, Ratio)>> {
+        let leg = &self.robot.mechanism.legs[self.at.leg];
+        let first = self.robot.legs[self.at.leg].first_joint;
+        let variable = leg.joints[self.at.joint].variable.iter();
+        let term = |(of, factor): &(usize, Ratio)| {
+            let at = leg.independent().position(|own| own == *of)?;
+            Some((first + at, *factor))
+        };
+        variable.map(term).collect()
+    }
+}
+
+impl<'a> Variable<'a> for Position<'_, 'a> {
+    /// The position without its constant, rad or m.
+    fn number(&self) -> Option<Expr<'a>> {
+        let robot = self.robot;
+        let mut number = robot.arena.zero();
+        for (at, factor) in self.terms()? {
+            // The joints of a skeleton and of branches are in the pose, whatever the input.
+            let in_pose = robot.configuration.in_pose(at);
+            let position = in_pose.or_else(|| robot.joint_position(at))?;
+            number = number + position * Number::ratio(factor);
+        }
+        Some(number)
+    }
+
+    /// Cosine and sine of `offset` + `factor` q.
+    fn unit(&self, offset: Angle, factor: Ratio) -> Option<CosineSine<'a>> {
+        let (arena, configuration) = (self.robot.arena, &self.robot.configuration);
+        let mut turn = Direction::constant(Angle::ZERO);
+        for (at, share) in self.terms()? {
+            turn = turn.plus(&configuration.joint_angle(at).times(share)?)?;
+        }
+        let offset = Direction::constant(offset);
+        let whole = turn.times(factor)?.plus(&offset)?;
+        if configuration.from() == MotionInput::Joints || configuration.is_input(&whole) {
+            return Some(arena.cosine_and_sine(&whole));
+        }
+        let times = (factor.denominator() == 1).then(|| factor.numerator())?;
+        let unit = multiple(arena, configuration.unit(&turn)?, times);
+        Some(unit.plus(arena.cosine_and_sine(&offset)))
+    }
+}
+
+/// Cosine and sine of a multiple of an angle, by doubling.
+fn multiple<'a>(arena: &'a Arena, unit: CosineSine<'a>, times: i128) -> CosineSine<'a> {
+    let mut power = if times < 0 { unit.negated() } else { unit };
+    let mut left = times.unsigned_abs();
+    let mut product = CosineSine {
+        cosine: arena.one(),
+        sine: arena.zero(),
     };
-    Some(match formula {
-        Formula::Linear { offset, factor } => {
-            position.number * Number::ratio(*factor) + arena.number(*offset)
+    while left > 0 {
+        if left % 2 == 1 {
+            product = product.plus(power);
         }
-        Formula::Cosine { offset, factor } => unit(offset, factor)?.cosine,
-        Formula::Sine { offset, factor } => unit(offset, factor)?.sine,
-        Formula::Sum(a, b) => of(a)? + of(b)?,
-        Formula::Product(a, b) => of(a)? * of(b)?,
-        Formula::Quotient(a, b) => of(a)? * of(b)?.reciprocal(),
-        Formula::SquareRoot(a) => {
-            let radicand = of(a)?;
-            radicands.push(radicand);
-            radicand.sqrt()
-        }
-    })
+        power = power.plus(power);
+        left /= 2;
+    }
+    product
 }

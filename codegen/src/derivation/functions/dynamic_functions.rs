@@ -2,11 +2,11 @@
 //! inverse dynamics with given parameters.
 
 use crate::cas::{Expr, Number};
-use crate::derivation::context::{DerivationContext, column};
+use crate::derivation::context::{DerivationContext, Owner, column};
 use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::dynamics::actuated_joint_forces::ActuatedJointForces;
 use crate::derivation::linear_algebra::elimination::{Rows, inverse};
-use crate::derivation::linear_algebra::linear::{apply, product, transposed};
+use crate::derivation::linear_algebra::linear::{add_to, apply, product, transposed};
 use crate::derivation::linear_algebra::null_space::null_space;
 use crate::derivation::parameter::BodyParameter;
 use crate::derivation::regressor::Projection;
@@ -53,6 +53,7 @@ impl<'a> DerivationContext<'a, '_> {
             return Vec::new();
         };
         self.guards.extend(self.robot.spring_guards());
+        self.guards.extend(self.robot.point_spring_guards(&motion));
         let selection = self.selection;
         let combination = |p: BodyParameter| {
             let found = selection.combined.iter().find(|c| c.parameter == p)?;
@@ -163,13 +164,22 @@ impl<'a> DerivationContext<'a, '_> {
         let Some(motion) = self.robot.motion(twist, acceleration) else {
             return Vec::new();
         };
-        if self.selection.dynamics == DynamicsBy::Bodies {
+        self.guards.extend(self.robot.point_spring_guards(&motion));
+        let mut forces = if self.selection.dynamics == DynamicsBy::Bodies {
             let forces = self.robot.summed_forces(&motion, &values, actuators);
-            return forces.unwrap_or_default();
+            forces.unwrap_or_default()
+        } else {
+            let projection = self.robot.project_on_platform();
+            self.robot
+                .generalised_forces(&motion, &projection, &values, actuators)
+        };
+        if !matches!(self.owner, Owner::Leg(_)) {
+            add_to(
+                &mut forces,
+                self.robot.point_spring_forces(&motion, &values),
+            );
         }
-        let projection = self.robot.project_on_platform();
-        self.robot
-            .generalised_forces(&motion, &projection, &values, actuators)
+        forces
     }
 
     /// τ = J (JᵀJ)⁻¹ Γ¹, the torques of least norm; J⁻ᵀ Γ¹ if J is square.

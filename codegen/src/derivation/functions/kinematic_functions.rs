@@ -6,7 +6,6 @@ use crate::derivation::context::DerivationContext;
 use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::names::coordinate_label;
-use crate::mechanism::{JointIndex, JointKind};
 
 impl<'a> DerivationContext<'a, '_> {
     /// The twist: an input, or the least-squares fit of the actuators' velocities.
@@ -53,31 +52,11 @@ impl<'a> DerivationContext<'a, '_> {
 
     /// Positions of all joints, within half a turn of the home configuration.
     pub(crate) fn joint_positions(&mut self) -> Vec<Expr<'a>> {
-        let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
-        let configuration = &self.robot.configuration;
-        let position = |(index, of): (usize, &JointIndex)| {
-            if mechanism.is_tree() || configuration.from() == MotionInput::Joints {
-                return arena.input("joints", index);
-            }
-            if let Some(position) = configuration.in_pose(index) {
-                return position;
-            }
-            if mechanism.joint(*of).kind == JointKind::Prismatic {
-                return configuration
-                    .joint_position(index)
-                    .unwrap_or_else(|| arena.zero());
-            }
-            let home = mechanism.home.joints[index];
-            match configuration.unit(&configuration.joint_angle(index)) {
-                Some(unit) => unit.angle_near(arena, home),
-                None => arena.zero(),
-            }
-        };
-        mechanism
-            .joints()
-            .iter()
-            .enumerate()
-            .map(position)
+        let robot = &self.robot;
+        let position = |index| robot.joint_position(index);
+        let count = robot.mechanism.joints().len();
+        (0..count)
+            .map(|index| position(index).unwrap_or_else(|| robot.arena.zero()))
             .collect()
     }
 

@@ -222,8 +222,8 @@ impl<'a> Configuration<'a> {
         own.filter(|_| element.array == POSE)
     }
 
-    /// Whether the angle contains no joint.
-    fn is_input(&self, angle: &Direction) -> bool {
+    /// Whether the angle contains no joint but those in the pose.
+    pub(crate) fn is_input(&self, angle: &Direction) -> bool {
         angle
             .terms()
             .iter()

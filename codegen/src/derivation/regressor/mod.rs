@@ -117,6 +117,14 @@ impl<'a> Robot<'a> {
                 let force = self.joint_force(motion, JointIndex { leg, joint }, symbol);
                 row.iter().map(|&g| g * force).collect()
             }
+            BodyParameter::Spring(index) => {
+                let forces = self.point_spring_column(motion, index);
+                if projection.on_platform {
+                    forces
+                } else {
+                    self.combine(&projection.platform, &forces)
+                }
+            }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
                 self.arena.enter("platform");
                 let body = motion.platform.as_ref();

@@ -23,7 +23,7 @@ use crate::derivation::linear_algebra::linear::apply;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::names::{Accelerations, coordinate_label, joined};
 use crate::derivation::selection::Formulation;
-use crate::mechanism::{Mechanism, TwistCoordinate};
+use crate::mechanism::{JointKind, Mechanism, TwistCoordinate};
 use std::cell::RefCell;
 
 /// The derivation of a robot.
@@ -185,6 +185,7 @@ impl<'a> Robot<'a> {
             both.map(|(pose, motion)| PlatformBody::new(pose, motion, gravity, mount))
         };
         let mut motion = RobotMotion {
+            twist: twist.to_vec(),
             u: vec![],
             u_dot: vec![],
             bodies: vec![],
@@ -284,6 +285,26 @@ impl<'a> Robot<'a> {
         }
         self.arena.enter("");
         rows
+    }
+
+    /// Position of a joint of q_t, rad or m.
+    ///
+    /// Passive angles are arc tangents within half a turn of the home configuration. `None` if the
+    /// configuration does not determine it.
+    pub(crate) fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
+        let configuration = &self.configuration;
+        if configuration.from() == MotionInput::Joints {
+            return Some(self.arena.input("joints", index));
+        }
+        if let Some(position) = configuration.in_pose(index) {
+            return Some(position);
+        }
+        let kind = self.mechanism.joint(self.mechanism.joints()[index]).kind;
+        if kind == JointKind::Prismatic {
+            return configuration.joint_position(index);
+        }
+        let unit = configuration.unit(&configuration.joint_angle(index))?;
+        Some(unit.angle_near(self.arena, self.mechanism.home.joints[index]))
     }
 
     /// Values for all joints of q_t of their forms of quasi-velocities.

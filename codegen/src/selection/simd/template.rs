@@ -4,7 +4,7 @@ use super::fields::{angles, names_of_angles, names_of_numbers, numbers};
 use super::placeholders::{Constant, Placeholders};
 use crate::cas::{Angle, Arena, InputElement, Number};
 use crate::derivation::working_modes;
-use crate::mechanism::{Leg, Mechanism};
+use crate::mechanism::{Joint, Leg, Mechanism};
 
 /// Name of the array.
 pub(super) const ARRAY: &str = "of_leg";
@@ -24,6 +24,14 @@ impl Template {
         let [first, others @ ..] = &mechanism.legs[..] else {
             return None;
         };
+        // The home angles of passive joints, near which formulas take them, differ between legs, and
+        // known torques belong to no parameter of a leg.
+        let is_one =
+            |joint: &Joint| joint.spring.is_some() || joint.known.is_some() || joint.load.is_some();
+        let has_formula = |leg: &Leg| leg.joints.iter().any(is_one);
+        if !mechanism.springs.is_empty() || mechanism.legs.iter().any(has_formula) {
+            return None;
+        }
         if others.is_empty() || !others.iter().all(|leg| shape(leg) == shape(first)) {
             return None;
         }

@@ -69,5 +69,6 @@ pub fn dualv() -> Mechanism {
         home: vec![0.0; 3],
         workspace: vec![0.1, 0.1, 0.4],
         legs: (0..4).map(leg).collect(),
+        elements: Vec::new(),
     }
 }

@@ -79,6 +79,7 @@ pub fn two_slides() -> Mechanism {
         home: vec![0.1],
         workspace: vec![0.3],
         legs: vec![direct, inclined],
+        elements: Vec::new(),
     }
 }
 
@@ -120,5 +121,6 @@ fn point_robot(legs: Vec<Leg>, home: Vec<f64>, gravity: [f64; 3]) -> Mechanism {
         home,
         workspace: vec![0.1, 0.1],
         legs,
+        elements: Vec::new(),
     }
 }

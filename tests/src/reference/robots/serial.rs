@@ -42,6 +42,7 @@ pub fn serial_3r() -> Mechanism {
             end: End::Free,
             start: vec![0.3, -0.4, 0.7],
         }],
+        elements: Vec::new(),
     }
 }
 
@@ -85,5 +86,6 @@ pub fn branched_arm() -> Mechanism {
             end: End::Free,
             start,
         }],
+        elements: Vec::new(),
     }
 }

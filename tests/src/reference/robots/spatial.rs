@@ -82,6 +82,7 @@ fn ups_robot(motion: Motion, base: &[f64], platform: &[f64], height: f64) -> Mec
         home,
         workspace,
         legs,
+        elements: Vec::new(),
     }
 }
 

@@ -42,6 +42,7 @@ pub fn delta() -> Mechanism {
         home: vec![0.0, 0.0, -0.5],
         workspace: vec![0.15, 0.15, 0.12],
         legs: (0..3).map(leg).collect(),
+        elements: Vec::new(),
     }
 }
 
@@ -85,5 +86,6 @@ pub fn tilted_tripteron() -> Mechanism {
         home: vec![0.0; 3],
         workspace: vec![0.1; 3],
         legs: (0..3).map(leg).collect(),
+        elements: Vec::new(),
     }
 }

@@ -56,6 +56,7 @@ impl Sketch {
             home: self.pose(),
             workspace: Vec::new(),
             legs: self.shapes.iter().flat_map(of_shape).collect(),
+            elements: Vec::new(),
         }
     }
 
