@@ -1,0 +1,8 @@
+//! Online estimation: filter, forgetting, change test and state-variable filters.
+
+mod change;
+mod filter;
+mod forgetting;
+mod random;
+mod robustness;
+mod state_variable;
