@@ -42,3 +42,9 @@ impl<T: Float> Innovation<T> {
         }
     }
 }
+
+impl<T: Float> Default for Innovation<T> {
+    fn default() -> Self {
+        Self::undetermined()
+    }
+}

@@ -18,6 +18,7 @@
 //! | [`Filter`] | estimate and covariance of P parameters, with or without prior |
 //! | [`Forgetting`] | old information loses weight: not at all, exponentially, along excited directions |
 //! | [`ChangeTest`] | two-sided CUSUM of innovations with a given rate of false alarms |
+//! | [`Whitening`] | innovations without correlation in time, for the change test |
 //! | [`StateVariableFilter`] | q, q̇, q̈ from positions, and torques with the same delay |
 //! | [`SliceFilter`] | the filter for a number of parameters known at run time |
 //!
@@ -36,6 +37,7 @@ mod innovation;
 mod slices;
 mod state_variable;
 mod triangle;
+mod whitening;
 
 pub use change::{Change, ChangeTest};
 pub use error::Error;
@@ -44,3 +46,4 @@ pub use forgetting::Forgetting;
 pub use innovation::Innovation;
 pub use slices::SliceFilter;
 pub use state_variable::{Signal, StateVariableFilter};
+pub use whitening::Whitening;

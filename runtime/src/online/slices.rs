@@ -175,15 +175,57 @@ impl<'a, T: Float> SliceFilter<'a, T> {
         self.add(row, y, sigma)
     }
 
+    /// Adds the rows of one sample: m rows, right sides, standard deviations and innovations.
+    ///
+    /// Exponential forgetting acts once, as in [`Filter::update_block`](super::Filter::update_block).
+    ///
+    /// # Errors
+    /// As [`update`](Self::update), for any of the rows. The state is then unchanged.
+    ///
+    /// ```
+    /// use overact::online::{Innovation, SliceFilter};
+    ///
+    /// let (mut factor, mut vectors) = (vec![0.0; 1], vec![0.0; 4]);
+    /// let mut filter = SliceFilter::without_prior(&mut factor, &mut vectors)?;
+    /// let mut innovations = [Innovation::default(); 2];
+    /// filter.update_block(&[1.0, 2.0], &[3.0, 6.0], &[1.0, 1.0], &mut innovations)?;
+    /// assert!(innovations[1].residual.abs() < 1e-12_f64);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
+    pub fn update_block(
+        &mut self,
+        rows: &[T],
+        y: &[T],
+        sigma: &[T],
+        innovations: &mut [Innovation<T>],
+    ) -> Result<(), Error> {
+        let (count, found) = (y.len(), [rows.len(), sigma.len(), innovations.len()]);
+        for (expected, found) in [count * self.side.len(), count, count]
+            .into_iter()
+            .zip(found)
+        {
+            if expected != found {
+                return Err(Error::Length { expected, found });
+            }
+        }
+        let width = self.side.len().max(1);
+        let inputs = || rows.chunks_exact(width).zip(y).zip(sigma);
+        for ((row, y), sigma) in inputs() {
+            self.check(row, *y, *sigma)?;
+        }
+        self.begin();
+        for (innovation, ((row, y), sigma)) in innovations.iter_mut().zip(inputs()) {
+            *innovation = self.add(row, *y, *sigma)?;
+        }
+        Ok(())
+    }
+
     /// Checks a row, without any change.
     ///
     /// # Errors
     /// Those of [`update`](Self::update).
     pub(super) fn check(&self, row: &[T], y: T, sigma: T) -> Result<(), Error> {
-        let (expected, found) = (self.side.len(), row.len());
-        if expected != found {
-            return Err(Error::Length { expected, found });
-        }
+        self.check_length(row)?;
         let weight = bounds::weight(sigma)?;
         bounds::check("row", row, weight)?;
         bounds::check("y", &[y], weight)
@@ -225,18 +267,15 @@ impl<'a, T: Float> SliceFilter<'a, T> {
             *own = *entry * weight;
         }
         let rest = triangle::rotate_in(self.factor, self.side, self.row, y * weight, 0);
-        let was_regular = self.status.is_regular;
-        if !was_regular {
+        if !self.status.is_regular {
             self.status.is_regular = triangle::is_regular(self.factor, self.side.len());
         }
         self.status.squares += rest.side * rest.side;
         // A row that determines one more parameter has no residual.
-        if rest.cosines > bounds::regular() {
-            self.status.rows += one;
-        }
-        if !(was_regular && rest.cosines > T::ZERO) {
+        if rest.cosines <= bounds::regular() {
             return Ok(Innovation::undetermined());
         }
+        self.status.rows += one;
         let standard_deviation = sigma / rest.cosines;
         Ok(Innovation {
             residual: rest.side * standard_deviation,
@@ -311,16 +350,59 @@ impl<'a, T: Float> SliceFilter<'a, T> {
         }
     }
 
+    /// Writes the estimates and standard deviations of the parameters that the rows determine.
+    ///
+    /// The others are NaN. A parameter counts as determined if its estimate depends on no
+    /// undetermined one, in the order of the columns. So put columns that are excited late, such as
+    /// those of a payload, last.
+    ///
+    /// # Errors
+    /// [`Error::Length`].
+    ///
+    /// ```
+    /// use overact::online::SliceFilter;
+    ///
+    /// let (mut factor, mut vectors) = (vec![0.0; 4], vec![0.0; 8]);
+    /// let mut filter = SliceFilter::without_prior(&mut factor, &mut vectors)?;
+    /// filter.update(&[2.0, 0.0], 6.0, 1.0)?;
+    /// let (mut values, mut deviations) = ([0.0_f64; 2], [0.0_f64; 2]);
+    /// filter.determined(&mut values, &mut deviations)?;
+    /// assert_eq!((values[0], deviations[0]), (3.0, 0.5));
+    /// assert!(values[1].is_nan() && deviations[1].is_nan());
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
+    pub fn determined(&mut self, values: &mut [T], deviations: &mut [T]) -> Result<(), Error> {
+        self.check_length(values)?;
+        self.check_length(deviations)?;
+        triangle::solve_determined(self.factor, self.side, values);
+        for (place, (value, deviation)) in values.iter_mut().zip(deviations).enumerate() {
+            *deviation = T::NAN;
+            if !value.is_finite() {
+                *value = T::NAN;
+            } else if triangle::inverse_row(self.factor, place, self.work) {
+                let squares = self.work.iter().skip(place).map(|u| *u * *u);
+                *deviation = squares.sum::<T>().sqrt();
+            }
+        }
+        Ok(())
+    }
+
     /// Checks that there is an estimate and that it has the length of a slice.
     fn check_output(&self, output: &[T]) -> Result<(), Error> {
-        let (expected, found) = (self.side.len(), output.len());
-        if expected != found {
-            return Err(Error::Length { expected, found });
-        }
+        self.check_length(output)?;
         if self.status.is_regular {
             Ok(())
         } else {
             Err(Error::NotDetermined)
+        }
+    }
+
+    fn check_length(&self, slice: &[T]) -> Result<(), Error> {
+        let (expected, found) = (self.side.len(), slice.len());
+        if expected == found {
+            Ok(())
+        } else {
+            Err(Error::Length { expected, found })
         }
     }
 

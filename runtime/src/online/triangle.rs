@@ -211,6 +211,30 @@ pub(super) fn solve<T: Float>(factor: &[T], side: &[T], solution: &mut [T]) -> b
     is_finite
 }
 
+/// Solves R χ = z for the parameters that do not depend on undetermined ones; the others are NaN.
+///
+/// A parameter is undetermined if its diagonal entry is zero within rounding of its column.
+pub(super) fn solve_determined<T: Float>(factor: &[T], side: &[T], solution: &mut [T]) {
+    for (place, (row, z)) in rows(factor, side).rev() {
+        let diagonal = row.get(place).copied().unwrap_or(T::ZERO);
+        let mut rest = *z;
+        for (r, x) in row.iter().zip(solution.iter()).skip(place + 1) {
+            if r.abs() > T::ZERO {
+                rest -= *r * *x;
+            }
+        }
+        let limit = bounds::regular::<T>() * column_length(factor, side.len(), place);
+        let is_determined = diagonal >= bounds::smallest::<T>() && diagonal > limit;
+        if let Some(x) = solution.get_mut(place) {
+            *x = if is_determined {
+                rest / diagonal
+            } else {
+                T::NAN
+            };
+        }
+    }
+}
+
 /// Row `place` of R⁻¹. Whether all its numbers are finite.
 pub(super) fn inverse_row<T: Float>(factor: &[T], place: usize, inverse: &mut [T]) -> bool {
     let count = inverse.len();
@@ -228,7 +252,12 @@ pub(super) fn inverse_row<T: Float>(factor: &[T], place: usize, inverse: &mut [T
         let Some((diagonal, entry)) = pairs.next() else {
             break;
         };
-        let own = -*entry / *diagonal;
+        // Columns of zeros have no diagonal entry, and rows above do not refer to them.
+        let own = if entry.abs() > T::ZERO {
+            -*entry / *diagonal
+        } else {
+            T::ZERO
+        };
         *entry = own;
         is_finite &= own.is_finite();
         for (r, sum) in pairs {

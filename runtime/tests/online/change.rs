@@ -1,7 +1,7 @@
 //! Rate of false alarms and delay of detection of the change test.
 
 use super::random::Random;
-use overact::online::{Change, ChangeTest, Error};
+use overact::online::{Change, ChangeTest, Error, Whitening};
 use overact_tier::by_tier;
 
 #[test]
@@ -55,4 +55,29 @@ fn settings_out_of_range_are_errors() {
         assert!(matches!(error, Error::Setting { .. }));
     }
     assert!(ChangeTest::<f32>::new(1.0, 1e6).is_ok());
+}
+
+#[test]
+fn whitened_innovations_have_the_stated_rate() {
+    let samples = 1000.0;
+    for correlation in [0.9, -0.5] {
+        let mut random = Random(13);
+        let mut alarms = [0; 2];
+        let mut tests = [ChangeTest::new(1.0, samples).unwrap(); 2];
+        let (mut whitening, mut state) = (Whitening::new(), 0.0);
+        let count = by_tier([200_000, 5_000_000]);
+        for _ in 0..count {
+            let scale = f64::sqrt(1.0 - correlation * correlation);
+            state = correlation * state + scale * random.normal();
+            let white = whitening.update(state);
+            for ((test, number), alarms) in tests.iter_mut().zip([state, white]).zip(&mut alarms) {
+                *alarms += u32::from(test.update(number).is_some());
+            }
+        }
+        let found = f64::from(count) / f64::from(alarms[1]);
+        println!("correlation {correlation}: {found:.0} samples, {alarms:?} alarms");
+        assert!(found > 0.6 * samples && found < 1.6 * samples, "{found}");
+        // Without whitening the rate would be off by far for positive correlation.
+        assert!(correlation < 0.0 || alarms[0] > 10 * alarms[1]);
+    }
 }
