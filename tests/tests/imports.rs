@@ -160,6 +160,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "judgement",
             "layout",
             "line_errors",
+            "online",
             "terminal",
             "parameters_file",
             "summary",

@@ -20,6 +20,7 @@
 //! | [`ChangeTest`] | two-sided CUSUM of innovations with a given rate of false alarms |
 //! | [`Whitening`] | innovations without correlation in time, for the change test |
 //! | [`StateVariableFilter`] | q, q̇, q̈ from positions, and torques with the same delay |
+//! | [`PayloadEstimator`] | mass, centre and inertia of a payload, physically consistent |
 //! | [`SliceFilter`] | the filter for a number of parameters known at run time |
 //!
 //! All items work with `f64` and `f32`. None allocates or panics. Numbers that are not finite or
@@ -34,6 +35,7 @@ mod error;
 mod filter;
 mod forgetting;
 mod innovation;
+mod payload;
 mod slices;
 mod state_variable;
 mod triangle;
@@ -44,6 +46,7 @@ pub use error::Error;
 pub use filter::Filter;
 pub use forgetting::Forgetting;
 pub use innovation::Innovation;
+pub use payload::{Payload, PayloadEstimator, PayloadSize};
 pub use slices::SliceFilter;
 pub use state_variable::{Signal, StateVariableFilter};
 pub use whitening::Whitening;

@@ -187,9 +187,9 @@ impl<'a, T: Float> SliceFilter<'a, T> {
     ///
     /// let (mut factor, mut vectors) = (vec![0.0; 1], vec![0.0; 4]);
     /// let mut filter = SliceFilter::without_prior(&mut factor, &mut vectors)?;
-    /// let mut innovations = [Innovation::default(); 2];
+    /// let mut innovations = [Innovation::<f64>::default(); 2];
     /// filter.update_block(&[1.0, 2.0], &[3.0, 6.0], &[1.0, 1.0], &mut innovations)?;
-    /// assert!(innovations[1].residual.abs() < 1e-12_f64);
+    /// assert!(innovations[1].residual.abs() < 1e-12);
     /// # Ok::<(), overact::online::Error>(())
     /// ```
     pub fn update_block(

@@ -3,6 +3,7 @@
 mod change;
 mod filter;
 mod forgetting;
+mod payload;
 mod random;
 mod robustness;
 mod state_variable;
