@@ -1,5 +1,6 @@
 //! Online estimation: filter, forgetting, change test and state-variable filters.
 
+mod c;
 mod change;
 mod filter;
 mod forgetting;
