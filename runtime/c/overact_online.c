@@ -558,7 +558,7 @@ void overact_online_whitening_init(overact_online_whitening *whitening)
     whitening->variance = (number)1.0;
     whitening->covariance = (number)0.0;
     whitening->last = (number)0.0;
-    whitening->gain = (number)1e-3;
+    whitening->count = (number)20.0;
 }
 
 overact_online_number overact_online_whitening_update(
@@ -568,6 +568,7 @@ overact_online_number overact_online_whitening_update(
     number variance;
     number white;
     number limited;
+    number gain;
     if (!isfinite(x)) {
         return (number)0.0;
     }
@@ -575,9 +576,12 @@ overact_online_number overact_online_whitening_update(
     variance = whitening->variance * ((number)1.0 - correlation * correlation);
     white = (x - correlation * whitening->last) / ROOT(variance);
     limited = bounded(x, (number)6.0 * ROOT(whitening->variance));
-    whitening->variance += whitening->gain * (limited * limited - whitening->variance);
+    gain = (number)1.0 / whitening->count;
+    whitening->variance += gain * (limited * limited - whitening->variance);
     whitening->variance = larger(whitening->variance, (number)1e-6);
-    whitening->covariance += whitening->gain * (limited * whitening->last - whitening->covariance);
+    whitening->covariance += gain * (limited * whitening->last - whitening->covariance);
     whitening->last = limited;
+    whitening->count = whitening->count + (number)1.0;
+    whitening->count = (whitening->count < (number)1000.0) ? whitening->count : (number)1000.0;
     return white;
 }

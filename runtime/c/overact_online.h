@@ -135,7 +135,7 @@ typedef struct {
     overact_online_number variance;
     overact_online_number covariance;
     overact_online_number last;
-    overact_online_number gain;
+    overact_online_number count;
 } overact_online_whitening;
 
 void overact_online_whitening_init(overact_online_whitening *whitening);

@@ -23,6 +23,8 @@
 //! | [`PayloadEstimator`] | mass, centre and inertia of a payload, physically consistent |
 //! | [`SliceFilter`] | the filter for a number of parameters known at run time |
 //!
+//! [`C_FILES`] are the same estimators in C.
+//!
 //! All items work with `f64` and `f32`. None allocates or panics. Numbers that are not finite or
 //! too large are rejected and leave the state unchanged. A regular R stays regular.
 //!
@@ -30,6 +32,7 @@
 //! forgetting there.
 
 mod bounds;
+mod c_files;
 mod change;
 mod error;
 mod filter;
@@ -41,6 +44,7 @@ mod state_variable;
 mod triangle;
 mod whitening;
 
+pub use c_files::{C_FILES, CFile};
 pub use change::{Change, ChangeTest};
 pub use error::Error;
 pub use filter::Filter;

@@ -11,8 +11,8 @@ use crate::float::Float;
 /// (eₖ - a eₖ₋₁) / √(v (1 - a²)),
 ///
 /// independent numbers of variance 1 if e is a first-order autoregressive sequence of variance v.
-/// a and v are averages over a memory, by default 1000 numbers, beginning with a = 0 and v = 1. A
-/// shift of the mean by δ becomes one by δ √((1 - a)/(1 + a)). Residual control charts do the same
+/// a and v are averages over a memory of 1000 numbers, beginning with a = 0 and v = 1, which count as
+/// 20 numbers. A shift of the mean by δ becomes one by δ √((1 - a)/(1 + a)). Residual control charts do the same
 /// (Montgomery and Mastrangelo, *Journal of Quality Technology* 23, 1991).
 ///
 /// ```
@@ -32,9 +32,15 @@ pub struct Whitening<T = f64> {
     /// Mean of eₖ eₖ₋₁.
     covariance: T,
     last: T,
-    /// Weight of a new number in the means.
-    gain: T,
+    /// Number of numbers in the means, up to the memory.
+    count: T,
 }
+
+/// Numbers that the means remember.
+const MEMORY: f64 = 1000.0;
+
+/// Numbers that the initial means count as.
+const START: f64 = 20.0;
 
 /// Largest correlation that is removed.
 const LARGEST: f64 = 0.999;
@@ -53,7 +59,7 @@ impl<T: Float> Whitening<T> {
             variance: T::of(1.0),
             covariance: T::ZERO,
             last: T::ZERO,
-            gain: T::of(1e-3),
+            count: T::of(START),
         }
     }
 
@@ -78,10 +84,12 @@ impl<T: Float> Whitening<T> {
         let most = T::of(6.0) * self.variance.sqrt();
         let bounded = number.max(-most).min(most);
         let smallest = T::of(1e-6);
-        self.variance += self.gain * (bounded * bounded - self.variance);
+        let gain = T::of(1.0) / self.count;
+        self.variance += gain * (bounded * bounded - self.variance);
         self.variance = self.variance.max(smallest);
-        self.covariance += self.gain * (bounded * self.last - self.covariance);
+        self.covariance += gain * (bounded * self.last - self.covariance);
         self.last = bounded;
+        self.count = (self.count + one).min(T::of(MEMORY));
         white
     }
 }

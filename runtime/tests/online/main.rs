@@ -5,6 +5,7 @@ mod change;
 mod filter;
 mod forgetting;
 mod payload;
+mod pick_up;
 mod random;
 mod robustness;
 mod state_variable;

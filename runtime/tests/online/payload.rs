@@ -79,8 +79,10 @@ fn pseudo_inertia(p: &[f64; 10]) -> [[f64; 4]; 4] {
 }
 
 fn is_consistent(payload: &Payload) -> bool {
-    let smallest = eigenvalues(pseudo_inertia(&payload.parameters));
-    payload.mass > 0.0 && smallest.iter().all(|one| *one > 0.0)
+    let values = eigenvalues(pseudo_inertia(&payload.parameters));
+    let largest = values.iter().fold(0.0_f64, |most, one| most.max(*one));
+    // Zero within rounding of the largest is as definite as numbers can be.
+    payload.mass > 0.0 && values.iter().all(|one| *one > -1e-12 * largest)
 }
 
 /// An estimator after random rows of a body, with noise.
