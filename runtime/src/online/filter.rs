@@ -97,30 +97,27 @@ impl<const P: usize, T: Float> Filter<P, T> {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn from_covariance(prior: [T; P], covariance: [[T; P]; P]) -> Result<Self, Error> {
-        let mut lower = covariance;
-        for row in 0..P {
-            for column in 0..=row {
-                let mut rest = covariance[row][column];
-                for k in 0..column {
-                    rest -= lower[row][k] * lower[column][k];
-                }
-                lower[row][column] = if column < row {
-                    rest / lower[column][column]
-                } else if rest > T::of(T::LIMITS.pivot) * covariance[row][row] && rest.is_finite() {
-                    rest.sqrt()
-                } else {
-                    return Err(Error::NotPositiveDefinite);
-                };
-            }
-        }
+        let lower = cholesky(&covariance).ok_or(Error::NotPositiveDefinite)?;
         let mut inverse = [[T::ZERO; P]; P];
-        for column in 0..P {
-            for row in column..P {
-                let mut rest = T::of(f64::from(u8::from(row == column)));
-                for k in column..row {
-                    rest -= lower[row][k] * inverse[k][column];
+        for place in 0..P {
+            // Column `place` of L⁻¹, from L x = e.
+            let mut column = [T::ZERO; P];
+            let rows = lower.iter().enumerate().skip(place);
+            for (row, entries) in rows {
+                let known = entries.iter().zip(&column).take(row).map(|(l, x)| *l * *x);
+                let mut rest = -known.sum::<T>();
+                if row == place {
+                    rest += T::of(1.0);
                 }
-                inverse[row][column] = rest / lower[row][row];
+                let diagonal = entries.get(row).copied().unwrap_or(T::ZERO);
+                column
+                    .iter_mut()
+                    .skip(row)
+                    .take(1)
+                    .for_each(|x| *x = rest / diagonal);
+            }
+            for (row, x) in inverse.iter_mut().zip(&column) {
+                row.iter_mut().skip(place).take(1).for_each(|to| *to = *x);
             }
         }
         Self::new(prior, inverse)
@@ -367,4 +364,27 @@ impl<const P: usize, T: Float> Filter<P, T> {
         self.status = slices.status();
         result
     }
+}
+
+/// L with L Lᵀ = A of a symmetric A, whose lower triangle is read; `None` unless A is positive
+/// definite within rounding.
+fn cholesky<const P: usize, T: Float>(matrix: &[[T; P]; P]) -> Option<[[T; P]; P]> {
+    let mut lower = [[T::ZERO; P]; P];
+    for (place, entries) in matrix.iter().enumerate() {
+        let mut row = [T::ZERO; P];
+        for (column, other) in lower.iter().enumerate().take(place) {
+            let known = row.iter().zip(other).take(column).map(|(a, b)| *a * *b);
+            let rest = *entries.get(column)? - known.sum::<T>();
+            *row.get_mut(column)? = rest / *other.get(column)?;
+        }
+        let square = row.iter().take(place).map(|x| *x * *x).sum::<T>();
+        let diagonal = *entries.get(place)?;
+        let rest = diagonal - square;
+        if !(rest > T::of(T::LIMITS.pivot) * diagonal && rest.is_finite()) {
+            return None;
+        }
+        *row.get_mut(place)? = rest.sqrt();
+        *lower.get_mut(place)? = row;
+    }
+    Some(lower)
 }

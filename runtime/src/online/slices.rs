@@ -147,7 +147,9 @@ impl<'a, T: Float> SliceFilter<'a, T> {
         for row in square_root.chunks_exact(count.max(1)) {
             let side = row.iter().zip(prior).map(|(s, x)| *s * *x).sum();
             bounds::check("square_root_information", &[side], T::of(1.0))?;
-            self.row.copy_from_slice(row);
+            for (own, entry) in self.row.iter_mut().zip(row) {
+                *own = *entry;
+            }
             triangle::rotate_in(self.factor, self.side, self.row, side, 0);
         }
         triangle::make_diagonal_nonnegative(self.factor, self.side);
@@ -156,9 +158,9 @@ impl<'a, T: Float> SliceFilter<'a, T> {
             self.side.fill(T::ZERO);
             return Err(Error::NotPositiveDefinite);
         }
-        let diagonal = self.factor.iter().step_by(count + 1);
-        for (floor, entry) in self.floors.iter_mut().zip(diagonal) {
-            *floor = *entry;
+        for (place, floor) in self.floors.iter_mut().enumerate() {
+            let entry = self.factor.get(place * count + place);
+            *floor = entry.copied().unwrap_or(T::ZERO);
         }
         self.status.is_regular = true;
         Ok(())

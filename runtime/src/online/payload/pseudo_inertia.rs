@@ -119,11 +119,8 @@ pub(super) fn transformed<T: Float>(lower: &Triangle<T>, entry: usize) -> Triang
     let [p, q] = ENTRIES.get(entry).copied().unwrap_or_default();
     // Column `column` of N.
     let at = |row: usize, column: usize| {
-        if row >= column {
-            lower[place(row, column)]
-        } else {
-            T::ZERO
-        }
+        let own = lower.get(place(row, column)).filter(|_| row >= column);
+        own.copied().unwrap_or(T::ZERO)
     };
     let root = T::of(core::f64::consts::SQRT_2);
     let mut result = [T::ZERO; 10];
