@@ -37,7 +37,7 @@
 //! | `with_avx`, `units`, `blocks` | vectorisation; plausible ranges of quantities; evaluation of a model in blocks |
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series for plots |
 //! | [`filters`] | zero-phase filtering, decimation, differences |
-//! | `prior`, `settings` | prior values of standard parameters; settings of an identification |
+//! | `prior`, `online_settings`, `settings` | prior values of standard parameters; settings of an identification |
 //! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
 //! | `regression` | columns of the model; decimated systems (39)-(41) of all projections, as R factors |
 //! | `estimation` | base parameters (42)-(43), least squares with standard deviations (44)-(48), elimination |
@@ -46,6 +46,7 @@
 //! | `gravity` | direction of gravity, together with the parameters |
 //! | `validation` | prediction and measurement on any run |
 //! | `result` | results on estimates and runs |
+//! | `online` | replay of the runs through the online filter |
 //! | `consistent` | physically consistent standard parameters |
 //! | `assessment` | checks of data, model, fit and extrapolation, and the verdict |
 //! | `identify` | the procedure and its result |
@@ -62,6 +63,8 @@ mod gains;
 mod gravity;
 mod identify;
 mod kinematics;
+mod online;
+mod online_settings;
 mod prior;
 mod regression;
 mod result;
@@ -100,6 +103,8 @@ pub use identify::{
     tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};
+pub use online::{OnlineChange, OnlineEstimate};
+pub use online_settings::{ForgettingRule, OnlineSettings};
 pub use overact_logs::{
     Dataset, Error, Gain, Load, Log, Mapping, Periods, Problem, Scales, Time, Variant, called,
     significant, titled,

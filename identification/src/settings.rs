@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     filters::{DECIMATION_PADDING, Decimator, butterworth, settling},
+    online_settings::OnlineSettings,
     prior::Prior,
 };
 use overact_logs::{Error, Problem};
@@ -176,6 +177,9 @@ pub struct Settings {
     pub kept_actuators: Vec<usize>,
     /// Seed of the random states for the base parameters.
     pub seed: u64,
+    /// Replay of the runs through the online filter, if requested.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub online: Option<OnlineSettings>,
 }
 
 /// Default order of differences.
@@ -224,6 +228,7 @@ impl Settings {
             known: BTreeMap::new(),
             kept_actuators: info.kept_actuators.to_vec(),
             seed: 1,
+            online: None,
         }
     }
 

@@ -25,6 +25,7 @@ mod judgement;
 pub mod layout;
 mod line_errors;
 pub mod numbers;
+mod online;
 pub mod page;
 mod parameters_file;
 mod plot;

@@ -31,7 +31,8 @@
 //! The runtime has the [`Model`] trait, [`Error`], a few functions of [`math`], and the macro
 //! `#[redundant_robot("robot.toml")]`. Forward kinematics is in [`forward`], numeric inverse
 //! kinematics in [`inverse`], poses of platforms with parasitic motion in [`parasitic_motion`], and the
-//! actuator projection for any kept actuators in [`partition`].
+//! actuator projection for any kept actuators in [`partition`]. [`online`] estimates parameters while
+//! the robot moves.
 //!
 //! The crate is `no_std` and allocates nothing. Its features are:
 //!
@@ -59,6 +60,7 @@ pub mod guard;
 pub mod inverse;
 pub mod math;
 pub mod model;
+pub mod online;
 pub mod parasitic_motion;
 pub mod partition;
 pub mod simd;

@@ -15,7 +15,8 @@ use clap::ValueEnum;
 use overact::Model;
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    CalibrationScope, CheckScope, Grade, Identification, Progress as Doing,
+    CalibrationScope, CheckScope, ForgettingRule, Grade, Identification, OnlineSettings,
+    Progress as Doing,
 };
 use overact_report::Extent;
 use overact_robot::{Identifier, tracking};
@@ -33,7 +34,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     runs: runs::Arguments,
     /// Factor files (`overact factor`) instead of logs
-    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "parameters", "strict", "all", "tables", "reports", "published"])]
+    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "online", "parameters", "strict", "all", "tables", "reports", "published"])]
     factors: Vec<PathBuf>,
     /// Skip unusable parts of factor files, and report them
     #[arg(long, requires = "factors")]
@@ -79,6 +80,14 @@ pub(crate) struct Arguments {
     /// [default: that of the description]
     #[arg(long, conflicts_with = "gains")]
     gravity_direction: bool,
+    /// Replay the runs through the online filter: parameters with standard deviations over time,
+    /// and detected changes
+    #[arg(long)]
+    online: bool,
+    /// How old data lose weight in the replay: `none`, `exponential:FACTOR` or `directional:FACTOR`
+    /// per decimated sample, with a factor from 0 to 1
+    #[arg(long, value_name = "RULE", requires = "online", value_parser = forgetting)]
+    forgetting: Option<ForgettingRule>,
     /// Write the description with the calibrated offsets and lengths
     #[arg(long, value_name = "TOML", requires = "calibrate")]
     calibrated_robot: Option<PathBuf>,
@@ -129,6 +138,25 @@ impl From<Scope> for CalibrationScope {
     }
 }
 
+/// Rule of forgetting from its text.
+fn forgetting(text: &str) -> Result<ForgettingRule, String> {
+    let (rule, factor) = text.split_once(':').unwrap_or((text, ""));
+    let factor = || match factor.parse::<f64>() {
+        Ok(factor) if factor > 0.0 && factor <= 1.0 => Ok(factor),
+        _ => Err(format!(
+            "`{rule}` needs a factor above 0 and at most 1, as in `{rule}:0.999`"
+        )),
+    };
+    match rule {
+        "none" if text == rule => Ok(ForgettingRule::None),
+        "exponential" => factor().map(ForgettingRule::Exponential),
+        "directional" => factor().map(ForgettingRule::Directional),
+        _ => Err(String::from(
+            "the rules are `none`, `exponential:FACTOR` and `directional:FACTOR`",
+        )),
+    }
+}
+
 /// Runs the command.
 ///
 /// # Errors
@@ -156,6 +184,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let mut settings = arguments.runs.settings(&robot, &runs);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
     settings.checks = arguments.checks.into();
+    settings.online = arguments.online.then(|| OnlineSettings {
+        forgetting: arguments.forgetting.unwrap_or_default(),
+        ..OnlineSettings::default()
+    });
     let scope = arguments.calibrate.map(CalibrationScope::from);
     let identifier = Identifier::new(&robot).data(&runs).settings(settings);
     let identifier = if arguments.gains {

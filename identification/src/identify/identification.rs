@@ -25,6 +25,7 @@ use crate::{
     estimation::{base::BaseParameters, instruments::regressor::ErrorsInRegressor},
     gains::{DriveGain, JointParameter},
     gravity::GravityDirection,
+    online::OnlineEstimate,
     regression::columns::ColumnSet,
     result::{
         CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, Regrouping,
@@ -98,6 +99,9 @@ pub struct Identification {
     /// Table 4, if controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,
+    /// Base parameters of the first model over time, if a replay was requested.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub online: Vec<OnlineEstimate>,
     /// Effect of regressor errors, for each model.
     pub errors_in_regressor: Vec<ErrorsInRegressor>,
     /// The settings used.

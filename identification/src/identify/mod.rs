@@ -41,6 +41,7 @@ use crate::{
     estimation::instruments::regressor::ErrorsInRegressor,
     gains::Gains,
     gravity::GravityDirection,
+    online::{OnlineEstimate, Replay},
     regression::projection::{ModelKind, Projection},
     result::{Estimate, RunSummary, Stage},
     settings::Settings,
@@ -180,6 +181,7 @@ pub fn identify_after(
         held_out.motions,
         settings,
     )?;
+    let online = replay(model, dataset, &prepared, &estimates, settings)?;
     let models: Vec<ModelKind> = projections.iter().map(Projection::model).collect();
     let estimates: Vec<Estimate> = estimates.into_iter().map(|(_, one)| one).collect();
     let rests_on = rests_on(model, found, settings.checks);
@@ -210,6 +212,7 @@ pub fn identify_after(
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),
+        online,
         settings: settings.clone(),
         figures,
         estimates: estimates.into_iter().chain(alternatives).collect(),
@@ -217,6 +220,29 @@ pub fn identify_after(
         cross_validation,
         errors_in_regressor,
     })
+}
+
+/// Base parameters of the first model over time, if requested.
+fn replay(
+    model: &dyn Model,
+    dataset: &Dataset<'_>,
+    prepared: &PreparedSystem,
+    estimates: &[(usize, Estimate)],
+    settings: &Settings,
+) -> Result<Vec<OnlineEstimate>, Error> {
+    let (Some(online), Some((projection, estimate))) = (&settings.online, estimates.first()) else {
+        return Ok(Vec::new());
+    };
+    Replay {
+        model,
+        columns: &prepared.columns,
+        base: &prepared.base.columns,
+        projection: &prepared.projections[*projection],
+        estimate,
+        settings,
+        online,
+    }
+    .run(dataset.runs)
 }
 
 /// Estimates of prepared systems, by weighted, then by ordinary least squares.

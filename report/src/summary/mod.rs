@@ -11,6 +11,7 @@ use crate::{
     judgement::{grade_words, other_warnings, passed},
     layout::{line, paragraph},
     line_errors::{base_words, is_mixed, relative, relative_words, validation_words},
+    online::online,
     terminal::{calibration, gains, gravity, motors},
 };
 use overact_identification::{
@@ -54,6 +55,7 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
         above.push_str(&model(identification, estimate, extent, &mut reported));
     }
     above.push_str(&errors::errors(identification));
+    above.push_str(&online(identification));
     let below = consistent(identification) + &unseen(identification) + &next(identification, page);
     let rows = parameters::rows(identification);
     let motors = motors::motors(&identification.motors);

@@ -57,6 +57,20 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     }
 }
 
+/// Exponential function.
+#[inline]
+#[must_use]
+pub fn exp(exponent: f64) -> f64 {
+    #[cfg(feature = "std")]
+    {
+        exponent.exp()
+    }
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    {
+        libm::exp(exponent)
+    }
+}
+
 /// Sign of a velocity for Coulomb friction: -1, 0 or 1 (0 for NaN).
 #[inline]
 #[must_use]

@@ -32,6 +32,9 @@ pub(crate) struct Arguments {
     /// The language: Rust, or C99 that needs only `math.h`
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
+    /// Also write the C files of online estimation: overact_online.h and its sources
+    #[arg(long)]
+    online: bool,
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long, requires = "output")]
     check: bool,
@@ -104,6 +107,11 @@ impl Arguments {
             let message = "C is a header and a source file: add `-o FOLDER`";
             return Some(message.to_owned());
         }
+        if self.online && self.lang != Language::C {
+            let message =
+                "`--online` writes C files: add `--lang c`; Rust has the module `overact::online`";
+            return Some(message.to_owned());
+        }
         if self.runtime.is_some() && self.lang == Language::C {
             let message = "C uses no crate: leave out `--crate`, or generate Rust";
             return Some(message.to_owned());
@@ -151,12 +159,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let choice = arguments.functions.choice()?;
     let robots = load_all(arguments, choice.as_ref(), as_json)?;
-    let modules: Vec<Module> = robots
+    let mut modules: Vec<Module> = robots
         .iter()
         .zip(&arguments.files)
         .map(|(robot, path)| Module::new(robot, path, arguments))
         .collect();
     module::distinct(&modules)?;
+    if let Some(first) = modules.first_mut().filter(|_| arguments.online) {
+        first.add_online(arguments);
+    }
     if arguments.check {
         module::compare(&modules)?;
     } else if arguments.output().is_some() {

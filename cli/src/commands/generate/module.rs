@@ -2,6 +2,7 @@
 
 use super::{Arguments, Language};
 use crate::failure::{Failure, Problem};
+use overact::online::C_FILES;
 use overact_codegen::diagnostic::Code;
 use overact_codegen::{backends::c, backends::rust};
 use overact_robot::CompiledFile;
@@ -74,6 +75,16 @@ impl Module {
             language: arguments.lang,
             parts,
         }
+    }
+
+    /// Adds the C files of online estimation, which are the same for all robots.
+    pub(super) fn add_online(&mut self, arguments: &Arguments) {
+        let parts = C_FILES.iter().map(|file| ModulePart {
+            name: file.name.to_owned(),
+            file: arguments.output().map(|folder| folder.join(file.name)),
+            code: file.text.to_owned(),
+        });
+        self.parts.extend(parts);
     }
 
     /// Module as a JSON document, with its text if it is not written to a file.
