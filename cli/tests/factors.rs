@@ -78,6 +78,26 @@ fn assert_same(a: &[f64], b: &[f64], tolerance: f64) {
 }
 
 #[test]
+fn sessions_of_factor_files_widen_intervals_as_those_of_logs() {
+    let bench = five_bar();
+    for (seed, session) in [("1", "monday"), ("2", "tuesday")] {
+        let (log, file) = (log(seed), format!("{seed}.parquet"));
+        let session = ["--sessions", session, "--equations", "-o", &file];
+        bench.good(&[&["factor", "my.toml", &log][..], &session].concat());
+    }
+    let factors = ["identify", "my.toml", "--factors", "1.parquet", "2.parquet"];
+    let data = ["identify", "my.toml", "--data", "log_1.csv", "log_2.csv"];
+    let days = ["--sessions", "monday", "tuesday"];
+    let merged = bench.json(&factors);
+    let logs = bench.json(&[&data[..], &days].concat());
+    let key = "correlated_standard_deviation";
+    assert_same(&values(&logs, key), &values(&merged, key), 1e-12);
+    // Without sessions, the deviations are others.
+    let one = bench.json(&data);
+    assert_ne!(values(&one, key), values(&merged, key));
+}
+
+#[test]
 fn factor_files_give_what_one_pass_over_the_logs_gives() {
     let bench = five_bar();
     let logs = bench.json(&["identify", "my.toml", "--data", "log_1.csv", "log_2.csv"]);

@@ -117,7 +117,8 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
             "i.csv: the file begins at 20 s, when q.csv has ended at 14.9 s\n  help: {way_out}"
         )
     );
-    let grow = "interpolation needs increasing times: cut the run there, or use another column of the time";
+    let grow =
+        "the clock starts anew there, or a stamp is wrong: write each recording to its own file";
     assert_eq!(
         output(&mut (90..160).filter(|k| !(120..130).contains(k)).map(row)),
         "i.csv: the time steps from 11.9 s to 13 s\n  help: samples are missing for too long to be interpolated: cut the run there into two"

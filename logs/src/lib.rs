@@ -71,7 +71,10 @@ pub use error::{Error, Problem, suggestion};
 pub use formats::{arrays::Array, parquet_file::write_parquet};
 pub use mapping::{Gain, Mapping, Time, load::Load, scales::Scales};
 pub use period_sums::Periods;
-pub use read::{parts, read, read_all, read_arrays, read_bytes, time_range};
+pub use read::{
+    NeededSamples, parts, read, read_arrays, read_bytes, read_runs, runs_of_arrays, runs_of_bytes,
+    time_range,
+};
 pub use run::{
     dataset::{Dataset, Variant},
     log::{Log, Reader},

@@ -1,5 +1,6 @@
 //! Reads runs from files, bytes or arrays.
 
+use overact::Code;
 use rayon::prelude::*;
 use std::{
     path::Path,
@@ -11,14 +12,22 @@ use std::{
 
 use crate::{
     bytes::byte_source::ByteSource,
-    error::Error,
+    error::{Error, Problem},
     formats::{
         arrays::{Array, Arrays},
         table::Table,
     },
     mapping::Mapping,
     problems::display_name,
-    run::{log::Log, source::Files, time_range::TimeRange},
+    resampling::Irregularities,
+    run::{
+        gaps::{Gaps, LeftOut},
+        log::Log,
+        source::{Files, WrapSource},
+        summary::Summary,
+        time_range::TimeRange,
+    },
+    unwrapping::Wrap,
 };
 
 /// Splits a path into the files of a run, without a range of time.
@@ -27,7 +36,7 @@ use crate::{
 /// `a.csv+b.csv[10:60]` is the same run, of which only some samples are used ([`time_range`]).
 #[must_use]
 pub fn parts(path: &Path) -> Vec<&Path> {
-    joined(split(path).0)
+    joined(path_and_range(path).0)
 }
 
 /// Range of time of a path, `log.csv[10:60]`; `None` without one.
@@ -39,7 +48,7 @@ pub fn parts(path: &Path) -> Vec<&Path> {
 /// # Errors
 /// A reversed range, or bounds that are no numbers.
 pub fn time_range(path: &Path) -> Result<Option<TimeRange>, Error> {
-    let (run, text) = split(path);
+    let (run, text) = path_and_range(path);
     let parsed = text.map(|text| {
         let range = TimeRange::parse(text);
         range.map_err(|why| TimeRange::problem(&display_name(run), text, &why))
@@ -48,7 +57,7 @@ pub fn time_range(path: &Path) -> Result<Option<TimeRange>, Error> {
 }
 
 /// Splits a path into a run and the text of its range.
-fn split(path: &Path) -> (&Path, Option<&str>) {
+fn path_and_range(path: &Path) -> (&Path, Option<&str>) {
     let bracketed = || {
         let (run, range) = path.to_str()?.strip_suffix(']')?.rsplit_once('[')?;
         let last = joined(path).pop()?;
@@ -73,6 +82,9 @@ fn joined(path: &Path) -> Vec<&Path> {
     }
 }
 
+/// Number of samples that a run needs at a sampling frequency (Hz).
+pub type NeededSamples<'a> = dyn Fn(f64) -> usize + Sync + 'a;
+
 /// Reads a run from a file of any supported format, or from several joined files ([`parts`]).
 ///
 /// With a range of time, `log.csv[10:60]`, only its samples are used ([`time_range`]).
@@ -80,23 +92,17 @@ fn joined(path: &Path) -> Vec<&Path> {
 /// # Errors
 /// A file that cannot be read or of an unsupported format, missing columns, invalid expressions,
 /// cells that are not finite numbers, a non-uniform time, files of different lengths or times, or
-/// an invalid mapping.
+/// an invalid mapping. A log with gaps is an error, too: see [`read_runs`].
 pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
-    read_with_progress(path, mapping, payload, &|_| {})
+    whole(opened(path, mapping)?, mapping, payload)
 }
 
-/// Reads a run; `advance` gets the number of bytes read since its last call.
-fn read_with_progress(
-    path: &Path,
-    mapping: &Mapping,
-    payload: bool,
-    advance: &dyn Fn(u64),
-) -> Result<Log, Error> {
+/// Opens the files of a path.
+fn opened(path: &Path, mapping: &Mapping) -> Result<Files, Error> {
     let part = |path: &Path| (display_name(path), ByteSource::at(path));
     let files: Vec<_> = parts(path).into_iter().map(part).collect();
     let range = time_range(path)?;
-    let files = Files::new(display_name(path), &files, mapping, range)?;
-    first_pass(files, mapping, payload, advance)
+    Files::new(display_name(path), &files, mapping, range)
 }
 
 /// Reads a run from arrays in memory, like arrays of a file; `name` is for messages.
@@ -109,14 +115,33 @@ pub fn read_arrays(
     mapping: &Mapping,
     payload: bool,
 ) -> Result<Log, Error> {
+    whole(of_arrays(name, arrays, mapping)?, mapping, payload)
+}
+
+/// Reads the runs of arrays in memory: several if the time has gaps, as [`read_runs`].
+///
+/// # Errors
+/// As [`read_runs`].
+pub fn runs_of_arrays(
+    name: &str,
+    arrays: &[Array<'_>],
+    mapping: &Mapping,
+    payload: bool,
+    needed: &NeededSamples<'_>,
+) -> Result<Vec<Log>, Error> {
+    let files = of_arrays(name, arrays, mapping)?;
+    runs(files, mapping, payload, needed, &|_| {})
+}
+
+/// Opens arrays in memory.
+fn of_arrays(name: &str, arrays: &[Array<'_>], mapping: &Mapping) -> Result<Files, Error> {
     let mut table = Arrays::new(name.to_owned());
     for array in arrays {
         let (rows, columns) = array.shape;
         table.push(array.name, rows, columns, array.values);
     }
     let tables = vec![Table::Arrays(table)];
-    let files = Files::of_tables(name.to_owned(), tables, vec![1], mapping, None)?;
-    first_pass(files, mapping, payload, &|_| {})
+    Files::of_tables(name.to_owned(), tables, vec![1], mapping, None)
 }
 
 /// Reads a run from the bytes of a file of any supported format; `name` is for messages.
@@ -129,34 +154,231 @@ pub fn read_bytes(
     mapping: &Mapping,
     payload: bool,
 ) -> Result<Log, Error> {
-    let files = [(name.to_owned(), ByteSource::Memory(Arc::clone(bytes)))];
-    let files = Files::new(name.to_owned(), &files, mapping, None)?;
-    first_pass(files, mapping, payload, &|_| {})
+    whole(of_bytes(name, bytes, mapping)?, mapping, payload)
 }
 
-/// Reads the run of open files once to check it.
-fn first_pass(
-    mut files: Files,
+/// Reads the runs of a file's bytes: several if the time has gaps, as [`read_runs`].
+///
+/// # Errors
+/// As [`read_runs`].
+pub fn runs_of_bytes(
+    name: &str,
+    bytes: &Arc<[u8]>,
     mapping: &Mapping,
     payload: bool,
+    needed: &NeededSamples<'_>,
+) -> Result<Vec<Log>, Error> {
+    let files = of_bytes(name, bytes, mapping)?;
+    runs(files, mapping, payload, needed, &|_| {})
+}
+
+/// Opens the bytes of a file.
+fn of_bytes(name: &str, bytes: &Arc<[u8]>, mapping: &Mapping) -> Result<Files, Error> {
+    let files = [(name.to_owned(), ByteSource::Memory(Arc::clone(bytes)))];
+    Files::new(name.to_owned(), &files, mapping, None)
+}
+
+/// Reads several logs in parallel, each with its payload label, as one run or several.
+///
+/// A log is split at gaps of its time that are too long to be interpolated: steps longer than
+/// 3.5 usual ones, 20 ms and 25 usual ones at most. Each stretch between gaps is a run of its own,
+/// with its range of time in the name, `log.csv[12:31]`. Stretches of fewer samples than `needed`
+/// are left out. The first run of a log has a note on both.
+///
+/// `progress` gets the fraction of all bytes read, from 0 to 1.
+///
+/// ```
+/// use overact_logs::{Gain, Mapping, Time, runs_of_bytes};
+///
+/// let mapping = Mapping {
+///     time: Time::Column("t".into()),
+///     positions: vec!["q".into()],
+///     torques: vec!["tau".into()],
+///     velocities: Vec::new(),
+///     position_scale: vec![1.0],
+///     position_offset: Vec::new(),
+///     torque_gain: vec![Gain::Value(1.0)],
+///     resample: None,
+///     transmission: Vec::new(),
+///     rotating: Vec::new(),
+/// };
+/// let text = b"t,q,tau\n0,0.1,1\n0.1,0.2,2\n0.2,0.3,3\n9.0,0.3,3\n9.1,0.2,2\n".as_slice();
+/// let runs = runs_of_bytes("log.csv", &text.into(), &mapping, false, &|_| 2)?;
+/// let names: Vec<&str> = runs.iter().map(|run| run.name()).collect();
+/// assert_eq!(names, ["log.csv[:5]", "log.csv[5:]"]);
+/// # Ok::<(), overact_logs::Error>(())
+/// ```
+#[must_use]
+pub fn read_runs(
+    files: &[(&Path, bool)],
+    mapping: &Mapping,
+    needed: &NeededSamples<'_>,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Vec<Result<Vec<Log>, Error>> {
+    // A file without a readable size fails later, with a message.
+    let size = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
+    let parts = files.iter().flat_map(|(path, _)| parts(path));
+    let total: u64 = parts.map(size).sum();
+    let done = AtomicU64::new(0);
+    let advance = |bytes: u64| {
+        let now = bytes + done.fetch_add(bytes, Ordering::Relaxed);
+        // A compressed file has more bytes than its size.
+        progress((now as f64 / total.max(1) as f64).min(1.0));
+    };
+    let read = |&(path, payload): &(&Path, bool)| {
+        runs(opened(path, mapping)?, mapping, payload, needed, &advance)
+    };
+    files.par_iter().map(read).collect()
+}
+
+/// Reads open files as one run.
+fn whole(files: Files, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
+    let summary = files.look_through(&mapping.time, &|_| {})?;
+    one_run(files, summary, mapping, payload)
+}
+
+/// Reads open files as one run, or as several if the time has gaps.
+fn runs(
+    files: Files,
+    mapping: &Mapping,
+    payload: bool,
+    needed: &NeededSamples<'_>,
     advance: &dyn Fn(u64),
+) -> Result<Vec<Log>, Error> {
+    let error = match files.look_through(&mapping.time, advance) {
+        Ok(summary) => return Ok(vec![one_run(files, summary, mapping, payload)?]),
+        Err(error) => error,
+    };
+    let is_of_time = |problem: &Problem| problem.code == Code::LOG_TIME;
+    let gaps = if error.problems.iter().any(is_of_time) {
+        files.gaps()?
+    } else {
+        None
+    };
+    match gaps {
+        Some(gaps) => split(files, &gaps, mapping, payload, needed),
+        None => Err(error),
+    }
+}
+
+/// The run of open files after the first pass.
+fn one_run(
+    mut files: Files,
+    mut summary: Summary,
+    mapping: &Mapping,
+    payload: bool,
 ) -> Result<Log, Error> {
-    let mut summary = files.look_through(&mapping.time, advance)?;
     let wraps = std::mem::take(&mut summary.wraps);
     if !wraps.is_empty() {
         files.unwrap(&wraps)?;
         summary = files.look_through(&mapping.time, &|_| {})?;
     }
+    let notes = Notes {
+        gaps: None,
+        resampled: files.note(summary.count, summary.left_out),
+        irregularities: summary.irregularities,
+        wraps: &wraps,
+    };
+    let note = notes.joined(&files);
+    let log = log(files, summary, mapping, payload, 0.0)?;
+    let log = log.with_unwrapped(!wraps.is_empty());
+    Ok(log.with_note(note))
+}
+
+/// The stretches between gaps as runs; those that are too short are left out.
+fn split(
+    mut files: Files,
+    gaps: &Gaps,
+    mapping: &Mapping,
+    payload: bool,
+    needed: &NeededSamples<'_>,
+) -> Result<Vec<Log>, Error> {
+    let look =
+        |files: &Files| files.look_through_stretches(&gaps.stretches, &mapping.time, &|_| {});
+    let mut summaries = look(&files)?;
+    let last = summaries.last_mut();
+    let wraps = last.map_or_else(Vec::new, |last| std::mem::take(&mut last.wraps));
+    if !wraps.is_empty() {
+        files.unwrap(&wraps)?;
+        summaries = look(&files)?;
+    }
+    let irregularities = { summaries.iter().map(|own| own.irregularities) }
+        .fold(Irregularities::default(), Irregularities::and);
+    let (mut used, mut left_out) = (Vec::new(), LeftOut::default());
+    for (stretch, summary) in gaps.stretches.iter().zip(summaries) {
+        let fewest = needed(summary.frequency).max(2);
+        if summary.count >= fewest {
+            used.push((stretch, summary));
+        } else {
+            left_out.count += 1;
+            left_out.duration += stretch.duration;
+            left_out.longest = left_out.longest.max(summary.count);
+            left_out.needed = left_out.needed.max(fewest);
+        }
+    }
+    if used.is_empty() {
+        let message = gaps.without_stretches(left_out);
+        let problem = Problem::new(Code::LOG_TOO_SHORT, message).file(files.name());
+        return Err(problem
+            .help("record without gaps, or lower `skip_start`, `skip_end` or `decimation` of [identification]")
+            .into());
+    }
+    let counts = used.iter().map(|(_, own)| [own.count, own.left_out]);
+    let [count, outside] = counts.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
+    let notes = Notes {
+        gaps: Some(gaps.note(left_out)),
+        resampled: files.note(count, outside),
+        irregularities,
+        wraps: &wraps,
+    };
+    let mut note = notes.joined(&files);
+    let runs = used
+        .into_iter()
+        .enumerate()
+        .map(|(place, (stretch, summary))| {
+            let mut own = files.clone();
+            own.enter(stretch);
+            let log = log(own, summary, mapping, payload, stretch.start)?;
+            Ok(log.as_stretch(stretch, place > 0).with_note(note.take()))
+        });
+    runs.collect()
+}
+
+/// Notes to the user on a log.
+struct Notes<'a> {
+    gaps: Option<String>,
+    resampled: Option<String>,
+    irregularities: Irregularities,
+    wraps: &'a [(WrapSource, Wrap)],
+}
+
+impl Notes<'_> {
+    /// All notes in one; `None` without any.
+    fn joined(self, files: &Files) -> Option<String> {
+        let range = files.range.as_ref().map(|range| range.note.clone());
+        let of_files = files.tables.first().and_then(Table::note);
+        let notes: Vec<String> = { range.into_iter().chain(of_files) }
+            .chain(self.gaps)
+            .chain(self.resampled)
+            .chain(self.irregularities.note())
+            .chain(self.wraps.iter().map(|(_, wrap)| wrap.note()))
+            .collect();
+        (!notes.is_empty()).then(|| notes.join("; "))
+    }
+}
+
+/// A run whose samples are in memory, a temporary file, or its own files.
+///
+/// Its first sample is `start` (s) after that of its recording.
+fn log(
+    mut files: Files,
+    summary: Summary,
+    mapping: &Mapping,
+    payload: bool,
+    start: f64,
+) -> Result<Log, Error> {
     let (frequency, count) = (summary.frequency, summary.count);
-    let resampled = files.note(count, summary.left_out);
-    let of_files = files.tables.first().and_then(Table::note);
-    let range = files.range.as_ref().map(|range| range.note.clone());
-    let notes: Vec<String> = { range.into_iter().chain(of_files) }
-        .chain(resampled)
-        .chain(summary.irregularities.note())
-        .chain(wraps.iter().map(|(_, wrap)| wrap.note()))
-        .collect();
-    let note = (!notes.is_empty()).then(|| notes.join("; "));
+    let (ranges, first_time) = (summary.ranges, summary.first_time);
     let log = match summary.samples {
         Some(samples) => {
             let (positions, torques) = (samples.positions, samples.torques);
@@ -170,32 +392,7 @@ fn first_pass(
         }
     };
     Ok(log
-        .with_note(note)
-        .with_unwrapped(!wraps.is_empty())
         .with_resampled(mapping.resample.is_some())
+        .with_ranges(ranges, first_time, start)
         .without_offsets(&mapping.position_offset))
-}
-
-/// Reads several runs in parallel, each with its payload label.
-///
-/// `progress` gets the fraction of all bytes read, from 0 to 1.
-#[must_use]
-pub fn read_all(
-    files: &[(&Path, bool)],
-    mapping: &Mapping,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Vec<Result<Log, Error>> {
-    // A file without a readable size fails later, with a message.
-    let size = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
-    let parts = files.iter().flat_map(|(path, _)| parts(path));
-    let total: u64 = parts.map(size).sum();
-    let done = AtomicU64::new(0);
-    let advance = |bytes: u64| {
-        let now = bytes + done.fetch_add(bytes, Ordering::Relaxed);
-        // A compressed file has more bytes than its size.
-        progress((now as f64 / total.max(1) as f64).min(1.0));
-    };
-    let read =
-        |&(path, payload): &(&Path, bool)| read_with_progress(path, mapping, payload, &advance);
-    files.par_iter().map(read).collect()
 }

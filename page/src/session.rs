@@ -72,6 +72,8 @@ impl Session {
 
     /// Adds a log in any format, with or without payload, for training or validation.
     ///
+    /// It is split at gaps of its time.
+    ///
     /// # Errors
     /// A log that cannot be used.
     pub fn add_log(
@@ -81,12 +83,12 @@ impl Session {
         payload: bool,
         held_out: bool,
     ) -> Result<(), JsValue> {
-        let log = self.robot.log_of_bytes(name, bytes.into(), payload);
-        let log = log.map_err(thrown)?;
+        let runs = self.robot.runs_of_bytes(name, bytes.into(), payload);
+        let runs = runs.map_err(thrown)?;
         if held_out {
-            self.runs.validation.push(log)
+            self.runs.validation.extend(runs);
         } else {
-            self.runs.identified.push(log)
+            self.runs.identified.extend(runs);
         }
         Ok(())
     }

@@ -95,7 +95,7 @@ fn samples(item: &Bound<'_, PyTuple>) -> PyResult<Samples> {
     })
 }
 
-/// Converts the runs to logs, in order.
+/// Converts the runs to logs, in order; those with gaps in their time to several.
 ///
 /// # Errors
 /// All errors of all runs.
@@ -110,7 +110,7 @@ pub(crate) fn logs(
         _ => None,
     });
     let files: Vec<(&Path, bool)> = files.collect();
-    let read = robot.read_logs(&files, progress);
+    let read = robot.read_runs(&files, progress);
     let mut read = match read {
         Ok(read) => read.into_iter(),
         Err(error) => {
@@ -119,9 +119,9 @@ pub(crate) fn logs(
         }
     };
     for (run, payload) in runs {
-        let log = match run {
+        let runs = match run {
             Given::File(_) => match read.next() {
-                Some(log) => Ok(log),
+                Some(runs) => Ok(runs),
                 None => continue,
             },
             Given::Arrays(name, arrays) => {
@@ -130,12 +130,12 @@ pub(crate) fn logs(
                     shape: one.shape,
                     values: &one.values,
                 });
-                robot.log_of_arrays(name, &arrays.collect::<Vec<_>>(), *payload)
+                robot.runs_of_arrays(name, &arrays.collect::<Vec<_>>(), *payload)
             }
-            Given::Samples(samples) => samples.log(*payload),
+            Given::Samples(samples) => samples.log(*payload).map(|log| vec![log]),
         };
-        match log {
-            Ok(log) => logs.push(log),
+        match runs {
+            Ok(runs) => logs.extend(runs),
             Err(error) => errors.push(error),
         }
     }

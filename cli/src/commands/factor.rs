@@ -7,7 +7,7 @@ use crate::{
     progress::Progress,
 };
 use overact_identification::{
-    Progress as Doing,
+    Log, Progress as Doing,
     factors::{Origin, write_factors},
 };
 use overact_robot::Robot;
@@ -33,6 +33,10 @@ pub(crate) struct Arguments {
     /// `2026-03-02T14:05:00`, UTC
     #[arg(long, value_name = "TIME", num_args = 1..)]
     time: Vec<String>,
+    /// Recording session of each log, in the same order, such as its day; intervals from sessions
+    /// of several factor files contain the changes of the robot between them
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    sessions: Vec<String>,
     /// Also store successive equations, for the standard deviations of the logs: larger files
     #[arg(long)]
     equations: bool,
@@ -46,7 +50,11 @@ pub(crate) struct Arguments {
 /// # Errors
 /// Logs that cannot be used, or invalid times.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let runs = runs::Arguments::of_logs(arguments.data.clone(), arguments.payload_data.clone());
+    let runs = runs::Arguments::of_logs(
+        arguments.data.clone(),
+        arguments.payload_data.clone(),
+        arguments.sessions.clone(),
+    );
     let logs = arguments.data.len() + arguments.payload_data.len();
     if !arguments.time.is_empty() && arguments.time.len() != logs {
         let message = format!(
@@ -55,14 +63,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         );
         return Err(Failure::Usage(message));
     }
-    let times = arguments.time.iter().map(|time| instant(time).map(Some));
-    let origin = Origin {
-        serial: arguments.serial.clone(),
-        times_us: times.collect::<Result<_, _>>()?,
-    };
+    let times = arguments.time.iter().map(|time| instant(time));
+    let times: Vec<i64> = times.collect::<Result<_, _>>()?;
     output::check(&runs.inputs(&arguments.file), &[arguments.output.as_path()])?;
     let robot = Robot::from_toml(&arguments.file)?;
     let found = runs.runs(&robot, as_json)?;
+    let origin = Origin {
+        serial: arguments.serial.clone(),
+        times_us: starts(&found.identified, &times),
+    };
     let settings = runs.settings(&robot, &found);
     let bar = Progress::new("factoring", as_json);
     let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
@@ -89,4 +98,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         )
     };
     output::emit_with(&said, None, vec![(arguments.output.clone(), bytes)])
+}
+
+/// Start of each run, µs since 1970, from that of each log: a log with gaps has several runs.
+fn starts(runs: &[Log], logs: &[i64]) -> Vec<Option<i64>> {
+    let mut number = 0;
+    let start = |run: &Log| {
+        number += usize::from(!run.continues());
+        let log = logs.get(usize::checked_sub(number, 1)?)?;
+        Some(log + (1e6 * run.start()).round() as i64)
+    };
+    runs.iter().map(start).collect()
 }

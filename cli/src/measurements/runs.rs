@@ -1,7 +1,7 @@
 //! Runs of an identification: measured logs, or the virtual experiment.
 
 use super::{
-    payloads::{self, Payloads},
+    payloads::{self, GivenLog, Payloads},
     same,
     streams::Streams,
 };
@@ -60,14 +60,18 @@ enum Friction {
 }
 
 impl Arguments {
-    /// Runs from logs, without and with payload.
-    pub(crate) fn of_logs(data: Vec<PathBuf>, payload_data: Vec<PathBuf>) -> Self {
+    /// Runs from logs, without and with payload, and the session of each, or none.
+    pub(crate) fn of_logs(
+        data: Vec<PathBuf>,
+        payload_data: Vec<PathBuf>,
+        sessions: Vec<String>,
+    ) -> Self {
         Self {
             data,
             payload_data,
             cross_validate: Vec::new(),
             cross_validate_payload: Vec::new(),
-            sessions: Vec::new(),
+            sessions,
             seed: None,
             streams: RefCell::default(),
             friction: None,
@@ -148,18 +152,31 @@ impl Arguments {
         let logs: Vec<&Path> = files.iter().map(|(path, _)| *path).collect();
         same::check(&logs, own.len())?;
         let bar = Progress::new("reading", as_json);
-        let logs = robot.read_logs(&files, &|part: f64| bar.at(part, ""));
+        let logs = robot.read_runs(&files, &|part: f64| bar.at(part, ""));
         let logs = logs.map_err(|error| self.as_given(error))?;
-        let logs = logs.into_iter().zip(all());
-        let mut identified: Vec<Log> = logs.map(|(log, one)| one.label(log)).collect();
+        let labelled = |(runs, one): (Vec<Log>, &GivenLog)| -> Vec<Log> {
+            runs.into_iter().map(|log| one.label(log)).collect()
+        };
+        let mut identified: Vec<Vec<Log>> = logs.into_iter().zip(all()).map(labelled).collect();
         let validation = identified.split_off(own.len());
-        if !self.sessions.is_empty() {
-            let pairs = identified.into_iter().zip(&self.sessions);
-            identified = pairs.map(|(log, name)| log.with_session(name)).collect();
-        }
+        let sessions = self
+            .sessions
+            .iter()
+            .map(Some)
+            .chain(std::iter::repeat(None));
+        let identified = identified
+            .into_iter()
+            .zip(sessions)
+            .flat_map(|(runs, session)| {
+                let in_session = move |log: Log| match session {
+                    Some(name) => log.with_session(name),
+                    None => log,
+                };
+                runs.into_iter().map(in_session)
+            });
         Ok(Runs {
-            identified,
-            validation,
+            identified: identified.collect(),
+            validation: validation.into_iter().flatten().collect(),
             true_values: None,
         })
     }

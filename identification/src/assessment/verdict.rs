@@ -120,6 +120,11 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
 /// A failed check is reported in full if it explains this fraction of the largest one's part.
 const WORTH_TELLING: f64 = 0.5;
 
+/// It also leaves at most this multiple of what the largest one leaves.
+///
+/// A cause that explains nearly everything makes others that explain much less unlikely.
+const LEAVES_AT_MOST: f64 = 10.0;
+
 /// Failed checks of an estimate.
 #[derive(Debug, Clone)]
 pub struct FailedChecks<'a> {
@@ -154,9 +159,10 @@ pub fn failed_checks(checks: &[Check], model: ModelKind, stage: Stage) -> Failed
         let causes = causes.then(b.grade.cmp(&a.grade));
         causes.then(explained(b).total_cmp(&explained(a)))
     });
-    let (reported, named_only): (Vec<_>, Vec<_>) = found
-        .into_iter()
-        .partition(|(_, check)| explained(check) >= WORTH_TELLING * most);
+    let (reported, named_only): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, check)| {
+        let own = explained(check);
+        own >= WORTH_TELLING * most && (1.0 - own) <= LEAVES_AT_MOST * (1.0 - most).max(0.0)
+    });
     let mut named_only: Vec<&str> = named_only
         .iter()
         .map(|(_, check)| check.kind.name())

@@ -13,7 +13,7 @@ use super::{
     packed::from_rows,
     record::Record,
     run::{ModelFactors, RunFactors},
-    schema::{Place, Row, SCHEMA, VERSION},
+    schema::{OPTIONAL, Place, Row, SCHEMA, VERSION},
 };
 use crate::{
     regression::{
@@ -123,7 +123,9 @@ fn check_columns(reader: &SerializedFileReader<File>) -> Result<(), Damaged> {
     let wanted = wanted
         .map(|name| name.trim_end_matches(';'))
         .filter(|name| *name != "{");
-    let missing: Vec<&str> = wanted.filter(|name| !has(name)).collect();
+    let missing: Vec<&str> = { wanted.filter(|name| !has(name)) }
+        .filter(|name| !OPTIONAL.contains(name))
+        .collect();
     if missing.is_empty() {
         return Ok(());
     }
@@ -174,7 +176,7 @@ fn of_rows(rows: &[Row]) -> Result<RunFactors, Damaged> {
             sampling_frequency: first.sampling_frequency,
             payload: first.loaded != 0,
             payload_name: Some(first.payload.clone()).filter(|name| !name.is_empty()),
-            session: None,
+            session: Some(first.session.clone()).filter(|name| !name.is_empty()),
             closure_residual: first.closure_residual,
             standstill_equations: names(&first.standstill).iter().map(count).collect(),
         },

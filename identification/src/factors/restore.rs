@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     estimation::base::{BaseParameters, PayloadUse, base_parameters},
-    identify::PreparedSystem,
+    identify::{PreparedSystem, session_numbers},
     regression::{
         columns::{ColumnSet, has_payload},
         projection::Projection,
@@ -50,9 +50,14 @@ pub(super) fn restored(
     let columns = columns.with_friction_signs(model, settings)?;
     let places = places(runs, &columns, &base)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
+    let sessions = session_numbers(runs.iter().map(|run| run.summary.session.as_deref()));
     let (mut systems, mut left_out) = (Vec::new(), Vec::new());
     for projection in &projections {
-        let mut system = Ok(System::new(projection.clone(), &info, base.columns.len()));
+        let system = System::new(projection.clone(), &info, base.columns.len());
+        let mut system = Ok(System {
+            sessions: sessions.clone(),
+            ..system
+        });
         for (number, (run, places)) in runs.iter().zip(&places).enumerate() {
             let own = run
                 .models

@@ -51,7 +51,12 @@ pub(super) struct Row {
     pub(super) problem: String,
     /// A record of the factor, or equations row by row as little-endian doubles.
     pub(super) factor: Vec<u8>,
+    /// Name of the recording session; empty without one. Older files lack it.
+    pub(super) session: String,
 }
+
+/// Columns that older files of this version lack.
+pub(super) const OPTIONAL: [&str; 1] = ["session"];
 
 /// Schema, in the order of the fields of a row.
 pub(super) const SCHEMA: &str = "message factors {
@@ -84,6 +89,7 @@ pub(super) const SCHEMA: &str = "message factors {
   required int64 crossings;
   required binary problem (UTF8);
   required binary factor;
+  required binary session (UTF8);
 }";
 
 /// A value of a row for writing.
@@ -137,6 +143,7 @@ impl Row {
             Whole(self.crossings),
             Bytes(self.problem.as_bytes()),
             Bytes(&self.factor),
+            Bytes(self.session.as_bytes()),
         ]
     }
 
@@ -173,6 +180,7 @@ impl Row {
             "crossings" => Whole(&mut self.crossings),
             "problem" => Text(&mut self.problem),
             "factor" => Bytes(&mut self.factor),
+            "session" => Text(&mut self.session),
             _ => return None,
         })
     }

@@ -111,6 +111,7 @@ fn of_run(run: &RunFactors) -> Vec<Row> {
         standstill: standstill.collect::<Vec<_>>().join(","),
         flags: run.flags.join("\n"),
         columns: run.columns.join(","),
+        session: summary.session.clone().unwrap_or_default(),
         ..Row::default()
     };
     run.models

@@ -21,6 +21,7 @@ use overact::Model;
 
 pub use estimates::{ProjectionEstimates, estimate_projection};
 pub use identification::{BaseParameter, Identification};
+pub(crate) use prepare::session_numbers;
 pub use prepare::{PreparedSystem, prepare};
 pub use progress::Progress;
 pub use study::{RankedProjection, Study, study};

@@ -248,7 +248,7 @@ pub fn prepare(
         projections,
         settings,
     };
-    let sessions = session_numbers(runs);
+    let sessions = session_numbers(runs.iter().map(Log::session));
     let new = |projection: &Projection| {
         let system = System::new(projection.clone(), &info, base.columns.len());
         Ok(System {
@@ -301,9 +301,10 @@ pub fn prepare(
 }
 
 /// Number of each run's recording session, that of its first run; empty for one session.
-fn session_numbers(runs: &[Log]) -> Vec<usize> {
-    let first_of = |log: &Log| runs.iter().position(|one| one.session() == log.session());
-    let numbers: Vec<usize> = runs.iter().filter_map(first_of).collect();
+pub(crate) fn session_numbers<'a>(sessions: impl Iterator<Item = Option<&'a str>>) -> Vec<usize> {
+    let names: Vec<Option<&str>> = sessions.collect();
+    let first_of = |name| names.iter().position(|one| one == name);
+    let numbers: Vec<usize> = names.iter().filter_map(first_of).collect();
     if numbers.iter().any(|number| *number != 0) {
         numbers
     } else {

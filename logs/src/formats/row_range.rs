@@ -23,11 +23,25 @@ impl RowRange {
 pub(crate) struct RangedRows<'a> {
     rows: Rows<'a>,
     left: RowRange,
+    /// Number of rows read or skipped.
+    passed: usize,
 }
 
 impl<'a> RangedRows<'a> {
     pub(crate) const fn new(rows: Rows<'a>, range: RowRange) -> Self {
-        Self { rows, left: range }
+        Self {
+            rows,
+            left: range,
+            passed: 0,
+        }
+    }
+
+    /// Continues with a later range, whose rows have not been read yet.
+    pub(crate) const fn enter(&mut self, range: RowRange) {
+        self.left = RowRange {
+            first: range.first.saturating_sub(self.passed),
+            count: range.count,
+        };
     }
 
     /// Writes the next row of the range to `values`; `false` at its end.
@@ -37,6 +51,7 @@ impl<'a> RangedRows<'a> {
     pub(crate) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         while self.left.first > 0 {
             self.left.first -= 1;
+            self.passed += 1;
             match self.rows.next(values) {
                 Ok(true) => {}
                 Ok(false) => return Ok(false),
@@ -49,6 +64,7 @@ impl<'a> RangedRows<'a> {
             return Ok(false);
         }
         self.left.count -= 1;
+        self.passed += 1;
         self.rows.next(values)
     }
 

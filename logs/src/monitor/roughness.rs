@@ -58,9 +58,9 @@ impl Twins {
         proportional || self.equal
     }
 
-    /// Whether they are one signal; for signals at rest, only if equal.
+    /// Whether they are one signal that varies, up to a factor and an offset.
     fn is_one(&self) -> bool {
-        self.equal || self.farthest.iter().all(|far| *far != 0.0)
+        self.farthest.iter().all(|far| *far != 0.0)
     }
 }
 
@@ -114,8 +114,10 @@ impl Roughness {
     }
 
     /// Pairs of equal signals; with `in_any_unit` also proportional ones.
+    ///
+    /// Signals that do not vary are no pair: two dead sensors read the same number.
     pub(super) fn twins(&self, in_any_unit: bool) -> Vec<(usize, usize)> {
-        let is_one = |twins: &&Twins| twins.equal || in_any_unit && twins.is_one();
+        let is_one = |twins: &&Twins| (twins.equal || in_any_unit) && twins.is_one();
         let one = self.twins.iter().filter(is_one);
         one.map(|twins| twins.pair).collect()
     }
@@ -150,13 +152,13 @@ mod tests {
 
     #[test]
     fn a_signal_in_other_units_is_the_same_signal() {
-        let mut roughness = Roughness::new(5);
+        let mut roughness = Roughness::new(6);
         for k in 0..5_000 {
             let phase = 1e-3 * f64::from(k);
             let own = (3.0 * phase).sin() + 0.2 * phase;
             // With another gear and offset; with a thousandth of another motion; at rest.
             let other = 0.3 - own / 45.0;
-            roughness.take(&[own / 32.0, other, own + 1e-3 * phase.cos(), 0.7, 0.0]);
+            roughness.take(&[own / 32.0, other, own + 1e-3 * phase.cos(), 0.7, 0.0, 0.0]);
         }
         assert_eq!(roughness.twins(true), [(0, 1)]);
     }

@@ -306,7 +306,7 @@ impl Resampled {
         };
         let is_repeated = self.is_repeated(&row);
         let mut last = last;
-        if is_repeated && !self.stands_still && time - last <= self.longest_gap() {
+        if is_repeated && !self.stands_still && time - last <= longest_gap(self.step) {
             let count = self.repeated.as_ref().map_or(0, |(_, count)| *count);
             self.repeated = Some(((time, row), count + 1));
             return self.check_step(before, before, time);
@@ -343,16 +343,10 @@ impl Resampled {
         others().count() > 1 && others().all(|place| row[place] == last[place])
     }
 
-    /// Longest gap for interpolation, s.
-    fn longest_gap(&self) -> f64 {
-        let steps = (LONGEST_GAP / self.step).clamp(LONGEST_STEP, MOST_STEPS);
-        steps * self.step
-    }
-
     /// Checks the time after a row at `before`; the last sample is at `last`.
     fn check_step(&mut self, before: f64, last: f64, time: f64) -> Result<(), Error> {
         // Also false for NaN.
-        if time > before && time - last <= self.longest_gap() {
+        if time > before && time - last <= longest_gap(self.step) {
             return Ok(());
         }
         self.has_ended = true;
@@ -361,9 +355,24 @@ impl Resampled {
         let help = if time > before {
             "samples are missing for too long to be interpolated: cut the run there into two"
         } else {
-            "interpolation needs increasing times: cut the run there, or use another column of the time"
+            backward_help(before - time, self.step)
         };
         Err(problem.help(help).into())
+    }
+}
+
+/// Longest gap for interpolation, s, between samples with this usual step, s.
+pub(crate) fn longest_gap(step: f64) -> f64 {
+    let steps = (LONGEST_GAP / step).clamp(LONGEST_STEP, MOST_STEPS);
+    steps * step
+}
+
+/// Help for a time that runs backwards by some seconds, between samples with this usual step, s.
+pub(crate) fn backward_help(seconds: f64, step: f64) -> &'static str {
+    if seconds > longest_gap(step) {
+        "the clock starts anew there, or a stamp is wrong: write each recording to its own file"
+    } else {
+        "the time has to increase: sort the samples, or use another column of the time"
     }
 }
 

@@ -1,6 +1,9 @@
 //! Clock of a run: uniformity of its times, and sampling frequency.
 
-use crate::error::{Error, Problem};
+use crate::{
+    error::{Error, Problem},
+    resampling::backward_help,
+};
 use overact::Code;
 
 /// Largest relative deviation of a time step from the usual one.
@@ -49,18 +52,17 @@ impl Clock {
         }
     }
 
-    /// Sampling frequency (Hz), from the mean step.
+    /// Sampling frequency (Hz), from the mean step; NaN for fewer than two samples.
     ///
     /// # Errors
-    /// Fewer than two samples, or a step that differs from the usual one.
+    /// A step that differs from the usual one.
     pub(crate) fn frequency(mut self, file: &str) -> Result<f64, Error> {
         if self.expected.is_none() {
             self.settle();
         }
-        Self::check_count(self.samples, file)?;
         match self.bad {
             Some(problem) => Err(problem.file(file).into()),
-            None => Ok((self.samples - 1) as f64 / (self.last - self.first)),
+            None => Ok(self.samples.saturating_sub(1) as f64 / (self.last - self.first)),
         }
     }
 
@@ -109,18 +111,28 @@ impl Clock {
         if uniform || self.bad.is_some() {
             return;
         }
-        let problem = Problem::new(Code::LOG_TIME, format!(
-            "the time is not uniform: between samples {index} and {} it steps by {} s, expected {} s",
-            index + 1,
-            shown(step),
-            shown(expected),
-        ))
+        let message = if step < 0.0 {
+            format!(
+                "the time runs backwards after sample {index}, from {} s to {} s",
+                times[0], times[1]
+            )
+        } else {
+            format!(
+                "the time is not uniform: between samples {index} and {} it steps by {} s, expected {} s",
+                index + 1,
+                shown(step),
+                shown(expected),
+            )
+        };
+        let problem = Problem::new(Code::LOG_TIME, message)
         .help(if is_rounded && step >= 0.0 {
             "the times are 32-bit numbers, too coarse for this step so long after zero: log 64-bit times, or start at zero"
         } else if step > 0.0 {
             "set `resample = \"1 kHz\"` in [data] to interpolate at uniform times, or cut the run where samples are missing"
+        } else if step < 0.0 {
+            backward_help(-step, expected)
         } else {
-            "the time does not increase: cut the run there, or use another column of the time"
+            "the time does not increase: use another column of the time"
         });
         self.bad = Some(match line {
             Some(line) => problem.line(line),

@@ -95,7 +95,7 @@ impl Files {
     }
 
     /// Usual step of the run's samples, s: that of the first file if clocks differ.
-    fn usual_step(&self) -> Result<f64, Error> {
+    pub(super) fn usual_step(&self) -> Result<f64, Error> {
         if let Some(clock) = self.clocks.first() {
             return Ok(clock.step);
         }

@@ -4,7 +4,7 @@
 
 use crate::{
     error::{Error, Problem},
-    formats::row_range::RangedRows,
+    formats::row_range::RowRange,
     resampling::{Irregularities, Place, Resampled, apart},
     run::{
         signals::is_measurable,
@@ -54,8 +54,8 @@ impl<'a> Joined<'a> {
     /// A file that cannot be read any more.
     pub(crate) fn new(files: &'a Files) -> Result<Self, Error> {
         let mut parts = Vec::new();
-        for (table, own) in files.tables.iter().zip(files.signals.columns()) {
-            let rows = RangedRows::new(table.rows(&own)?, files.row_range(parts.len()));
+        for own in files.signals.columns().take(files.tables.len()) {
+            let rows = files.rows_of(parts.len(), &own)?;
             parts.push(Part {
                 rows: UnwrappedRows::new(rows, files.rotations_of(parts.len())),
                 columns: own.len(),
@@ -69,6 +69,17 @@ impl<'a> Joined<'a> {
             range: None,
             has_ended: false,
         })
+    }
+
+    /// Continues with a later range of rows of each table.
+    fn enter(&mut self, ranges: &[RowRange]) {
+        for (number, (part, range)) in self.parts.iter_mut().zip(ranges).enumerate() {
+            part.rows.enter(*range);
+            part.resampled = self.files.resampled(Some(number));
+        }
+        self.count = 0;
+        self.range = None;
+        self.has_ended = false;
     }
 
     /// Reads the next row of files with a common clock; `false` at the end.
@@ -270,6 +281,22 @@ impl<'a> Rows<'a> {
             samples: 0,
             left_out: 0,
         })
+    }
+
+    /// Continues with a later range of rows of each table, as with a run of its own.
+    pub(crate) fn enter(&mut self, ranges: &[RowRange]) {
+        self.joined.enter(ranges);
+        self.resampled = self.files.resampled(None);
+        self.times = None;
+        self.unwrapper.interrupt();
+        self.samples = 0;
+        self.left_out = 0;
+    }
+
+    /// Time of the last sample of a resampled run, s.
+    pub(crate) fn uniform_time(&self) -> Option<f64> {
+        let times = self.times?;
+        Some(times.start + (times.next - 1) as f64 / times.rate)
     }
 
     /// Whether nothing more can be read.

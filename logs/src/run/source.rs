@@ -3,7 +3,10 @@
 use crate::{
     bytes::temporary_store::TemporaryStore,
     error::Error,
-    formats::{row_range::RowRange, table::Table},
+    formats::{
+        row_range::{RangedRows, RowRange},
+        table::Table,
+    },
     mapping::{expression::Expression, transmission::Transmission},
     resampling::Resampled,
     run::signals::Signals,
@@ -16,6 +19,14 @@ pub(crate) struct RangeRows {
     pub(crate) tables: Vec<RowRange>,
     /// Note to the user.
     pub(crate) note: String,
+}
+
+/// Samples of a run in a temporary file, which may have those of other runs before.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Spill {
+    pub(crate) store: TemporaryStore,
+    /// Number of the first sample of the run.
+    pub(crate) first: usize,
 }
 
 /// Location of a wrapped position.
@@ -70,13 +81,26 @@ pub(crate) struct Files {
     /// Rows of the tables that are used, if not all.
     pub(crate) range: Option<RangeRows>,
     /// Cached samples of a large run whose files are slow to read.
-    pub(crate) spill: Option<TemporaryStore>,
+    pub(crate) spill: Option<Spill>,
 }
 
 impl Files {
     /// Number of requested columns of all files.
     pub(crate) fn width(&self) -> usize {
         self.signals.columns().map(|own| own.len()).sum()
+    }
+
+    /// The used rows of a table, for some of its columns.
+    ///
+    /// # Errors
+    /// A file that cannot be read any more.
+    pub(crate) fn rows_of<'a>(
+        &'a self,
+        table: usize,
+        columns: &[(usize, &'a str)],
+    ) -> Result<RangedRows<'a>, Error> {
+        let rows = self.tables[table].rows(columns)?;
+        Ok(RangedRows::new(rows, self.row_range(table)))
     }
 
     /// Rows of a table that are used.

@@ -20,6 +20,11 @@ use crate::{
 /// Smallest first time that is an absolute stamp, s.
 const ABSOLUTE: f64 = 1e6;
 
+/// Whether a first time (s) is an absolute stamp, so that times count from it.
+pub(crate) const fn is_absolute(first: f64) -> bool {
+    first.abs() > ABSOLUTE
+}
+
 /// Times of a run that are used, s: start ≤ t < end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeRange {
@@ -173,10 +178,9 @@ impl Search {
             // Rows without a time belong to the range if rows on both sides do.
             return true;
         }
-        let is_absolute = time.abs() > ABSOLUTE;
         let origin = *self
             .origin
-            .get_or_insert(if is_absolute { time } else { 0.0 });
+            .get_or_insert(if is_absolute(time) { time } else { 0.0 });
         let tolerance = 1e-9 + 4.0 * f64::EPSILON * time.abs();
         let own = time - origin;
         let extend = |range: Option<(f64, f64)>| Some((range.map_or(own, |(first, _)| first), own));
@@ -247,6 +251,18 @@ impl Search {
             shown(first),
             shown(last)
         )
+    }
+}
+
+/// Name of a run and the bounds of its range of time, which are empty without one.
+pub(crate) fn name_and_bounds(name: &str) -> (&str, [&str; 2]) {
+    let bracketed = name.strip_suffix(']').and_then(|own| own.rsplit_once('['));
+    match bracketed {
+        Some((own, range)) if TimeRange::parse(range).is_ok() => {
+            let (start, end) = range.split_once(':').unwrap_or((range, ""));
+            (own, [start, end])
+        }
+        _ => (name, ["", ""]),
     }
 }
 

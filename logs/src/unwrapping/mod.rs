@@ -20,7 +20,10 @@ use self::watch::Watch;
 pub(crate) use self::{columns::Position, watch::Wrap};
 use crate::{
     error::Error,
-    formats::{row_range::RangedRows, table},
+    formats::{
+        row_range::{RangedRows, RowRange},
+        table,
+    },
 };
 
 /// A column that may be a wrapped angle.
@@ -92,6 +95,14 @@ impl Unwrapper {
         }
     }
 
+    /// Forgets the last row, since the next one does not follow it.
+    pub(crate) fn interrupt(&mut self) {
+        for own in &mut self.columns {
+            own.last = None;
+            own.watch.interrupt();
+        }
+    }
+
     /// The watched columns that wrap.
     pub(crate) fn wraps(&self) -> Vec<Wrap> {
         let watched = self.columns.iter();
@@ -114,6 +125,12 @@ impl<'a> UnwrappedRows<'a> {
             rows,
             unwrapper: Unwrapper::new(rotations),
         }
+    }
+
+    /// Continues with a later range of rows, which do not follow the last one.
+    pub(crate) fn enter(&mut self, range: RowRange) {
+        self.rows.enter(range);
+        self.unwrapper.interrupt();
     }
 
     /// Writes the next sample to `values`; `false` at the end.

@@ -66,7 +66,8 @@ impl Wrap {
 #[derive(Debug)]
 pub(super) struct Watch {
     samples: usize,
-    last: f64,
+    /// The last value, if the next one follows it.
+    last: Option<f64>,
     low: f64,
     high: f64,
     /// Smallest non-zero step.
@@ -114,7 +115,7 @@ impl Watch {
         };
         Self {
             samples: 0,
-            last: 0.0,
+            last: None,
             low: f64::INFINITY,
             high: f64::NEG_INFINITY,
             resolution: f64::INFINITY,
@@ -125,8 +126,8 @@ impl Watch {
 
     /// Adds the next value.
     pub(super) fn take(&mut self, value: f64) {
-        if self.samples > 0 {
-            let step = value - self.last;
+        if let Some(last) = self.last.replace(value) {
+            let step = value - last;
             if step != 0.0 {
                 self.resolution = self.resolution.min(step.abs());
             }
@@ -137,8 +138,13 @@ impl Watch {
         self.is_whole &= value.fract() == 0.0;
         self.low = self.low.min(value);
         self.high = self.high.max(value);
-        self.last = value;
         self.samples += 1;
+    }
+
+    /// Forgets the last value, since the next one does not follow it.
+    pub(super) fn interrupt(&mut self) {
+        self.last = None;
+        self.candidates.iter_mut().for_each(|own| own.step = None);
     }
 
     /// Period by which the column wraps, if it does: the one with the smoothest result.

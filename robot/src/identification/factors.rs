@@ -2,7 +2,10 @@
 
 use crate::{
     error::{Error, Problem},
-    identification::identifier::{essential_or_not, without_essential_estimates},
+    identification::{
+        identifier::{essential_or_not, without_essential_estimates},
+        standstill::without_standstills,
+    },
     robot::Robot,
 };
 use overact_codegen::diagnostic::Code;
@@ -13,6 +16,8 @@ use overact_identification::{
 
 impl Robot {
     /// R factors of runs; with `equations`, also for successive equations.
+    ///
+    /// Long standstills are left out as in an identification.
     ///
     /// # Errors
     /// Runs that cannot be used, or a description with settings that factors do not support.
@@ -25,7 +30,25 @@ impl Robot {
         progress: &dyn Fn(Progress<'_>),
     ) -> Result<Vec<RunFactors>, Error> {
         let factory = self.factory(settings)?;
-        Ok(factory.runs(logs, origin, equations, progress)?)
+        let parts = without_standstills(logs, settings)?;
+        let times = parts
+            .iter()
+            .zip(logs)
+            .enumerate()
+            .flat_map(|(number, (parts, log))| {
+                let time = origin.times_us.get(number).copied().flatten();
+                let start = move |part: &Log| {
+                    let microseconds = 1e6 * (part.start() - log.start());
+                    time.map(|time| time + microseconds.round() as i64)
+                };
+                parts.iter().map(start)
+            });
+        let origin = Origin {
+            serial: origin.serial.clone(),
+            times_us: times.collect(),
+        };
+        let runs: Vec<Log> = parts.into_iter().flatten().collect();
+        Ok(factory.runs(&runs, &origin, equations, progress)?)
     }
 
     /// Factory for R factors of runs one by one, also of many robots.

@@ -4,6 +4,7 @@ use crate::{
     error::{Error, Problem},
     identification::{
         functions_base::functions_base, motors::at_motors, partitions::partitions, runs::Runs,
+        standstill::without_standstills,
     },
     robot::Robot,
 };
@@ -147,6 +148,23 @@ impl<'a> Identifier<'a> {
     /// # Errors
     /// Runs or settings that cannot be used, or data that determine no parameter.
     pub fn run(&self) -> Result<Identification, Error> {
+        let (runs, validation) = (self.moving(self.runs)?, self.moving(self.validation)?);
+        let own = Identifier {
+            runs: &runs,
+            validation: &validation,
+            ..self.clone()
+        };
+        own.calibrated()
+    }
+
+    /// Parts of runs without long standstills.
+    fn moving(&self, runs: &[Log]) -> Result<Vec<Log>, Error> {
+        let parts = without_standstills(runs, &self.with_defaults())?;
+        Ok(parts.into_iter().flatten().collect())
+    }
+
+    /// Identification after a calibration, if that is requested.
+    fn calibrated(&self) -> Result<Identification, Error> {
         let Some(scope) = self.calibration else {
             return self.identified();
         };
@@ -318,15 +336,21 @@ impl<'a> Identifier<'a> {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn study(&self) -> Result<Study, Error> {
+        let (runs, validation) = (self.moving(self.runs)?, self.moving(self.validation)?);
+        let own = Identifier {
+            runs: &runs,
+            validation: &validation,
+            ..self.clone()
+        };
         if self.gravity_direction {
-            let (mut study, found) = self.in_gravity(|own, _| own.studied())?;
+            let (mut study, found) = own.in_gravity(|own, _| own.studied())?;
             study.warnings.splice(0..0, found.warnings());
             return Ok(study);
         }
         if !self.gains {
-            return self.studied();
+            return own.studied();
         }
-        let (mut study, gains) = self.with_gains(|own, _| own.studied())?;
+        let (mut study, gains) = own.with_gains(|own, _| own.studied())?;
         study.warnings.splice(0..0, gains.warnings());
         Ok(study)
     }

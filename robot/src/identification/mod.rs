@@ -7,4 +7,5 @@ pub(crate) mod instruments;
 pub(crate) mod motors;
 pub(crate) mod partitions;
 pub(crate) mod runs;
+pub(crate) mod standstill;
 pub(crate) mod tracking;

@@ -1,11 +1,15 @@
 //! Runs of an identification: measured logs, or the virtual experiment.
 
-use crate::{error::Error, experiment::VirtualExperiment, robot::Robot};
+use crate::{
+    error::{Error, Problem},
+    experiment::VirtualExperiment,
+    robot::Robot,
+};
 use overact::Model;
 use overact_codegen::description::{self, Instruments};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{Gain, Log, Mapping};
-use overact_logs::Array;
+use overact_logs::{Array, NeededSamples};
 use overact_simulation::Record;
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
@@ -31,7 +35,8 @@ impl Runs {
 impl Robot {
     /// Reads logs, each with a flag for the payload, with the columns of the description.
     ///
-    /// `progress` is called with the completed fraction, from 0 to 1.
+    /// A log with gaps in its time is several runs ([`read_runs`](Self::read_runs)). `progress` is
+    /// called with the completed fraction, from 0 to 1.
     ///
     /// # Errors
     /// All errors of all logs.
@@ -40,66 +45,126 @@ impl Robot {
         files: &[(&Path, bool)],
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Vec<Log>, Error> {
+        Ok(self
+            .read_runs(files, progress)?
+            .into_iter()
+            .flatten()
+            .collect())
+    }
+
+    /// Reads the runs of each log: several if its time has gaps too long to be interpolated.
+    ///
+    /// The description's filters are not run across gaps. Stretches that are too short for them are
+    /// left out, and the first run of a log has a note on both ([`Log::note`]).
+    ///
+    /// ```no_run
+    /// use overact_robot::Robot;
+    /// use std::path::Path;
+    ///
+    /// # fn main() -> Result<(), overact_robot::Error> {
+    /// let robot = Robot::from_toml("robots/dualv.toml")?;
+    /// let runs = robot.read_runs(&[(Path::new("log.csv"), false)], &|_| {})?;
+    /// println!("{} runs, the first one from {} s on", runs[0].len(), runs[0][0].start());
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// All errors of all logs.
+    pub fn read_runs(
+        &self,
+        files: &[(&Path, bool)],
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Vec<Vec<Log>>, Error> {
         let mapping = self.mapping();
+        let needed = |frequency: f64| self.settings(frequency).samples_needed();
         let (mut logs, mut errors) = (Vec::new(), Vec::new());
-        for log in overact_logs::read_all(files, &mapping, progress) {
-            match log.and_then(|log| self.meant(log)) {
-                Ok(log) => logs.push(log),
+        for runs in overact_logs::read_runs(files, &mapping, &needed, progress) {
+            match runs.and_then(|runs| self.all_meant(runs)) {
+                Ok(runs) => logs.push(runs),
                 Err(error) => errors.push(self.located(error).into()),
             }
         }
-        if errors.is_empty()
-            && let Some(mapping) = self.references(&mapping)
-        {
-            return with_references(logs, files, &mapping);
+        if !errors.is_empty() {
+            return Err(Error::Several(errors));
         }
-        if errors.is_empty() {
-            Ok(logs)
-        } else {
-            Err(Error::Several(errors))
-        }
+        let Some(mapping) = self.references(&mapping) else {
+            return Ok(logs);
+        };
+        let references = overact_logs::read_runs(files, &mapping, &needed, &|_| ());
+        let pairs = logs.into_iter().zip(references);
+        pairs
+            .map(|(runs, references)| with_references(runs, references?))
+            .collect()
     }
-}
 
-impl Robot {
-    /// Log of arrays in memory with the columns of the description; `name` is used in messages.
+    /// The only run of arrays in memory with the columns of the description; `name` is used in
+    /// messages.
     ///
     /// # Errors
-    /// Missing arrays, numbers that are not finite, or nonuniform time.
+    /// Missing arrays, numbers that are not finite, nonuniform time, or several runs.
     pub fn log_of_arrays(
         &self,
         name: &str,
         arrays: &[Array<'_>],
         payload: bool,
     ) -> Result<Log, Error> {
-        let mapping = self.mapping();
-        let log = overact_logs::read_arrays(name, arrays, &mapping, payload);
-        let log = log.and_then(|log| self.meant(log));
-        let log = log.map_err(|error| self.located(error))?;
-        match self.references(&mapping) {
-            None => Ok(log),
-            Some(mapping) => {
-                Ok(log
-                    .with_instruments(overact_logs::read_arrays(name, arrays, &mapping, payload)?))
-            }
-        }
+        only(name, self.runs_of_arrays(name, arrays, payload)?)
     }
 
-    /// Log of a file's bytes in any supported format; `name` is used in messages.
+    /// Runs of arrays in memory: several if the time has gaps, as [`read_runs`](Self::read_runs).
+    ///
+    /// # Errors
+    /// Missing arrays, numbers that are not finite, or nonuniform time.
+    pub fn runs_of_arrays(
+        &self,
+        name: &str,
+        arrays: &[Array<'_>],
+        payload: bool,
+    ) -> Result<Vec<Log>, Error> {
+        self.runs(&|mapping, needed| {
+            overact_logs::runs_of_arrays(name, arrays, mapping, payload, needed)
+        })
+    }
+
+    /// The only run of a file's bytes in any supported format; `name` is used in messages.
+    ///
+    /// # Errors
+    /// As [`read_logs`](Self::read_logs), or several runs.
+    pub fn log_of_bytes(&self, name: &str, bytes: Arc<[u8]>, payload: bool) -> Result<Log, Error> {
+        only(name, self.runs_of_bytes(name, bytes, payload)?)
+    }
+
+    /// Runs of a file's bytes: several if the time has gaps, as [`read_runs`](Self::read_runs).
     ///
     /// # Errors
     /// As [`read_logs`](Self::read_logs).
-    pub fn log_of_bytes(&self, name: &str, bytes: Arc<[u8]>, payload: bool) -> Result<Log, Error> {
+    pub fn runs_of_bytes(
+        &self,
+        name: &str,
+        bytes: Arc<[u8]>,
+        payload: bool,
+    ) -> Result<Vec<Log>, Error> {
+        self.runs(&|mapping, needed| {
+            overact_logs::runs_of_bytes(name, &bytes, mapping, payload, needed)
+        })
+    }
+
+    /// Runs of one log, and those of its references, if the robot is to be simulated along them.
+    fn runs(&self, read: &ReadRuns<'_>) -> Result<Vec<Log>, Error> {
         let mapping = self.mapping();
-        let log = overact_logs::read_bytes(name, &bytes, &mapping, payload);
-        let log = log.and_then(|log| self.meant(log));
-        let log = log.map_err(|error| self.located(error))?;
+        let needed = |frequency: f64| self.settings(frequency).samples_needed();
+        let runs = read(&mapping, &needed).and_then(|runs| self.all_meant(runs));
+        let runs = runs.map_err(|error| self.located(error))?;
         match self.references(&mapping) {
-            None => Ok(log),
-            Some(mapping) => Ok(
-                log.with_instruments(overact_logs::read_bytes(name, &bytes, &mapping, payload)?)
-            ),
+            None => Ok(runs),
+            Some(mapping) => with_references(runs, read(&mapping, &needed)?),
         }
+    }
+
+    /// Checks all runs of a log.
+    fn all_meant(&self, runs: Vec<Log>) -> Result<Vec<Log>, overact_identification::Error> {
+        runs.into_iter().map(|log| self.meant(log)).collect()
     }
 
     /// Checks that a log's columns can have the meaning that the description gives them.
@@ -168,19 +233,45 @@ impl Robot {
     }
 }
 
-/// Adds the recorded references to runs.
-fn with_references(
-    logs: Vec<Log>,
-    files: &[(&Path, bool)],
-    mapping: &Mapping,
-) -> Result<Vec<Log>, Error> {
-    let references = overact_logs::read_all(files, mapping, &|_| ());
-    let pairs = logs.into_iter().zip(references);
-    let with_reference = |(log, reference): (Log, Result<Log, _>)| {
-        let reference = reference.map_err(Error::from)?;
-        Ok(log.with_instruments(reference))
-    };
-    pairs.map(with_reference).collect()
+/// Reads the runs of a log with a mapping.
+type ReadRuns<'a> =
+    dyn Fn(&Mapping, &NeededSamples<'_>) -> Result<Vec<Log>, overact_identification::Error> + 'a;
+
+/// The only run of a log.
+///
+/// # Errors
+/// Several runs.
+fn only(name: &str, mut runs: Vec<Log>) -> Result<Log, Error> {
+    if runs.len() < 2
+        && let Some(run) = runs.pop()
+    {
+        return Ok(run);
+    }
+    let message = format!(
+        "the time has gaps, which split the log into {} runs",
+        runs.len()
+    );
+    Err(Problem::new(Code::LOG_TIME, message)
+        .file(name)
+        .help("write each run to its own log")
+        .into())
+}
+
+/// Adds the recorded references to the runs of a log.
+fn with_references(runs: Vec<Log>, references: Vec<Log>) -> Result<Vec<Log>, Error> {
+    if runs.len() != references.len() {
+        let name = runs.first().map_or("", Log::name);
+        let message = format!(
+            "the time has gaps, which split the measured columns into {} runs and those of the references into {}",
+            runs.len(),
+            references.len()
+        );
+        return Err(Problem::new(Code::LOG_TIME, message).file(name).into());
+    }
+    let pairs = runs.into_iter().zip(references);
+    Ok(pairs
+        .map(|(run, reference)| run.with_instruments(reference))
+        .collect())
 }
 
 impl VirtualExperiment<'_> {

@@ -164,8 +164,9 @@ fn of_all(
 }
 
 /// A check with the residual after the correction, and the fraction allowed as threshold.
-fn measured(check: Check, before: f64, after: f64, part: f64) -> Check {
+fn measured(mut check: Check, before: f64, after: f64, part: f64) -> Check {
     let origin = format!("{:.0} % of the residual with the fault", 100.0 * part);
+    check.explained = Some(1.0 - (after / before).powi(2));
     check
         .measured(100.0 * after, "%")
         .against(100.0 * part * before, origin)

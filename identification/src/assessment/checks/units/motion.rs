@@ -17,8 +17,11 @@ const SMALLEST_ACCELERATION: f64 = 1e-3;
 const SLOW_SAMPLING: f64 = 20.0;
 
 /// Longest travel of a linear drive, in m and in reaches of the robot.
+///
+/// Of a large robot it may be longer than the first one, up to some reaches.
 const LONGEST_TRAVEL: f64 = 30.0;
 const LONGEST_BY_REACH: f64 = 100.0;
+const LONGEST_OF_LARGE: f64 = 3.0;
 
 /// Largest ratio of a travel, or a torque, to the described one.
 const BY_DESCRIBED_TRAVEL: f64 = 30.0;
@@ -250,8 +253,10 @@ impl Drive {
         let longest = if self.is_revolute {
             f64::INFINITY
         } else {
-            let reach = scales.reach().map(|reach| LONGEST_BY_REACH * reach);
-            reach.unwrap_or(LONGEST_TRAVEL)
+            scales.reach().map_or(LONGEST_TRAVEL, |reach| {
+                let longest = LONGEST_TRAVEL.max(LONGEST_OF_LARGE * reach);
+                longest.min(LONGEST_BY_REACH * reach)
+            })
         };
         let longest = described.map_or(longest, |own| longest.min(BY_DESCRIBED_TRAVEL * own));
         let (unit, usual) = if self.is_revolute {

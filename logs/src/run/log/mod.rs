@@ -2,20 +2,22 @@
 //!
 //! It is in memory, or in a file that is read block by block.
 
+mod part;
+mod reader;
+
 use overact::Code;
 use std::sync::Arc;
 
 use crate::{
-    bytes::temporary_store::TemporaryStore,
     error::{Error, Problem},
     mapping::load::Load,
     period_sums::{MeanOfOtherPeriods, Periods},
-    run::{rows, source::Files},
-    samples::Samples,
+    run::{block_ranges::BlockRanges, rows, source::Files, time_range},
 };
 
-/// Rows of a block.
-const BLOCK_ROWS: usize = 4096;
+use reader::Rows;
+
+pub use reader::Reader;
 
 /// One measured or virtual run.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +25,8 @@ pub struct Log {
     name: String,
     sampling_frequency: f64,
     actuators: usize,
+    /// Number of samples of the source before the run.
+    first: usize,
     samples: usize,
     source: Source,
     /// Offset subtracted from the position of each actuator of the source.
@@ -40,6 +44,23 @@ pub struct Log {
     /// Whether positions were logged within one turn and are unwrapped.
     is_unwrapped: bool,
     is_resampled: bool,
+    /// Place in the recording, if that has gaps.
+    stretch: Option<RecordingPart>,
+    /// Ranges of the positions, if they are known from reading.
+    ranges: Option<Arc<BlockRanges>>,
+    /// Time of the first sample in ranges of time, s.
+    first_time: f64,
+}
+
+/// Place of a run in a recording with gaps.
+#[derive(Debug, Clone, PartialEq)]
+struct RecordingPart {
+    /// Range of time as in `log.csv[10:60]`.
+    range: String,
+    /// Time since the first sample of the recording, s.
+    start: f64,
+    /// Whether an earlier stretch of the recording is used, too.
+    continues: bool,
 }
 
 /// Source of the samples.
@@ -101,6 +122,7 @@ impl Log {
             name,
             sampling_frequency,
             actuators,
+            first: 0,
             samples: positions.len() / actuators,
             source: Source::Memory([positions.into(), torques.into(), Arc::default()]),
             offsets: vec![0.0; actuators],
@@ -112,6 +134,9 @@ impl Log {
             note: None,
             is_unwrapped: false,
             is_resampled: false,
+            stretch: None,
+            ranges: None,
+            first_time: 0.0,
         })
     }
 
@@ -139,9 +164,26 @@ impl Log {
         }
     }
 
-    /// Adds a note on changes of the samples.
+    /// Sets the note on changes of the samples.
     pub(crate) fn with_note(mut self, note: Option<String>) -> Self {
         self.note = note;
+        self
+    }
+
+    /// The same run with one more sentence in its note.
+    #[must_use]
+    pub fn with_more_notes(mut self, more: &str) -> Self {
+        self.note = Some(match self.note {
+            Some(own) => format!("{own}; {more}"),
+            None => more.to_owned(),
+        });
+        self
+    }
+
+    /// The same run without a note.
+    #[must_use]
+    pub fn without_note(mut self) -> Self {
+        self.note = None;
         self
     }
 
@@ -177,6 +219,7 @@ impl Log {
     pub fn others(&self, periods: Periods) -> Self {
         Self {
             source: Source::Others(Box::new(self.clone()), Arc::new(periods)),
+            first: 0,
             // The other periods belong to this run, so offsets and torque factors are already
             // applied.
             offsets: vec![0.0; self.actuators],
@@ -198,6 +241,7 @@ impl Log {
             offsets: vec![0.0; files.actuators()],
             torque_factors: vec![1.0; files.actuators()],
             actuators: files.actuators(),
+            first: 0,
             samples,
             source: Source::Files(Box::new(files)),
             payload,
@@ -207,6 +251,9 @@ impl Log {
             note: None,
             is_unwrapped: false,
             is_resampled: false,
+            stretch: None,
+            ranges: None,
+            first_time: 0.0,
         }
     }
 
@@ -307,9 +354,14 @@ impl Log {
     }
 
     /// The same run under another name.
+    ///
+    /// If it is a stretch of a recording with gaps, its range of time follows.
     #[must_use]
     pub fn with_name(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
+        if let Some(stretch) = &self.stretch {
+            self.name += &stretch.range;
+        }
         self
     }
 
@@ -380,20 +432,37 @@ impl Log {
         let rows = match &self.source {
             Source::Memory(all) => Rows::Memory(all.each_ref().map(|own| &**own)),
             Source::Files(files) => match &files.spill {
-                Some(spill) => Rows::Spilled(spill, 0),
+                Some(spill) => Rows::Spilled(&spill.store, spill.first),
                 None => Rows::Files(Box::new(rows::Rows::new(files)?)),
             },
             Source::Others(log, periods) => {
                 Rows::Others(Box::new(log.reader()?), MeanOfOtherPeriods::new(periods))
             }
         };
-        Ok(Reader {
+        let mut reader = Reader {
             rows,
             name: &self.name,
             offsets: &self.offsets,
             torque_factors: &self.torque_factors,
             left: self.samples,
-        })
+        };
+        reader.skip(self.first)?;
+        Ok(reader)
+    }
+
+    /// Adds what is known from reading: ranges of the positions, and the time of the first sample.
+    ///
+    /// The first sample is `start` (s) after that of its recording.
+    pub(crate) fn with_ranges(
+        mut self,
+        ranges: BlockRanges,
+        first_time: Option<f64>,
+        start: f64,
+    ) -> Self {
+        self.ranges = Some(Arc::new(ranges));
+        let own = first_time.filter(|time| !time_range::is_absolute(*time));
+        self.first_time = own.unwrap_or(start);
+        self
     }
 
     /// All positions (m, rad) and torques (N, N m), samples × n each, row-major.
@@ -408,105 +477,5 @@ impl Log {
             torques.extend(block.torques);
         }
         Ok((positions, torques))
-    }
-}
-
-/// Reads a run block by block.
-#[derive(Debug)]
-pub struct Reader<'a> {
-    rows: Rows<'a>,
-    name: &'a str,
-    /// Offset subtracted from the position of each actuator.
-    offsets: &'a [f64],
-    /// Factor of the torque of each actuator.
-    torque_factors: &'a [f64],
-    /// Number of samples left.
-    left: usize,
-}
-
-/// Remaining rows of the source.
-#[derive(Debug)]
-enum Rows<'a> {
-    Memory([&'a [f64]; 3]),
-    Files(Box<rows::Rows<'a>>),
-    /// A temporary file, and the number of samples read.
-    Spilled(&'a TemporaryStore, usize),
-    Others(Box<Reader<'a>>, MeanOfOtherPeriods<'a>),
-}
-
-impl Reader<'_> {
-    /// The next block of samples, or `None` at the end.
-    ///
-    /// # Errors
-    /// A file that cannot be read any more, or has changed since it was checked.
-    #[expect(clippy::should_implement_trait, reason = "an iterator has no errors")]
-    pub fn next(&mut self) -> Result<Option<Samples>, Error> {
-        let count = BLOCK_ROWS.min(self.left);
-        if count == 0 {
-            return Ok(None);
-        }
-        self.left -= count;
-        let mut block = self.block(count)?;
-        for row in block.positions.chunks_exact_mut(self.offsets.len()) {
-            row.iter_mut()
-                .zip(self.offsets)
-                .for_each(|(position, offset)| *position -= offset);
-        }
-        for row in block.torques.chunks_exact_mut(self.torque_factors.len()) {
-            row.iter_mut()
-                .zip(self.torque_factors)
-                .for_each(|(torque, factor)| *torque *= factor);
-        }
-        Ok(Some(block))
-    }
-
-    /// The next samples as stored in the source.
-    fn block(&mut self, count: usize) -> Result<Samples, Error> {
-        let size = count * self.offsets.len();
-        match &mut self.rows {
-            Rows::Memory(all) => {
-                let [positions, torques, velocities] = all.each_mut().map(|rest| {
-                    // Velocities may be absent.
-                    let (now, later) = rest.split_at(size.min(rest.len()));
-                    *rest = later;
-                    now.to_vec()
-                });
-                Ok(Samples {
-                    positions,
-                    torques,
-                    velocities,
-                })
-            }
-            Rows::Files(rows) => {
-                let mut block = Samples::default();
-                for _ in 0..count {
-                    if !rows.next(&mut block)? {
-                        let problem = Problem::new(
-                            Code::UNREADABLE_LOG,
-                            "the file has become shorter while it was read",
-                        );
-                        return Err(problem.file(self.name).into());
-                    }
-                }
-                Ok(block)
-            }
-            Rows::Spilled(spill, taken) => {
-                let block = spill.read(*taken, count);
-                *taken += count;
-                block.map_err(|error| {
-                    let message =
-                        format!("its numbers can't be read from a temporary file: {error}");
-                    Problem::new(Code::UNREADABLE_LOG, message)
-                        .file(self.name)
-                        .into()
-                })
-            }
-            Rows::Others(reader, others) => {
-                let mut block = reader.next()?.unwrap_or_default();
-                others.replace(&mut block.positions);
-                block.velocities.clear();
-                Ok(block)
-            }
-        }
     }
 }
