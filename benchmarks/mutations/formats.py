@@ -1,6 +1,7 @@
 """Damaged robot files of each format through `overact import`, and each imported description through `check`.
 
     python3 benchmarks/mutations/formats.py [--count N] [--seed S] [--format xml,urdf,sdf,par,toml] [--files FOLDER]
+        [--jobs N]
 
 Needs Python 3.11 or newer and a build of this repository: `OVERACT` names its program, else target/debug/overact.
 The damaged files are those of interchange/tests/models and robots, and of the folder `--files`. Descriptions go
@@ -68,12 +69,13 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--format", default="xml,urdf,sdf,par,toml")
     parser.add_argument("--files", type=pathlib.Path)
+    parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()
     is_bad = False
     for suffix in given.format.split(","):
         files = originals(suffix, given.files)
         codes, all_faults, longest = collections.Counter(), collections.Counter(), 0.0
-        with concurrent.futures.ProcessPoolExecutor(2) as pool:
+        with concurrent.futures.ProcessPoolExecutor(given.jobs) as pool:
             for code, took, found, kept in pool.map(trial, *zip(*((suffix, at, given.seed, files) for at in range(given.count))), chunksize=8):
                 codes[code] += 1
                 all_faults.update(found)

@@ -7,7 +7,7 @@ use crate::{
         layout::{self, Layout},
         misfit,
         network::Network,
-        simple,
+        simple, undriven,
     },
     bounds,
     experiment::{self, Experiment},
@@ -188,7 +188,7 @@ impl<'m> Robot<'m> {
     /// Computes skeleton, chains and legs; `None` after an error.
     pub(crate) fn new(files: &Files, model: &'m Model, options: &Options) -> Option<Self> {
         let mut network = Network::new(files, model)?;
-        check_motors(files, &network)?;
+        undriven::check(files, &network)?;
         let layout = layout::find(files, &mut network, options)?;
         let plan = Plan::new(files, &network, &layout)?;
         Some(Self {
@@ -356,26 +356,6 @@ fn off_limits(model: &mut Model, options: &Options) {
         );
         model.notes.push(note);
     }
-}
-
-/// Checks that a robot with loops has as many motors as degrees of freedom.
-fn check_motors(files: &Files, network: &Network<'_>) -> Option<()> {
-    let model = network.model;
-    if model.closures.is_empty() {
-        return Some(());
-    }
-    let motors = model.joints.iter().filter(|joint| joint.actuated).count();
-    if motors >= network.mobility {
-        return Some(());
-    }
-    let message = format!(
-        "the robot has {} degrees of freedom, and {motors} motors",
-        network.mobility
-    );
-    let help =
-        "name all driven joints, `--actuated JOINT,JOINT`, or fix in the file what does not move";
-    files.refuse(message, help);
-    None
 }
 
 /// Rejects ball joints in serial robots: every joint of those has a motor in a description.

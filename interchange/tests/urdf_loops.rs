@@ -174,6 +174,14 @@ fn joints_of_yaml_may_be_universal_or_fixed() {
             expected
         );
     }
+    let z = "<axis xyz='0 0 1'/>";
+    let both = "<link name='b_Z'/>".to_owned()
+        + &joint("k_Z", ["a", "b_Z"], "revolute", place).replace("<axis xyz='0 1 0'/>", z)
+        + &joint("k_X", ["b_Z", "b"], "revolute", "").replace("<axis xyz='0 1 0'/>", x);
+    assert_eq!(
+        plain(read(&row(&single), &kinds("UJOINT_ZX"), "j,k_Z,k_X,l")),
+        plain(read(&row(&both), "", "j,k_Z,k_X,l"))
+    );
     let fixed = joint("k", ["a", "b"], "fixed", place);
     assert_eq!(
         plain(read(&row(&single), &kinds("FIXED"), "j,l")),

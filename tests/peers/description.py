@@ -43,6 +43,23 @@ def relative_turn(before, after):
     return before.T @ after
 
 
+def with_followers(values, followers):
+    """Positions of joints, or (position, rate, acceleration), with those of the joints that follow them.
+
+    `followers`: leader, factor and offset by name.
+    """
+    every = dict(values)
+    for _ in followers:
+        for name, (leader, factor, offset) in followers.items():
+            if leader in every and name not in every:
+                value = factor * np.asarray(every[leader], dtype=float)
+                every[name] = value + (offset if value.ndim == 0 else np.eye(len(value))[0] * offset)
+            elif name in every and leader not in every:
+                value = np.asarray(every[name], dtype=float)
+                every[leader] = (value - (offset if value.ndim == 0 else np.eye(len(value))[0] * offset)) / factor
+    return every
+
+
 class Body:
     """Frame of a joint's body, its angular velocity and acceleration, and those of its origin."""
 
@@ -65,11 +82,16 @@ class Description:
         self.legs = [place["name"] for place in self.toml["place"]]
         # The comment of each joint names the bodies of the file that it connects.
         self.between = {}
+        # Names of joints in the file, where those of the description differ.
+        self.in_file = {}
         for block in re.split(r"\n(?=\n)", text):
             joint = re.search(r"\[\[leg\.(\w+)\.joint\]\]\nname = \"(\w+)\"", block)
             said = re.search(r"from `([^`]*)`\s+to\s+`([^`]*)`", block.replace("\n#", ""))
             if joint and said:
                 self.between[joint.groups()] = said.groups()
+            own = re.search(r"^# `([^`]*)` of line", block, re.M)
+            if joint and own:
+                self.in_file[joint.groups()] = own[1]
             platform = re.search(r"Displacements of the platform `([^`]*)`", block)
             if joint and platform:
                 self.between[joint.groups()] = ("ground", platform[1])
@@ -91,6 +113,15 @@ class Description:
             for joint in self.toml["leg"][leg]["joint"]:
                 if joint["type"] != "fixed" and "q_" not in str(joint.get("theta", "")) + str(joint.get("r", "")):
                     yield leg, joint["name"]
+
+    def names(self):
+        """Names of these joints in the file."""
+        return [self.in_file.get(key, key[1]) for key in self.joints()]
+
+    def actuated(self):
+        """Names in the file of the joints with a motor, in order."""
+        every = [(leg, joint) for leg in self.legs for joint in self.toml["leg"][leg]["joint"] if joint.get("actuated")]
+        return [self.in_file.get((leg, joint["name"]), joint["name"]) for leg, joint in every]
 
     def motion(self, q, rates, accelerations):
         """Motions of all bodies by leg and joint."""

@@ -2,18 +2,27 @@
 
 import mujoco
 import numpy as np
-from description import relative_turn
+from description import relative_turn, with_followers
 
 
 class Engine:
     def __init__(self, file, description, home):
-        self.model = mujoco.MjModel.from_xml_string(*without_pictures(file))
+        self.model = model_of(file)
         self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         self.model.dof_frictionloss[:] = 0
+        # Forces that descriptions leave out, as import reports.
+        self.model.opt.density = self.model.opt.viscosity = 0
+        self.model.tendon_stiffness[:] = self.model.tendon_damping[:] = 0
+        if "end" in (key for leg in description.legs for key in description.toml["leg"][leg]):
+            self.model.jnt_stiffness[:] = 0
         # Ball joints of descriptions have no torques, as import reports.
         for dof in range(self.model.nv):
             if self.model.jnt_type[self.model.dof_jntid[dof]] == mujoco.mjtJoint.mjJNT_BALL:
                 self.model.dof_damping[dof] = self.model.dof_armature[dof] = 0
+        # Descriptions scale gravity by a compensation of all weights; import reports others.
+        self.model.body_gravcomp[:] = 0
+        self.model.opt.gravity[:] = description.toml["gravity"]
+        self.followers = followers_of(self.model)
         self.data = mujoco.MjData(self.model)
         self.description = description
         self.carried = description.carried()
@@ -25,7 +34,8 @@ class Engine:
         model, data = self.model, self.data
         still = self.description.motion(home, 0 * home, 0 * home)
         data.qpos[:] = model.qpos0
-        for (_, name), value in zip(self.description.joints(), home):
+        values = dict(zip(self.description.names(), home))
+        for name, value in with_followers(values, self.followers).items():
             joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
             if joint >= 0:
                 data.qpos[model.jnt_qposadr[joint]] = value
@@ -99,6 +109,8 @@ class Engine:
     def turned(self, bodies, body):
         """Rotation, angular velocity and acceleration of a body of the engine."""
         while body and self.model.body(body).name not in self.carried:
+            if self.is_held(body):
+                return self.rotation_at_zero(body), np.zeros(3), np.zeros(3)
             if self.model.body_jntnum[body]:
                 raise RuntimeError(f"the description has no body `{self.model.body(body).name}`")
             parent = self.model.body_parentid[body]
@@ -110,6 +122,18 @@ class Engine:
             return np.eye(3), np.zeros(3), np.zeros(3)
         return self.stage(bodies, self.model.body(body).name)
 
+    def is_held(self, body):
+        """Whether a body is free in the file and fixed by import."""
+        model, first = self.model, self.model.body_jntadr[body]
+        is_free = first >= 0 and model.jnt_type[first] == mujoco.mjtJoint.mjJNT_FREE
+        return is_free and model.body(body).name not in self.carried
+
+    def rotation_at_zero(self, body):
+        address = self.model.jnt_qposadr[self.model.body_jntadr[body]]
+        turn = np.zeros(9)
+        mujoco.mju_quat2Mat(turn, self.model.qpos0[address + 3 : address + 7])
+        return turn.reshape(3, 3)
+
     def stage(self, bodies, name):
         """Rotation, angular velocity and acceleration of a body of the description."""
         if name not in self.carried:
@@ -119,7 +143,9 @@ class Engine:
 
     def moved(self, q, rates, accelerations):
         """Positions of the joints themselves, needed for slides."""
-        self.scalar = {name: (q[i], rates[i], accelerations[i]) for i, (_, name) in enumerate(self.description.joints())}
+        states = np.array([q, rates, accelerations])
+        own = dict(zip(self.description.names(), states.T))
+        self.scalar = with_followers(own, self.followers)
 
     def state(self, bodies):
         model = self.model
@@ -127,6 +153,8 @@ class Engine:
         for joint in range(model.njnt):
             body = model.jnt_bodyid[joint]
             at, stages = joint - model.body_jntadr[body], self.stages(body)
+            if self.is_held(body):
+                continue
             turn, rate, acceleration = self.stage(bodies, stages[at])
             qa, va = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
             if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_FREE:
@@ -199,34 +227,39 @@ class Engine:
 
     def on_motors(self, torques, sheet):
         force = np.zeros(self.model.nv)
-        for (_, name), torque in zip(actuated(self.description), torques):
+        for name, torque in zip(self.description.actuated(), torques):
             joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
             force[self.model.jnt_dofadr[joint]] = torque
         return force
 
 
-def actuated(description):
-    for leg in description.legs:
-        for joint in description.toml["leg"][leg]["joint"]:
-            if joint.get("actuated"):
-                yield leg, joint["name"]
+def followers_of(model):
+    """Leader, factor and offset of joints by name, from the joint equalities."""
+    found = {}
+    for at in range(model.neq):
+        if model.eq_type[at] != mujoco.mjtEq.mjEQ_JOINT or model.eq_obj2id[at] < 0:
+            continue
+        own, leader = model.eq_obj1id[at], model.eq_obj2id[at]
+        offset, factor = model.eq_data[at][:2]
+        references = [model.qpos0[model.jnt_qposadr[joint]] for joint in (own, leader)]
+        found[model.joint(own).name] = (model.joint(leader).name, factor, offset + references[0] - factor * references[1])
+    return found
 
 
-def without_pictures(file):
-    """The model without meshes, which may be missing, and the folder's other files for its includes."""
-    from pathlib import Path
-    import re
-
-    def text(path):
-        text = Path(path).read_text()
-        text = re.sub(r"<!--.*?-->", "", text, flags=re.S)
-        include = lambda m: re.sub(r"</?mujoco[^>]*>|<\?xml.*?\?>", "", text_of(Path(path).parent / m[1]))
-        return re.sub(r"<include\s+file=[\"'](.*?)[\"']\s*/>", include, text)
-
-    def text_of(path):
-        return text(path)
-
-    whole = text(file)
-    whole = re.sub(r"<asset>.*?</asset>", "", whole, flags=re.S)
-    whole = re.sub(r"<geom\b[^>]*?/>", "", whole, flags=re.S)
-    return (whole,)
+def model_of(file):
+    """The model of a file, without pictures, and without meshes if some are missing."""
+    try:
+        return mujoco.MjModel.from_xml_path(str(file))
+    except ValueError:
+        pass
+    spec = mujoco.MjSpec.from_file(str(file))
+    for geom in spec.geoms:
+        geom.material = ""
+        if geom.type == mujoco.mjtGeom.mjGEOM_MESH:
+            # Names of shapes may be used elsewhere.
+            geom.type, geom.meshname, geom.size, geom.mass = mujoco.mjtGeom.mjGEOM_SPHERE, "", [1e-3, 0, 0], 0
+    for part in [*spec.sites, *spec.tendons]:
+        part.material = ""
+    for part in [*spec.skins, *spec.materials, *spec.textures, *spec.meshes]:
+        spec.delete(part)
+    return spec.compile()

@@ -1,21 +1,27 @@
 """Pinocchio as the engine of an imported robot."""
 
+import re
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import numpy as np
 import pinocchio
-from description import relative_turn
+from description import relative_turn, with_followers
 
 
 class Engine:
     """Tree of a URDF. Ball joints of the description are three joints about x, y and z here."""
 
     def __init__(self, file, description, home):
-        self.model = pinocchio.buildModelFromUrdf(str(file))
+        root = with_universal_joints(file)
+        self.model = pinocchio.buildModelFromXML(ElementTree.tostring(root, encoding="unicode"))
         self.data = self.model.createData()
         self.description = description
         self.carried = description.carried()
-        root = ElementTree.parse(file).getroot()
+        mimics = {joint.get("name"): joint.find("mimic") for joint in root.findall("joint") if joint.find("mimic") is not None}
+        self.followers = {
+            name: (mimic.get("joint"), float(mimic.get("multiplier", 1)), float(mimic.get("offset", 0))) for name, mimic in mimics.items()
+        }
         self.damping = np.zeros(self.model.nv)
         self.child = {}
         for joint in root.findall("joint"):
@@ -31,8 +37,8 @@ class Engine:
         """Rotations between the frames of description and engine."""
         still = self.description.motion(home, 0 * home, 0 * home)
         q = pinocchio.neutral(self.model)
-        values = {name: value for (_, name), value in zip(self.description.joints(), home)}
-        for name, value in values.items():
+        values = dict(zip(self.description.names(), home))
+        for name, value in with_followers(values, self.followers).items():
             if self.model.existJointName(name):
                 self.place(q, name, value)
         for name, value in self.description.home.items():
@@ -148,7 +154,9 @@ class Engine:
 
     def moved(self, q, rates, accelerations):
         """Positions of the joints themselves, needed for slides."""
-        self.scalar = {name: (q[i], rates[i], accelerations[i]) for i, (_, name) in enumerate(self.description.joints())}
+        states = np.array([q, rates, accelerations])
+        own = dict(zip(self.description.names(), states.T))
+        self.scalar = with_followers(own, self.followers)
 
     def centres(self, position, description, bodies, values):
         model, data = self.model, self.data
@@ -174,9 +182,34 @@ class Engine:
 
     def on_motors(self, torques, sheet):
         force = np.zeros(self.model.nv)
-        moving = [
-            j["name"] for leg in self.description.legs for j in self.description.toml["leg"][leg]["joint"] if j.get("actuated")
-        ]
-        for name, torque in zip(moving, torques):
+        for name, torque in zip(self.description.actuated(), torques):
             force[self.model.joints[self.model.getJointId(name)].idx_v] = torque
         return force
+
+
+def with_universal_joints(file):
+    """The tree of a URDF, with the universal joints that `robot.yaml` next to it makes of others."""
+    root = ElementTree.parse(file).getroot()
+    beside = Path(file).with_name("robot.yaml")
+    text = beside.read_text() if beside.exists() else ""
+    lists = {key: re.findall(r"[\w.-]+", value) for key, value in re.findall(r"^(joint_name|joint_type):\s*\[(.*?)\]", text, re.M | re.S)}
+    for name, kind in zip(lists.get("joint_name", []), lists.get("joint_type", [])):
+        joint = root.find(f"joint[@name='{name}']")
+        letters = {"CARDAN": "XY"}.get(kind, kind.removeprefix("UJOINT_"))
+        if len(letters) != 2 or joint is None:
+            continue
+        first, second_axis = letters
+        axes = {"X": "1 0 0", "Y": "0 1 0", "Z": "0 0 1"}
+        child = joint.find("child").get("link")
+        ElementTree.SubElement(root, "link", name=f"{child}_{first}")
+        second = ElementTree.SubElement(root, "joint", name=f"{name}_{second_axis}", type="continuous")
+        ElementTree.SubElement(second, "parent", link=f"{child}_{first}")
+        ElementTree.SubElement(second, "child", link=child)
+        ElementTree.SubElement(second, "axis", xyz=axes[second_axis])
+        joint.set("name", f"{name}_{first}")
+        joint.set("type", "continuous")
+        joint.find("child").set("link", f"{child}_{first}")
+        for axis in joint.findall("axis"):
+            joint.remove(axis)
+        ElementTree.SubElement(joint, "axis", xyz=axes[first])
+    return root

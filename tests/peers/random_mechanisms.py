@@ -20,7 +20,7 @@ from description import Description
 from mechanisms import FORMATS, closed, tree
 
 try:
-    from mujoco_engine import actuated
+    import mujoco_engine  # noqa: F401
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(0)
@@ -31,7 +31,7 @@ def torques_of(overact, file, options, folder, size, order):
     toml = folder / f"{file.suffix[1:]}.toml"
     run(overact, "--json", "import", file, *options, "-o", toml)
     sheet, _, states = sample(overact, toml, folder, size, order)
-    motors = [name for _, name in actuated(Description(toml))]
+    motors = Description(toml).actuated()
     by_name = np.argsort(motors)
     homes = dict(zip(sheet["pose"], sheet["home_pose"]))
     return np.array([torques[by_name] for *_, torques in states]), homes

@@ -12,6 +12,7 @@ use super::{
     network::{Network, Origin},
     platform_search::platforms,
     solvable_chains::{SolvableChain, cheapest, follows, freedoms},
+    unsolved::{self, Failure, Furthest},
 };
 use crate::{files::Files, model::JointType, options::Options};
 use nalgebra::{DMatrix, Vector3};
@@ -56,8 +57,6 @@ const TRIES: usize = 3000;
 
 /// Largest number of paths that all searches for chains explore together.
 const PATHS: usize = 3_000_000;
-/// Largest number of bodies that an error lists.
-const LISTED: usize = 10;
 
 /// Finds skeleton and chains; `None` after an error.
 ///
@@ -89,13 +88,7 @@ pub(crate) fn find(files: &Files, network: &mut Network<'_>, options: &Options) 
             Err(_) => network.remove_platform(),
         }
     }
-    refuse(
-        files,
-        network,
-        &failure.furthest,
-        failure.is_exhausted,
-        options.coordinates.is_some(),
-    );
+    unsolved::report(files, network, &failure, options.coordinates.is_some());
     None
 }
 
@@ -109,13 +102,6 @@ fn driven(network: &Network<'_>) -> Vec<usize> {
     (0..network.edges.len()).filter(is_driven).collect()
 }
 
-/// Reason why a search found no layout.
-struct Failure {
-    /// Solved groups of the partial layout that solved most.
-    furthest: Vec<bool>,
-    is_exhausted: bool,
-}
-
 /// Searches skeleton and chains whose coordinates are some of the wanted edges, if given.
 fn search(network: &Network<'_>, wanted: Option<Vec<usize>>) -> Result<Layout, Failure> {
     let mut search = Search {
@@ -126,7 +112,7 @@ fn search(network: &Network<'_>, wanted: Option<Vec<usize>>) -> Result<Layout, F
         may_branch: false,
         wanted,
         best: None,
-        furthest: Vec::new(),
+        furthest: Furthest::default(),
         tries: 0,
         paths: 0,
     };
@@ -246,8 +232,7 @@ struct Search<'s, 'm> {
     may_branch: bool,
     wanted: Option<Vec<usize>>,
     best: Option<(usize, Layout)>,
-    /// Solved groups of the partial layout that solved most.
-    furthest: Vec<bool>,
+    furthest: Furthest,
     tries: usize,
     /// Number of paths explored so far.
     paths: usize,
@@ -282,8 +267,13 @@ impl Search<'_, '_> {
             return;
         }
         let count = |solved: &[bool]| solved.iter().filter(|s| **s).count();
-        if count(&partial.solved) > count(&self.furthest) {
-            self.furthest.clone_from(&partial.solved);
+        if count(&partial.solved) > count(&self.furthest.solved) {
+            let coordinates = partial.layout().coordinates();
+            self.furthest = Furthest {
+                solved: partial.solved.clone(),
+                freedoms: skeleton_freedoms(self.network, &coordinates).iter().sum(),
+                coordinates: coordinates.iter().map(|(edge, _)| *edge).collect(),
+            };
         }
         if partial.solved.iter().all(|solved| *solved) {
             self.finish(partial);
@@ -445,55 +435,4 @@ pub(crate) fn skeleton_rates(
     }
     let columns = twists.first().map_or(0, DMatrix::ncols);
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
-}
-
-fn refuse(
-    files: &Files,
-    network: &Network<'_>,
-    furthest: &[bool],
-    is_exhausted: bool,
-    was_told: bool,
-) {
-    let open = furthest.iter().enumerate().filter(|(_, solved)| !**solved);
-    let count = open.clone().count();
-    let mut open: Vec<String> = open
-        .take(LISTED)
-        .map(|(group, _)| format!("`{}`", network.group_name(group)))
-        .collect();
-    if count > LISTED {
-        open.push(format!("and {} more bodies", count - LISTED));
-    }
-    let first = network.edges.iter().find(|edge| {
-        edge.groups
-            .iter()
-            .any(|&group| !furthest.get(group).copied().unwrap_or(false))
-    });
-    let coordinates = if network.mobility == 1 {
-        "coordinate"
-    } else {
-        "coordinates"
-    };
-    let message = format!(
-        "no skeleton of {} {coordinates} found from which chains determine {}",
-        network.mobility,
-        open.join(", ")
-    );
-    let help = match (was_told, is_exhausted) {
-        (true, _) => {
-            "leave `--coordinates` out, or name as many joints as there are degrees of freedom, each connected to the ground by such joints"
-        }
-        (false, true) => "name the coordinates: `--coordinates a,b,c`",
-        (false, false) => {
-            "chains of at most six joints, or of three to a ball, must connect every body to known bodies; name other coordinates, `--coordinates a,b,c`, or fix a joint in the file"
-        }
-    };
-    let place = first.map(|edge| match edge.origin {
-        Origin::Joint(joint) => &network.model.joints[joint].place,
-        Origin::Closure(closure) => &network.model.closures[closure].place,
-        Origin::Platform => &network.model.joints[0].place,
-    });
-    match place {
-        Some(place) => files.report(place, message, help),
-        None => files.refuse(message, help),
-    }
 }

@@ -6,7 +6,8 @@
 
 use super::{
     blocks::Blocks,
-    motion::{Motion, Open, State, gaps_of},
+    motion::{Motion, State, gaps_of},
+    nearest::nearest,
     network::{Network, edges, edges_at, grouped},
     parallel::parallel_axes,
 };
@@ -60,9 +61,23 @@ struct Worst {
 /// Model with frames of closures shifted by their misfits; `None` if its loops close as given.
 fn closable(model: &Model, tolerance: f64) -> Result<Option<Model>, Worst> {
     let motion = Motion::new(model);
-    let Err(Open { state, .. }) = motion.closed(&motion.start()) else {
+    let Err(open) = motion.closed(&motion.start()) else {
         return Ok(None);
     };
+    // A search from the start may find a better configuration than the one at which Newton's
+    // iteration ended.
+    let found = [open.state, motion.start()].map(|state| nearest(&motion, &state));
+    let misfit = |state: &State| {
+        motion
+            .closure(state)
+            .0
+            .iter()
+            .map(|gap| gap * gap)
+            .sum::<f64>()
+    };
+    let [ended, started] = found.each_ref().map(misfit);
+    let [at_end, at_start] = found;
+    let state = if started < ended { at_start } else { at_end };
     let size = size(model, &state);
     let mut worst: Option<(f64, Worst)> = None;
     for (closure, own) in model.closures.iter().enumerate() {
@@ -85,9 +100,12 @@ fn closable(model: &Model, tolerance: f64) -> Result<Option<Model>, Worst> {
     }
 }
 
-/// Model whose closures are satisfied in a configuration.
+/// Model whose closures are satisfied in a configuration, its home.
 fn shifted(model: &Model, state: &State) -> Model {
     let mut model = model.clone();
+    for (at, joint) in model.joints.iter_mut().enumerate() {
+        (joint.home, joint.home_turn) = (state.positions[at], state.turns[at]);
+    }
     for closure in &mut model.closures {
         let (length, angle) = gaps_of(&closure.kind, state);
         if length.max(angle) < 1e-13 {

@@ -203,6 +203,20 @@ impl<'m> Motion<'m> {
         moved
     }
 
+    /// Step of the coordinates that leads from one configuration to another.
+    pub(crate) fn step_between(&self, from: &State, to: &State) -> DVector<f64> {
+        let step = self.coordinates.iter().map(|own| {
+            let joint = own.joint;
+            match self.model.joints[joint].kind {
+                JointType::Ball => {
+                    scaled_axis(&(to.turns[joint] * from.turns[joint].inverse()))[own.component]
+                }
+                _ => to.positions[joint] - from.positions[joint],
+            }
+        });
+        DVector::from_iterator(self.coordinates.len(), step)
+    }
+
     /// Projects a configuration onto the closures.
     ///
     /// On failure: the configuration with the smallest residuals, the largest residual and its row.

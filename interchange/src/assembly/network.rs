@@ -2,7 +2,9 @@
 
 use super::{
     blocks::Blocks,
+    infinitesimal,
     motion::{Motion, Open, State, null_space},
+    names::listed,
     platform::Platform,
     simple::{is_free, is_weld},
 };
@@ -72,6 +74,8 @@ pub(crate) struct Network<'m> {
     pub(crate) twists: Vec<Vec<DMatrix<f64>>>,
     /// Number of independent motions.
     pub(crate) mobility: usize,
+    /// Joints that the loops allow to move only infinitesimally from home.
+    infinitesimal: Vec<usize>,
     /// Platform whose displacements are coordinates.
     pub(crate) platform: Option<Platform>,
 }
@@ -83,7 +87,11 @@ impl<'m> Network<'m> {
     /// Builds the network of a model; `None` after an error.
     pub(crate) fn new(files: &Files, model: &'m Model) -> Option<Self> {
         match Self::closed(model) {
-            Ok(network) => Some(network),
+            Ok(network) if network.infinitesimal.is_empty() => Some(network),
+            Ok(network) => {
+                network.refuse_infinitesimal(files);
+                None
+            }
             Err(open) => {
                 not_closed(files, model, open.gap, open.row);
                 None
@@ -110,11 +118,18 @@ impl<'m> Network<'m> {
             states: vec![home],
             twists: Vec::new(),
             mobility: 0,
+            infinitesimal: Vec::new(),
             platform: None,
         };
         network.find_spins();
         network.sample(&motion);
         Ok(network)
+    }
+
+    /// Whether the robot has more motions at home than elsewhere.
+    pub(super) fn has_singular_home(&self) -> bool {
+        let at_home = self.twists.first().and_then(|twists| twists.first());
+        at_home.is_some_and(|basis| basis.ncols() > self.mobility)
     }
 
     /// Names of the rods with an idle spin.
@@ -209,14 +224,17 @@ impl<'m> Network<'m> {
         let mut random = Random(1);
         let home = self.states[0].clone();
         let free = self.motions(motion, &home);
+        let mut is_suspicious = false;
         for attempt in 0..4 * SAMPLES {
             if self.states.len() > SAMPLES {
                 break;
             }
             let size = 0.15 / (1.0 + attempt as f64 / 4.0);
             let weights = DVector::from_fn(free.ncols(), |_, _| size * random.next());
-            let moved = motion.moved_by(&home, &(&free * weights));
+            let moved = motion.moved_by(&home, &(&free * &weights));
             if let Ok(closed) = motion.closed(&moved) {
+                is_suspicious |=
+                    infinitesimal::is_suspicious(motion, &home, &free, &weights, &closed);
                 self.states.push(closed);
             }
         }
@@ -230,6 +248,22 @@ impl<'m> Network<'m> {
         }
         // Home may be singular and then has additional motions; take the smallest rank.
         self.mobility = ranks.iter().copied().min().unwrap_or(0);
+        if is_suspicious {
+            self.infinitesimal = infinitesimal::joints(motion, &home, &free, self.mobility);
+        }
+    }
+
+    /// Reports the joints that move only infinitesimally, at the first of them.
+    fn refuse_infinitesimal(&self, files: &Files) {
+        let joints = &self.model.joints;
+        let names = self.infinitesimal.iter();
+        let names = listed(names.map(|&joint| joints[joint].name.as_str()));
+        let message =
+            format!("the loops close only where rods are at their full reach: {names} can't move");
+        let help = "check the lengths between these joints, or start in another configuration, `--home JOINT=POSITION`";
+        if let Some(&first) = self.infinitesimal.first() {
+            files.report(&joints[first].place, message, help);
+        }
     }
 
     /// Basis of the coordinate rates that keep loops closed and rods without spin.

@@ -261,21 +261,51 @@ fn kinds(
         };
         match kind.as_str() {
             "SPHERICAL" => model.joints[joint].kind = JointType::Ball,
-            "CARDAN" | "UJOINT_XY" => make_universal(files, joint, tree, model),
             "FIXED" => model.remove_joint(joint),
-            other => {
-                let message = format!("the joint `{name}` is `{other}`, which is not supported");
-                let help = "write SPHERICAL, CARDAN, UJOINT_XY or FIXED";
-                files.report(place, message, help);
-            }
+            other => match universal_axes(other) {
+                Some(axes) => make_universal(files, joint, axes, tree, model),
+                None => {
+                    let message =
+                        format!("the joint `{name}` is `{other}`, which is not supported");
+                    let help = "write SPHERICAL, FIXED, CARDAN, or UJOINT_ and two of the letters X, Y and Z";
+                    files.report(place, message, help);
+                }
+            },
         }
     }
 }
 
-/// Replaces a joint by two revolute joints about x, then y, of its frame.
+/// Letters of the axes of a universal joint; `None` for other types.
+fn universal_axes(kind: &str) -> Option<[char; 2]> {
+    if kind == "CARDAN" {
+        return Some(['X', 'Y']);
+    }
+    let mut letters = kind.strip_prefix("UJOINT_")?.chars();
+    let (first, second) = (letters.next()?, letters.next()?);
+    let is_axis = |letter: char| ('X'..='Z').contains(&letter);
+    let is_universal = is_axis(first) && is_axis(second) && first != second;
+    (is_universal && letters.next().is_none()).then_some([first, second])
+}
+
+/// Unit vector of an axis letter.
+fn axis_of(letter: char) -> Vector3<f64> {
+    match letter {
+        'X' => Vector3::x(),
+        'Y' => Vector3::y(),
+        _ => Vector3::z(),
+    }
+}
+
+/// Replaces a joint by two revolute joints about two axes of its frame.
 ///
 /// They have no torques, as in the toolbox of these files.
-fn make_universal(files: &Files, joint: usize, tree: &mut Tree, model: &mut Model) {
+fn make_universal(
+    files: &Files,
+    joint: usize,
+    axes: [char; 2],
+    tree: &mut Tree,
+    model: &mut Model,
+) {
     let body = model.carried_by(joint);
     let (name, own) = (
         model.joints[joint].name.clone(),
@@ -289,19 +319,19 @@ fn make_universal(files: &Files, joint: usize, tree: &mut Tree, model: &mut Mode
         let reason = "LEFT OUT: the YAML file replaces the joint by a universal one";
         files.demote(&own, "dynamics", Some(attribute), reason);
     }
-    let revolute = |suffix: &str, axis: Vector3<f64>| Joint {
-        axis,
+    let revolute = |letter: char| Joint {
+        axis: axis_of(letter),
         ..Joint::new(
-            &format!("{name}_{suffix}"),
+            &format!("{name}_{letter}"),
             JointType::Revolute,
             own.clone(),
         )
     };
-    model.joints[joint] = revolute("X", Vector3::x());
-    model.joints.push(revolute("Y", Vector3::y()));
+    model.joints[joint] = revolute(axes[0]);
+    model.joints.push(revolute(axes[1]));
     let last = model.joints.len() - 1;
     let between = Body {
-        name: format!("{}_{}", model.bodies[body].name, "X"),
+        name: format!("{}_{}", model.bodies[body].name, axes[0]),
         parent: model.bodies[body].parent,
         placement: model.bodies[body].placement,
         place: None,
@@ -317,7 +347,16 @@ fn make_universal(files: &Files, joint: usize, tree: &mut Tree, model: &mut Mode
 
 #[cfg(test)]
 mod tests {
-    use super::{Value, value};
+    use super::{Value, universal_axes, value};
+
+    #[test]
+    fn universal_joints_have_two_axes() {
+        assert_eq!(universal_axes("CARDAN"), Some(['X', 'Y']));
+        assert_eq!(universal_axes("UJOINT_ZY"), Some(['Z', 'Y']));
+        for wrong in ["UJOINT_XX", "UJOINT_X", "UJOINT_XYZ", "UJOINT_AB", "HINGE"] {
+            assert_eq!(universal_axes(wrong), None, "{wrong}");
+        }
+    }
 
     #[test]
     fn lists_are_read_in_brackets_and_behind_hyphens() {

@@ -1,0 +1,75 @@
+//! Checks that motors determine the motion of a robot with loops, and names joints that move freely.
+
+use super::{
+    motion::{Motion, null_space},
+    names::listed,
+    network::Network,
+};
+use crate::files::Files;
+use nalgebra::DMatrix;
+
+/// Rates below this fraction of the largest are rounding errors.
+const STILL: f64 = 1e-6;
+
+/// Checks that there are as many motors as degrees of freedom; `None` after an error.
+///
+/// The error is located at the first joint that moves while all motors stand still.
+pub(crate) fn check(files: &Files, network: &Network<'_>) -> Option<()> {
+    let model = network.model;
+    if model.closures.is_empty() {
+        return Some(());
+    }
+    let motors = model.joints.iter().filter(|joint| joint.actuated).count();
+    if motors >= network.mobility {
+        return Some(());
+    }
+    let moving = moving(network);
+    let names = listed(
+        moving
+            .iter()
+            .map(|&joint| model.joints[joint].name.as_str()),
+    );
+    let mobility = network.mobility;
+    let degrees = if mobility == 1 { "degree" } else { "degrees" };
+    let units = if motors == 1 { "motor" } else { "motors" };
+    let mut message =
+        format!("the robot has {mobility} {degrees} of freedom, and {motors} {units}");
+    if !names.is_empty() {
+        message += &format!(": with the motors at rest, {names} can still move");
+    }
+    let help =
+        "name all driven joints, `--actuated JOINT,JOINT`, or fix in the file what does not move";
+    match moving.first() {
+        Some(&joint) => files.report(&model.joints[joint].place, message, help),
+        None => files.refuse(message, help),
+    }
+    None
+}
+
+/// Joints that move while all motors are at rest, in the last sampled configuration.
+fn moving(network: &Network<'_>) -> Vec<usize> {
+    let model = network.model;
+    let motion = Motion::new(model);
+    let Some(state) = network.states.last() else {
+        return Vec::new();
+    };
+    let free = network.motions(&motion, state);
+    let of_motors = (0..motion.coordinates.len())
+        .filter(|&at| model.joints[motion.coordinates[at].joint].actuated)
+        .collect::<Vec<_>>();
+    let driven = DMatrix::from_fn(of_motors.len(), free.ncols(), |i, j| {
+        free[(of_motors[i], j)]
+    });
+    let undriven = &free * null_space(&driven);
+    let largest = undriven.amax();
+    let mut moving: Vec<usize> = motion
+        .coordinates
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| undriven.row(*at).amax() > STILL * largest)
+        .map(|(_, own)| own.joint)
+        .filter(|&joint| !model.joints[joint].is_virtual)
+        .collect();
+    moving.dedup();
+    moving
+}

@@ -1,0 +1,123 @@
+//! Closed mechanisms that are rejected: their joints are named, at their line, with a way out.
+
+use overact_interchange::{Options, import};
+
+const MASS: &str = r#"<inertial pos="0.1 0 0.05" mass="1" diaginertia=".01 .02 .02"/>"#;
+
+/// Import of an MJCF file, or its messages.
+fn read(text: &str, home: &[(&str, f64)]) -> Result<String, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("robot.xml");
+    std::fs::write(&path, text).expect("a file");
+    let options = Options {
+        home: home
+            .iter()
+            .map(|(name, at)| ((*name).to_owned(), *at))
+            .collect(),
+        ..Options::default()
+    };
+    import(&path, &options)
+        .map(|own| own.text)
+        .map_err(|errors| {
+            let each = errors.0.iter();
+            each.map(|(source, errors)| errors.render_plain(source))
+                .collect()
+        })
+}
+
+#[track_caller]
+fn refused(text: &str, parts: &[&str]) {
+    let said = read(text, &[]).expect_err("a file that is rejected");
+    for part in parts {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+#[test]
+fn joints_that_only_a_group_determines_are_named() {
+    // Watt's six-bar with the coupler driven through a ternary link: three rods hold the link.
+    let text = format!(
+        r#"<mujoco model="triad"><worldbody>
+<body name="crank">{MASS}<joint name="crank" axis="0 1 0"/>
+ <body name="rod" pos=".03 0 .18">{MASS}<joint name="rod" axis="0 1 0"/>
+  <body name="plate" pos=".22 0 .02">{MASS}<joint name="plate" axis="0 1 0"/></body></body>
+ <body name="link" pos=".07 0 .11">{MASS}<joint name="link" axis="0 1 0"/></body></body>
+<body name="rocker" pos=".33 0 0">{MASS}<joint name="rocker" axis="0 1 0"/></body>
+</worldbody><equality><connect name="first" body1="link" body2="plate" anchor=".17 0 .01"/>
+<connect name="second" body1="rocker" body2="plate" anchor="0 0 .13"/></equality>
+<actuator><motor joint="crank"/></actuator></mujoco>"#
+    );
+    let joints = "with `crank` no chain determines `rod`, `plate`, `link`, `rocker`, `first` and `second`, which can only be solved together";
+    refused(&text, &[joints, "robot.xml:3:", "fix one of these joints"]);
+}
+
+#[test]
+fn loops_that_are_folded_at_zero_ask_for_a_home() {
+    // A palletiser: the lever drives the forearm by a parallelogram, in line at zero.
+    let text = format!(
+        r#"<mujoco model="arm"><worldbody>
+<body name="arm">{MASS}<joint name="arm" axis="0 -1 0"/>
+ <body name="forearm" pos=".4 0 0">{MASS}<joint name="forearm" axis="0 -1 0"/></body></body>
+<body name="lever">{MASS}<joint name="lever" axis="0 -1 0"/>
+ <body name="rod" pos="-.1 0 0">{MASS}<joint name="rod" axis="0 -1 0"/></body></body>
+</worldbody><equality><connect body1="rod" body2="forearm" anchor=".4 0 0"/></equality>
+<actuator><motor joint="arm"/><motor joint="lever"/></actuator></mujoco>"#
+    );
+    refused(&text, &["at home, where loops are folded", "--home JOINT="]);
+    let home = [
+        ("arm", 0.9),
+        ("lever", -0.3),
+        ("forearm", -1.2),
+        ("rod", 1.2),
+    ];
+    let text = read(&text, &home).expect("a robot");
+    assert!(text.contains("`rod`"), "{text}");
+}
+
+#[test]
+fn joints_that_no_motor_holds_are_named() {
+    let text = format!(
+        r#"<mujoco model="five"><worldbody>
+<body name="a">{MASS}<joint name="a" axis="0 1 0"/>
+ <body name="a2" pos="0 0 .2">{MASS}<joint name="a2" axis="0 1 0"/></body></body>
+<body name="b" pos=".3 0 0">{MASS}<joint name="b" axis="0 1 0"/>
+ <body name="b2" pos="0 0 .2">{MASS}<joint name="b2" axis="0 1 0"/></body></body>
+<body name="free" pos="1 0 0">{MASS}<joint name="turntable" axis="0 0 1"/></body>
+</worldbody><equality><connect body1="a2" body2="b2" anchor=".15 0 .2"/></equality>
+<actuator><motor joint="a"/><motor joint="b"/></actuator></mujoco>"#
+    );
+    let joints =
+        "3 degrees of freedom, and 2 motors: with the motors at rest, `turntable` can still move";
+    refused(&text, &[joints, "robot.xml:6:", "--actuated JOINT"]);
+    let driven = text.replace(
+        r#"<motor joint="b"/>"#,
+        r#"<motor joint="b"/><motor joint="turntable"/>"#,
+    );
+    read(&driven, &[]).expect("a robot");
+}
+
+#[test]
+fn loops_at_their_full_reach_do_not_move() {
+    // Two cranks whose rod is exactly as long as the largest distance between their pins.
+    let text = format!(
+        r#"<mujoco model="reach"><worldbody>
+<body name="a">{MASS}<joint name="a" axis="0 1 0"/></body>
+<body name="b" pos="1 0 0">{MASS}<joint name="b" axis="0 1 0"/></body>
+<body name="rod" pos="-.1 0 0">{MASS}<joint name="rod" axis="0 1 0"/></body>
+<body name="table" pos="2 0 0">{MASS}<joint name="table" axis="0 0 1"/></body>
+</worldbody><equality><connect body1="rod" body2="b" anchor="1.2 0 0"/><connect body1="a" body2="b" anchor=".5 0 0"/></equality>
+<actuator><motor joint="table"/></actuator></mujoco>"#
+    );
+    let said = read(&text, &[]);
+    assert!(said.is_err(), "{said:?}");
+    // Three hinges in line, of which the middle one is displaced only to second order.
+    let text = format!(
+        r#"<mujoco model="line"><worldbody>
+<body name="a">{MASS}<joint name="a" axis="0 1 0"/></body>
+<body name="b" pos="1 0 0">{MASS}<joint name="b" axis="0 1 0"/></body>
+<body name="table" pos="2 0 0">{MASS}<joint name="table" axis="0 0 1"/></body>
+</worldbody><equality><connect body1="a" body2="b" anchor=".4 0 0"/></equality>
+<actuator><motor joint="table"/><motor joint="a"/></actuator></mujoco>"#
+    );
+    refused(&text, &["`a` and `b` can't move", "robot.xml:2:", "--home"]);
+}
