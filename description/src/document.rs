@@ -7,7 +7,7 @@ use crate::experiments::excitation::Excitation;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::prior::Prior;
 use crate::experiments::settings::Identification;
-use crate::robot::model::{Leg, Platform, Spanned, actuators};
+use crate::robot::model::{Frame, Leg, Platform, Spanned, actuators};
 use overact_exact::Number;
 
 /// A robot as its author describes it.
@@ -33,6 +33,8 @@ pub struct Description {
     pub platform: Option<Platform>,
     /// The legs in the order of their placement.
     pub legs: Vec<Leg>,
+    /// Frames on bodies, in the order of the file.
+    pub frames: Vec<Frame>,
     /// The virtual experiment.
     pub experiment: Option<Experiment>,
     /// Limits of the search for exciting trajectories.

@@ -8,7 +8,7 @@ use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::{Leg, Platform, Spanned, actuators};
 use crate::robot::shape::Shape;
-use crate::robot::{chain, leg, platform, shape};
+use crate::robot::{chain, frame, leg, platform, shape};
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_exact::{Number, Ratio};
@@ -105,6 +105,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     check_actuators(table, platform.as_ref(), &legs);
+    let frames = frame::read(table, platform_item.is_some(), &legs, &scope);
     let is_closed = legs.iter().any(|leg| leg.end.is_some());
     check_motors(table, platform.is_some() || is_closed, &legs);
     check_springs(table, platform.is_some() || is_closed, &legs);
@@ -147,6 +148,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         constants: scope.values(),
         platform,
         legs,
+        frames,
         experiment,
         excitation,
         data,

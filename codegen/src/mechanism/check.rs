@@ -8,7 +8,7 @@ use super::parasitic::{Parasitic, closed, rated};
 use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
-use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
+use super::{BaseColumns, Frame, Joint, Leg, Mechanism, Number, Platform};
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
 
@@ -131,6 +131,12 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         parameters: p.parameters.clone(),
         payload: p.payload.clone(),
     });
+    let frame = |frame: &overact_description::Frame| Frame {
+        name: frame.name.value.clone(),
+        body: frame.body,
+        placement: frame.placement.clone(),
+    };
+    let axis = description.platform.as_ref().map(|p| p.axis_at);
     Mechanism {
         name: description.type_name(),
         summary: description.summary.clone(),
@@ -139,6 +145,8 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         constants: description.constants.clone(),
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
+        frames: description.frames.iter().map(frame).collect(),
+        origin: axis.unwrap_or([Number::ZERO; 3]),
         home: Home::default(),
         // Chosen after the home configuration is known, unless the description gives them.
         base_columns: base_columns(description),

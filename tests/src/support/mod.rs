@@ -7,6 +7,7 @@ pub mod backend;
 pub mod comparison;
 pub mod conversion;
 pub mod expected;
+pub mod frames;
 pub mod imports;
 pub mod library;
 pub mod precise;
