@@ -3,6 +3,7 @@
 //! Each robot gets frames on its platform, on bodies of a leg, and on the last body of another leg.
 
 mod agreement;
+mod compiled;
 mod differences;
 mod refusals;
 
