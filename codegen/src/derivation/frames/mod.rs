@@ -12,7 +12,6 @@ use self::joint_frame::JointFrame;
 use crate::cas::{Expr, Vector3};
 use crate::derivation::kinematics::orientation::constant_rotation;
 use crate::derivation::kinematics::path::KnownMotion;
-use crate::derivation::kinematics::platform::PlatformPose;
 use crate::derivation::kinematics::spatial::{SpatialMotion, Wrench};
 use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::robot::Robot;

@@ -102,10 +102,10 @@ impl<'a> Robot<'a> {
             orientation(self.mechanism, configuration, Some(body))?.followed_by(&own)
         };
         if let Some(quaternion) = whole(&by_halves)?.quaternion(self.arena, &by_halves) {
-            let position = self.position(body, placement, &by_halves)?;
+            let position = self.frame_position(body, placement, &by_halves)?;
             return Some((position, quaternion, None));
         }
-        let position = self.position(body, placement, &self.configuration)?;
+        let position = self.frame_position(body, placement, &self.configuration)?;
         let base = Orientation::default();
         let rotation =
             whole(&self.configuration)?.relative(&base, self.arena, &self.configuration)?;
@@ -113,17 +113,20 @@ impl<'a> Robot<'a> {
         let at_home = NumericMatrix::from_fn(|i, j| at_home[i][j]);
         let at_home = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&at_home));
         let reference = [at_home.w, at_home.i, at_home.j, at_home.k];
-        let (quaternion, square) = Quaternion::near(&rotation, reference);
+        let leg = &self.mechanism.legs[body.leg].name;
+        self.arena.enter(leg);
+        let (quaternion, length) = Quaternion::near(&rotation, reference);
+        self.arena.enter("");
         let guard = Guard {
-            value: square,
-            kind: GuardKind::Leg(self.at_home(square).abs()),
-            leg: self.mechanism.legs[body.leg].name.clone(),
+            value: length,
+            kind: GuardKind::Leg(self.at_home(length).abs()),
+            leg: leg.clone(),
         };
         Some((position, quaternion, Some(guard)))
     }
 
     /// The origin of a frame on a body that joints move.
-    fn position(
+    fn frame_position(
         &self,
         body: BodyIndex,
         placement: &Placement,

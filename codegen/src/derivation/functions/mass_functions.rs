@@ -6,6 +6,7 @@ use crate::derivation::context::DerivationContext;
 use crate::derivation::dynamics::centre_of_mass::FirstMoment;
 use crate::derivation::guard::{Guard, GuardKind};
 use crate::derivation::linear_algebra::elimination::Rows;
+use crate::derivation::parameter::BodyParameter;
 use crate::derivation::selection::Selection;
 use crate::mechanism::StandardParameter;
 use overact_core::{Columns, Input};
@@ -13,7 +14,8 @@ use overact_core::{Columns, Input};
 /// The sum of all masses, from the parameters alone.
 pub(super) fn total_mass<'a>(arena: &'a Arena, selection: &Selection) -> Derived<'a> {
     let all = || selection.standard.iter().chain(&selection.payload);
-    let is_mass = |(_, parameter): &(usize, &_)| parameter.symbol() == StandardParameter::M;
+    let is_mass =
+        |(_, parameter): &(usize, &BodyParameter)| parameter.symbol() == StandardParameter::M;
     let mass = |(index, parameter)| match &selection.values {
         None => arena.input(Input::Parameters.name(), index),
         Some(known) => {

@@ -31,8 +31,6 @@ pub(crate) struct KnownMotion<'r, 'a> {
 /// A joint on the path.
 #[derive(Debug, Clone)]
 pub(crate) struct Step<'a> {
-    /// The joint.
-    pub(crate) joint: BodyIndex,
     pub(crate) kind: JointKind,
     /// Joint rate in the quasi-velocities of its leg.
     pub(crate) rate: Form,
@@ -184,7 +182,6 @@ impl<'a> Step<'a> {
         let link = on_base_body(arena, leg, at, own);
         let rate = rates.joint[at.joint].clone();
         Some(Self {
-            joint: at,
             kind: leg.joints[at.joint].kind,
             row: rate.row(arena, rows),
             rate,

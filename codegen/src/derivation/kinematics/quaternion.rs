@@ -38,7 +38,7 @@ impl<'a> Quaternion<'a> {
     /// The quaternion of a rotation matrix on the side of a constant one.
     ///
     /// With K = 4 q qᵀ, whose entries are linear in the matrix, K r = 4 (q · r) q has the direction
-    /// of q. It vanishes only half a turn from the constant rotation r. Also returns |K r|², which
+    /// of q. It vanishes only half a turn from the constant rotation r. Also returns |K r|, which
     /// must not be zero.
     pub(crate) fn near(rotation: &Matrix3<'a>, reference: [f64; 4]) -> (Self, Expr<'a>) {
         let m = rotation.0;
@@ -59,9 +59,10 @@ impl<'a> Quaternion<'a> {
             axial[1] * w + xy * x + diagonal[2] * y + yz * z,
             axial[2] * w + xz * x + yz * y + diagonal[3] * z,
         ];
-        let square = along.iter().map(|entry| entry.squared()).sum::<Expr<'a>>();
-        let shrink = square.sqrt().reciprocal();
-        (Self(along.map(|entry| entry * shrink)), square)
+        let length = along.iter().map(|entry| entry.squared()).sum::<Expr<'a>>();
+        let length = length.sqrt();
+        let shrink = length.reciprocal();
+        (Self(along.map(|entry| entry * shrink)), length)
     }
 }
 
