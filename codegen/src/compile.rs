@@ -1,7 +1,7 @@
 //! The stages of the generator, in order.
 
 use crate::choice::{Chosen, Missing};
-use crate::derivation::{DerivationError, FunctionForm, Selection, function_name, inventory};
+use crate::derivation::{DerivationError, FunctionForm, Selection, inventory, name_in_robot};
 use crate::float::Float;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{CompiledFunction, RobotModel};
@@ -81,7 +81,7 @@ fn chosen(
     selection: &Selection,
     request: &Request<'_>,
 ) -> Result<(Vec<FunctionForm>, Chosen), DerivationError> {
-    let mut offered = inventory(mechanism, selection.joints);
+    let mut offered = inventory(mechanism, selection);
     offered.retain(|form| {
         let function = form.function;
         let has_parameters = function.columns().is_some() || function.is_of_base_parameters();
@@ -97,7 +97,8 @@ fn chosen(
         None => Chosen::all(&offered),
     };
     offered.retain(|form| {
-        chosen.functions.contains(form) && (request.wanted)(mechanism, form.function, form.from)
+        let is_wanted = || (request.wanted)(mechanism, form.function, form.from);
+        chosen.functions.contains(form) && (request.functions.is_some() || is_wanted())
     });
     Ok((offered, chosen))
 }
@@ -147,7 +148,7 @@ fn derived(
     let (offered, chosen) = chosen(&mechanism, &selection, request)?;
     let done = AtomicUsize::new(0);
     let functions = parallel::map(&offered, |&form| {
-        let name = function_name(form.function, form.from, mechanism.is_tree());
+        let name = name_in_robot(&mechanism, form);
         tell(done.load(Ordering::Relaxed), offered.len(), &name);
         let compiled = compiled(&assembler, request, form)?;
         done.fetch_add(1, Ordering::Relaxed);

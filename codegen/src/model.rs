@@ -1,12 +1,14 @@
 //! A compiled robot: sizes, parameters and one program per function.
 
-use crate::derivation::{BodyParameter, JointsBy, MotionInput, Selection, function_name};
+use crate::derivation::{
+    BodyParameter, FunctionForm, JointsBy, MotionInput, Selection, name_in_robot,
+};
 use crate::float::Float;
 use crate::lowering::{Lanes, Magnitudes, Program};
-use crate::mechanism::{JointKind, Mechanism, StandardParameter};
+use crate::mechanism::{JointIndex, JointKind, Mechanism, StandardParameter};
 use crate::runtime::Runtime;
 use crate::selection::{self, BaseParameter};
-use overact_core::{Columns, Function};
+use overact_core::{Columns, FrameQuantity, Function};
 use std::collections::BTreeMap;
 
 /// A function of the robot with its program.
@@ -36,7 +38,7 @@ impl CompiledFunction {
         lanes: Option<Lanes>,
     ) -> Self {
         Self {
-            name: function_name(function, from, mechanism.is_tree()),
+            name: name_in_robot(mechanism, FunctionForm::new(function, from)),
             computes: function,
             from,
             program,
@@ -103,6 +105,48 @@ impl RobotModel {
         self.functions
             .iter()
             .find(|f| f.computes == function && f.from == from)
+    }
+
+    /// All functions that robots have, with those of this robot's frames.
+    pub fn all_functions(&self) -> impl Iterator<Item = Function> + use<> {
+        let frames = 0..self.mechanism.frames.len();
+        let of_frames = frames.flat_map(|frame| {
+            let all = FrameQuantity::ALL.into_iter();
+            all.map(move |quantity| Function::of_frame(frame, quantity))
+        });
+        Function::ALL.into_iter().chain(of_frames)
+    }
+
+    /// Name of a function in its form of plain states.
+    #[must_use]
+    pub fn function_name(&self, function: Function) -> String {
+        match function {
+            Function::Frame(_) => {
+                let form = FunctionForm::new(function, MotionInput::Pose);
+                name_in_robot(&self.mechanism, form)
+            }
+            _ => function.name().to_owned(),
+        }
+    }
+
+    /// Names of the bodies whose mass is no parameter: `leg1.2`, `platform`.
+    #[must_use]
+    pub fn bodies_without_mass(&self) -> Vec<String> {
+        let mechanism = &self.mechanism;
+        let has = |body: BodyParameter| self.selection.standard.contains(&body);
+        let symbol = StandardParameter::M;
+        let mut names = Vec::new();
+        for (leg, own) in mechanism.legs.iter().enumerate() {
+            for (joint, of) in own.joints.iter().enumerate() {
+                if of.motor.is_none() && !has(BodyParameter::Leg { leg, joint, symbol }) {
+                    names.push(mechanism.joint_name(JointIndex { leg, joint }));
+                }
+            }
+        }
+        if mechanism.platform.is_some() && !has(BodyParameter::Platform(symbol)) {
+            names.push("platform".to_owned());
+        }
+        names
     }
 
     /// The function of plain states (the pose or, for a tree, the joints).

@@ -29,16 +29,20 @@ pub(crate) type Watcher<'a> = &'a (dyn Fn(Progress<'_>) + Sync);
 /// Predicate for the functions of a model.
 pub(crate) type FunctionFilter<'a> = &'a (dyn Fn(&Mechanism, Function, MotionInput) -> bool + Sync);
 
-/// Contents of a model and effort; by default all functions, with a quick search.
+/// Contents of a model and effort; by default all functions that need no request, with a quick
+/// search.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
     /// Effort of the search, overriding the description.
     pub effort: Option<Effort>,
     /// Effort of the search if the description has none.
     pub otherwise: Effort,
-    /// The functions that are derived, which takes most of the time.
+    /// The functions that are derived, which takes most of the time, unless they are chosen by
+    /// name.
+    ///
+    /// By default all but those that are [on request](Function::is_on_request) only.
     pub wanted: FunctionFilter<'a>,
-    /// Functions chosen by name, if not all are requested; called functions are included.
+    /// Functions chosen by name; called functions are included.
     ///
     /// Generated code is an `overact::Model` if all functions of such a model are included.
     pub functions: Option<&'a Choice>,
@@ -63,7 +67,7 @@ impl Default for Request<'_> {
         Self {
             effort: None,
             otherwise: Effort::Quick,
-            wanted: &|_, _, _| true,
+            wanted: &|_, function, _| !function.is_on_request(),
             functions: None,
             parameters: None,
             float: Float::F64,

@@ -1,7 +1,7 @@
 //! Common definitions of the generator, the interpreter, generated code and its callers.
 //!
 //! - [`function`] is the table of a robot's functions: names, descriptions, inputs and output
-//!   shapes.
+//!   shapes; [`frame`] has the functions of frames that a description defines.
 //! - [`parameter`] has the fourteen standard parameters of the paper, and those of springs and
 //!   special friction.
 //! - [`error`] has the errors at a state.
@@ -28,6 +28,7 @@
 pub mod code;
 pub mod columns;
 pub mod error;
+pub mod frame;
 pub mod function;
 pub mod limits;
 pub mod parameter;
@@ -39,6 +40,7 @@ pub mod trigonometry;
 pub use code::{Code, Explanation};
 pub use columns::Columns;
 pub use error::{ActuatorGroup, Actuators, Error, SampleError};
+pub use frame::{FrameFunction, FrameQuantity};
 pub use function::{Condition, Function};
 pub use limits::Limits;
 pub use parameter::StandardParameter;

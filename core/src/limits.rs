@@ -65,7 +65,7 @@ impl Largest {
             "pose" | "start" => self.pose,
             "twist" | "joint_velocities" | "actuator_velocities" => self.velocity,
             "acceleration" | "joint_accelerations" | "actuator_accelerations" => self.acceleration,
-            "torques" | "preload" => self.force,
+            "torques" | "preload" | "wrench" => self.force,
             "parameters" | "base_parameters" => self.parameter,
             _ => self.position,
         }

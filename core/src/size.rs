@@ -35,6 +35,7 @@ impl Sizes {
             Input::Parameters => self.parameters + self.payload_parameters,
             Input::BaseParameters => self.base_parameters + self.payload_parameters,
             Input::Preload => self.redundancy(),
+            Input::Wrench => 6,
         }
     }
 
@@ -52,6 +53,7 @@ impl Sizes {
             Extent::PayloadParameters => self.payload_parameters,
             Extent::Free => self.free(),
             Extent::Blocked => self.blocked(),
+            Extent::Fixed(count) => count,
         }
     }
 
@@ -106,6 +108,8 @@ pub enum Input {
     BaseParameters,
     /// Coordinates of the internal torques in the basis of the null space (N, N m).
     Preload,
+    /// Force (N) and moment (N m) of the environment on a frame, at its origin, in the base frame.
+    Wrench,
 }
 
 impl Input {
@@ -124,6 +128,7 @@ impl Input {
             Self::Parameters => "parameters",
             Self::BaseParameters => "base_parameters",
             Self::Preload => "preload",
+            Self::Wrench => "wrench",
         }
     }
 
@@ -164,4 +169,6 @@ pub enum Extent {
     Free,
     /// Directions that the legs block.
     Blocked,
+    /// A number that is the same for all robots.
+    Fixed(usize),
 }

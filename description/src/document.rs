@@ -7,7 +7,7 @@ use crate::experiments::excitation::Excitation;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::prior::Prior;
 use crate::experiments::settings::Identification;
-use crate::robot::model::{Leg, Platform, Spanned, actuators};
+use crate::robot::model::{Frame, Leg, Platform, Spanned, actuators};
 use crate::robot::point_spring::PointSpring;
 use overact_exact::Number;
 
@@ -41,6 +41,8 @@ pub struct Description {
     pub legs: Vec<Leg>,
     /// Springs and dampers between two points.
     pub springs: Vec<PointSpring>,
+    /// Frames on bodies, in the order of the file.
+    pub frames: Vec<Frame>,
     /// The virtual experiment.
     pub experiment: Option<Experiment>,
     /// Limits of the search for exciting trajectories.

@@ -8,7 +8,7 @@ use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::{Leg, Platform, Spanned, actuators};
 use crate::robot::shape::Shape;
-use crate::robot::{chain, leg, platform, point_spring, shape};
+use crate::robot::{chain, frame, leg, platform, point_spring, shape};
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
@@ -104,11 +104,11 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         .and_then(|item| platform::read(item, &scope));
     let shapes = shapes(table, &scope);
     let mut legs = legs(table, &shapes, &scope);
-    let magnitudes = table.context.take_magnitudes();
     check_joint_count(table, name.as_ref(), &legs)?;
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     check_actuators(table, platform.as_ref(), &legs);
+    let frames = frame::read(table, platform_item.is_some(), &legs, &scope);
     let is_closed = legs.iter().any(|leg| leg.end.is_some());
     check_motors(table, platform.is_some() || is_closed, &legs);
     let springs = point_spring::read(table, &scope, platform_item.is_some(), &legs);
@@ -135,6 +135,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     if !complete || legs.len() != placements(table).len() {
         return None;
     }
+    let magnitudes = table.context.take_magnitudes();
     let experiment = experiment.and_then(|item| experiment::read(&item, &robot));
     let excitation = limits.and_then(|item| excitation::read(&item, &robot));
     let data = data.and_then(|item| data::data(&item, &robot));
@@ -155,6 +156,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         platform,
         legs,
         springs,
+        frames,
         experiment,
         excitation,
         data,

@@ -10,9 +10,13 @@ impl Session {
     /// Names of the available functions, one per line.
     #[must_use]
     pub fn functions(&self) -> String {
-        let all = Function::ALL.into_iter();
-        let served = all.filter(|one| self.robot.model().model().served(*one).is_some());
-        let names: Vec<String> = served.map(function_of_model).collect();
+        let model = self.robot.model().model();
+        let served = { model.all_functions() }.filter(|one| model.served(*one).is_some());
+        let name = |function| match function {
+            Function::Frame(_) => model.function_name(function),
+            _ => function_of_model(function),
+        };
+        let names: Vec<String> = served.map(name).collect();
         names.join("\n")
     }
 

@@ -176,3 +176,18 @@ class Functions:
     null_space: Function
     """N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that
     case 2 projects. Inputs: pose (m, rad). Output: (n, n - r)."""
+    total_mass: Function
+    """Sum of all masses among the parameters, kg. Inputs: parameters (n_st + n_l; SI). Output: (1,)."""
+    centre_of_mass: Function
+    """Centre of mass of the robot in the base frame (m): Σ (m p + R s) / Σ m over all bodies, with the
+    first moments s. Inputs: pose (m, rad), parameters (n_st + n_l; SI). Output: (3,)."""
+    centre_of_mass_jacobian: Function
+    """Velocity of the centre of mass in the base frame, per independent velocity. Inputs: pose (m, rad),
+    parameters (n_st + n_l; SI). Output: (3, r)."""
+    kinetic_energy: Function
+    """Kinetic energy ½ vᵀ M v of all bodies and rotors, J. Inputs: pose (m, rad), twist (r; m/s, rad/s),
+    parameters (n_st + n_l; SI). Output: (1,)."""
+    potential_energy: Function
+    """Potential energy -g · Σ (m p + R s) of all bodies in the description's gravity, J; zero for masses
+    at the base's origin. Springs are not included. Inputs: pose (m, rad), parameters (n_st + n_l; SI).
+    Output: (1,)."""

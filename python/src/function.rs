@@ -8,7 +8,7 @@ use crate::{
 use overact::{Extent, Model, SampleError};
 use overact_codegen::{
     Choice,
-    derivation::{MotionInput, function_name, inventory},
+    derivation::{MotionInput, function_name, inventory, name_in_robot},
 };
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
@@ -320,9 +320,9 @@ impl Call<'_> {
 
 /// Names of a robot's functions, in the order of the table of functions.
 pub(crate) fn names(model: &overact_codegen::RobotModel) -> Vec<String> {
-    let all = inventory(&model.mechanism, model.selection.joints);
+    let all = inventory(&model.mechanism, &model.selection);
     all.iter()
-        .map(|form| function_name(form.function, form.from, model.is_tree()))
+        .map(|form| name_in_robot(&model.mechanism, *form))
         .collect()
 }
 
@@ -391,6 +391,10 @@ const fn counted(extent: Extent) -> &'static str {
         Extent::PayloadParameters => "n_l",
         Extent::Free => "6",
         Extent::Blocked => "6 - r",
+        Extent::Fixed(1) => "1",
+        Extent::Fixed(3) => "3",
+        Extent::Fixed(6) => "6",
+        Extent::Fixed(7) => "7",
         _ => "?",
     }
 }

@@ -325,6 +325,7 @@ fn known_name(name: &str) -> &'static str {
         Input::Parameters,
         Input::BaseParameters,
         Input::Preload,
+        Input::Wrench,
     ];
     let names = all
         .into_iter()

@@ -12,7 +12,7 @@ use crate::{
 use overact::{Model, Parameter, SampleError};
 use overact_codegen::{
     Choice, Effort, Request,
-    derivation::{MotionInput, function_name},
+    derivation::{FunctionForm, MotionInput, name_in_robot},
     diagnostic::did_you_mean,
     mechanism::Mechanism,
 };
@@ -82,7 +82,7 @@ impl Handle {
     fn compiled_alone(&self, name: &str) -> Result<InterpretedRobot, Error> {
         let wanted = |mechanism: &Mechanism, function, from: MotionInput| {
             InterpretedRobot::finds_pose(mechanism, function, from)
-                || function_name(function, from, mechanism.is_tree()) == name
+                || name_in_robot(mechanism, FunctionForm::new(function, from)) == name
         };
         let request = Request {
             wanted: &wanted,

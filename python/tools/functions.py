@@ -20,6 +20,7 @@ INPUTS = {
     "parameters": "parameters (n_st + n_l; SI)",
     "base_parameters": "base_parameters (n_b + n_l; SI)",
     "preload": "preload (n - r; N, N m)",
+    "wrench": "wrench (6; N, N m)",
 }
 
 HEAD = '''"""The functions of robots. This file is written by `tools/functions.py`.

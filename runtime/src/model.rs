@@ -179,6 +179,12 @@ pub trait Model: Sync {
         &[]
     }
 
+    /// Names of the frames that the description defines, in the order of
+    /// [`FrameFunction::frame`](crate::FrameFunction).
+    fn frames(&self) -> &[&'static str] {
+        &[]
+    }
+
     /// Evaluates `function` at `output.len() / (rows * columns)` samples.
     ///
     /// `inputs` are those of [`Function::inputs`], each with one row of numbers per sample. An

@@ -1,14 +1,16 @@
 //! Generates modules for the tests that `generated/` does not keep as text, as a user's build
 //! script does.
 //!
-//! These are the other robots of `robots/`, robots with all kinds of friction, springs and screws, the
-//! DualV in each of its four partitions, and the RX90 with known parameters.
+//! These are the other robots of `robots/`, robots with all kinds of friction, springs and screws,
+//! the DualV in each of its four partitions, robots with frames, and the RX90 with known parameters.
 //!
 //! The search for fewer operations is quick: the modules in `generated/` have a thorough one, which
 //! does not affect these tests. The partitions differ in one line, so the variants are generated
 //! from one description.
 
-use overact_codegen::{Effort, Request, Source, backends::rust, compile_with, description};
+use overact_codegen::{
+    Choice, Effort, Float, Request, Source, backends::rust, compile_with, description,
+};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
@@ -28,10 +30,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=../../robots");
     println!("cargo::rerun-if-changed=friction");
+    println!("cargo::rerun-if-changed=framed");
     let mut modules = partitions()?;
     modules.extend(robots()?);
     modules.extend(friction()?);
     write_all(modules)?;
+    framed()?;
     known_parameters()
 }
 
@@ -135,6 +139,42 @@ fn write_as(
     let compiled = compile_with(&source, request).map_err(|errors| errors.render_plain(&source))?;
     let file = Path::new(&env::var("OUT_DIR")?).join(format!("{module}.rs"));
     fs::write(file, rust::file(&compiled.model, &name))?;
+    Ok(())
+}
+
+/// Functions of frames and of all masses, in 64 and 32 bits.
+fn framed() -> Result<(), Box<dyn Error>> {
+    const FUNCTIONS: [&str; 15] = [
+        "tool_pose",
+        "tool_jacobian",
+        "tool_velocity",
+        "tool_acceleration_bias",
+        "tool_torques",
+        "link_pose",
+        "link_jacobian",
+        "link_velocity",
+        "link_acceleration_bias",
+        "link_torques",
+        "total_mass",
+        "centre_of_mass",
+        "centre_of_mass_jacobian",
+        "kinetic_energy",
+        "potential_energy",
+    ];
+    let choice = Choice::new(FUNCTIONS).map_err(|unknown| format!("{unknown:?}"))?;
+    for stem in ["ankle", "delta", "dualv", "hexapod", "rx90"] {
+        let robot = fs::read_to_string(format!("../../robots/{stem}.toml"))?;
+        let frames = fs::read_to_string(format!("framed/{stem}.toml"))?;
+        let text = format!("{robot}\n{frames}");
+        for (suffix, float) in [("", Float::F64), ("_f32", Float::F32)] {
+            let request = Request {
+                functions: Some(&choice),
+                float,
+                ..Request::with_effort(Effort::Quick)
+            };
+            write_as(&format!("framed_{stem}{suffix}"), stem, &text, &request)?;
+        }
+    }
     Ok(())
 }
 

@@ -75,6 +75,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "context",
             "dynamics",
             "regressor",
+            "frames",
             "forward",
             "functions",
         ],

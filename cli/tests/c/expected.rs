@@ -198,6 +198,7 @@ pub(crate) fn states(robot: &InterpretedRobot, count: usize, seed: u64) -> Vec<I
         let parameters = numbers(&model.selection.standard);
         let base_parameters = numbers(&model.selection.base);
         BTreeMap::from([
+            ("wrench", vec![3.0, -5.0, 2.0, 0.7, -1.1, 0.4]),
             ("parameters", parameters),
             ("base_parameters", base_parameters),
             ("pose", state.pose),

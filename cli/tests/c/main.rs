@@ -355,6 +355,50 @@ fn a_robot_with_springs_agrees() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Functions of frames and of all masses, of robots of several kinds.
+#[test]
+fn functions_of_frames_agree() -> Result<(), Failure> {
+    const FUNCTIONS: [&str; 15] = [
+        "tool_pose",
+        "tool_jacobian",
+        "tool_velocity",
+        "tool_acceleration_bias",
+        "tool_torques",
+        "link_pose",
+        "link_jacobian",
+        "link_velocity",
+        "link_acceleration_bias",
+        "link_torques",
+        "total_mass",
+        "centre_of_mass",
+        "centre_of_mass_jacobian",
+        "kinetic_energy",
+        "potential_energy",
+    ];
+    for stem in ["ankle", "delta", "dualv", "hexapod", "rx90"] {
+        let robot = fs::read_to_string(repository(&format!("robots/{stem}.toml")))?;
+        let frames = fs::read_to_string(repository(&format!("tests/compiled/framed/{stem}.toml")))?;
+        let name = format!("framed_{stem}");
+        let path = folder(&name).join("description.toml");
+        fs::create_dir_all(folder(&name))?;
+        fs::write(&path, format!("{robot}\n{frames}"))?;
+        for float in [Float::F64, Float::F32] {
+            let model = model(&path, Effort::None, &FUNCTIONS, float)?;
+            match float {
+                Float::F64 => {
+                    let seen = compare(&name, model, by_tier([20, 100]), Compiler::all())?;
+                    assert!(seen.is_none_or(|seen| seen.values > 0));
+                }
+                Float::F32 => {
+                    let path = path.to_string_lossy();
+                    single::compare(&name, &FUNCTIONS, &path, by_tier([20, 100]))?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
 /// No robot of the library needs Newton's method for its joints.
 #[test]
 fn robots_that_iterate_agree() -> Result<(), Failure> {

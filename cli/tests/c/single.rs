@@ -51,7 +51,12 @@ fn rounded(state: &Inputs) -> Inputs {
 ///
 /// Reports the worst relative difference, and for those beyond the tolerance the worst ratio to
 /// input roundings.
-fn compare(name: &str, functions: &[&str], path: &str, count: usize) -> Result<(), Failure> {
+pub(crate) fn compare(
+    name: &str,
+    functions: &[&str],
+    path: &str,
+    count: usize,
+) -> Result<(), Failure> {
     let effort = by_tier([Effort::None, Effort::Quick]);
     let model = model(&repository(path), effort, functions, Float::F32)?;
     let Some(compiler) = Compiler::all().into_iter().next() else {

@@ -23,6 +23,16 @@ impl<'a> CosineSine<'a> {
         }
     }
 
+    /// Cosine and sine of twice the angle: 1 - 2 s² and 2 s c.
+    #[must_use]
+    pub fn doubled(self) -> Self {
+        let twice = self.sine + self.sine;
+        Self {
+            cosine: self.sine.arena().one() - twice * self.sine,
+            sine: twice * self.cosine,
+        }
+    }
+
     /// Cosine and sine of the negative angle.
     #[must_use]
     pub fn negated(self) -> Self {

@@ -2,9 +2,10 @@
 
 use super::group::Group;
 use super::name::{Meant, meant, reason};
-use crate::derivation::{FunctionForm, MotionInput, function_name};
+use crate::derivation::{FunctionForm, MotionInput, function_name, name_in_robot};
 use crate::mechanism::Mechanism;
-use overact_core::{Columns, Extent, Function};
+use overact_core::{Columns, Extent, FrameQuantity, Function};
+use overact_description::diagnostic::did_you_mean;
 
 /// A name without a function in this robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -60,7 +61,7 @@ impl Forms<'_> {
     /// # Errors
     /// No function has one of these forms.
     pub(super) fn all(&self) -> Result<Vec<FunctionForm>, Missing> {
-        let all = self.filtered(|_| true);
+        let all = self.filtered(|form| !form.function.is_on_request());
         if all.is_empty() {
             Err(Missing::of(format!("has no function {}", self.described())))
         } else {
@@ -82,6 +83,10 @@ impl Forms<'_> {
             Some(Meant::Group(group)) => self.filtered(|form| self.is_of(group, form)),
             Some(Meant::Form(form)) => return self.form(name, form),
             Some(Meant::Forms(function)) => self.filtered(|form| form.function == function),
+            Some(Meant::OfFrame) => {
+                let is_named = |form| name_in_robot(self.mechanism, form) == name;
+                self.filtered(is_named)
+            }
             None => Vec::new(),
         };
         match (found, wanted.is_empty()) {
@@ -92,6 +97,7 @@ impl Forms<'_> {
                 Err(Missing::of(sentence))
             }
             (Some(Meant::Forms(function)), _) => Err(self.absent(name, function)),
+            (Some(Meant::OfFrame), _) => Err(self.without_frame(name)),
             _ => {
                 let reason = meant(name, !self.tree).map_or("", |m| reason(m, self.tree));
                 Err(Missing::of(format!("has no function `{name}`{reason}")))
@@ -160,6 +166,20 @@ impl Forms<'_> {
             Err(self.absent(name, function))
         } else {
             Ok(wanted)
+        }
+    }
+
+    /// A function of a frame that the robot does not have.
+    fn without_frame(&self, name: &str) -> Missing {
+        let own = self.inventory.iter().copied();
+        let own = own.map(|form| name_in_robot(self.mechanism, form));
+        let own: Vec<String> = own.collect();
+        let frame = FrameQuantity::in_name(name).map_or(name, |(frame, _)| frame);
+        let describe = || format!("describe the frame in a table `[frame.{frame}]`");
+        let known = own.iter().map(String::as_str);
+        Missing {
+            sentence: format!("has no function `{name}`: it has no frame `{frame}`"),
+            help: did_you_mean(name, known).unwrap_or_else(describe),
         }
     }
 

@@ -2,16 +2,17 @@
 
 use crate::derivation::MotionInput;
 use crate::mechanism::Mechanism;
-use overact_core::{Columns, Function};
+use overact_core::{Columns, FrameFunction, FrameQuantity, Function};
 
 /// Functions for one purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Group {
-    /// Pose from actuators, twist, inverse dynamics with internal torques, mass matrix and bias.
+    /// Pose from actuators, twist, inverse dynamics with internal torques, mass matrix and bias,
+    /// functions of frames.
     Control,
     /// The functions of `overact::Model`, and all forms of the identification models from the pose.
     Identification,
-    /// Positions, rates and Jacobians, in all forms.
+    /// Positions, rates and Jacobians, in all forms, also of frames.
     Kinematics,
 }
 
@@ -56,6 +57,7 @@ const fn is_for_control(function: Function) -> bool {
             | Function::Bias(Columns::Standard)
             | Function::ProjectTorques
             | Function::NullSpace
+            | Function::Frame(_)
     )
 }
 
@@ -80,6 +82,13 @@ const fn is_kinematic(function: Function) -> bool {
             | Function::JointAccelerations
             | Function::TwistFromActuators
             | Function::AccelerationFromActuators
+            | Function::Frame(FrameFunction {
+                quantity: FrameQuantity::Pose
+                    | FrameQuantity::Jacobian
+                    | FrameQuantity::Velocity
+                    | FrameQuantity::AccelerationBias,
+                ..
+            })
     )
 }
 
@@ -111,7 +120,13 @@ pub fn serves_model(mechanism: &Mechanism, function: Function, from: MotionInput
         | Function::MassMatrix(Columns::Base)
         | Function::Bias(_)
         | Function::ForwardDynamics(Columns::Base)
-        | Function::InverseDynamicsPreloaded => false,
+        | Function::InverseDynamicsPreloaded
+        | Function::TotalMass
+        | Function::CentreOfMass
+        | Function::CentreOfMassJacobian
+        | Function::KineticEnergy
+        | Function::PotentialEnergy
+        | Function::Frame(_) => false,
         _ => from == plain(mechanism),
     }
 }

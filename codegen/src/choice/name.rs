@@ -2,7 +2,7 @@
 
 use super::group::Group;
 use crate::derivation::{FunctionForm, MotionInput, function_name, sources};
-use overact_core::{Condition, Function};
+use overact_core::{Condition, FrameQuantity, Function};
 use overact_description::diagnostic::did_you_mean;
 use std::fmt;
 
@@ -18,6 +18,8 @@ pub(super) enum Meant {
     Form(FunctionForm),
     /// A function of the function table in all its forms.
     Forms(Function),
+    /// A function of a frame, if the robot has a frame of this name.
+    OfFrame,
 }
 
 /// A name that no function of any robot has.
@@ -53,8 +55,9 @@ pub(super) fn meant(name: &str, tree: bool) -> Option<Meant> {
         }
     }
     // Forms of both columns have one name; those with standard columns come first.
-    let found = Function::ALL.into_iter().find(|f| f.name() == name)?;
-    Some(Meant::Forms(found))
+    let found = Function::ALL.into_iter().find(|f| f.name() == name);
+    let of_frame = || FrameQuantity::in_name(name).map(|_| Meant::OfFrame);
+    found.map(Meant::Forms).or_else(of_frame)
 }
 
 /// A similar name, or all groups and where the names are listed.
@@ -97,6 +100,7 @@ pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
         Condition::Parasitic => {
             ": only robots whose platform has `independent` coordinates have it"
         }
+        Condition::Masses => ": none of its parameters is a mass",
         Condition::JointsByRule => {
             ": only robots with loops and closed-form joint positions have it"
         }

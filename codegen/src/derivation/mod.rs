@@ -11,6 +11,7 @@
 //! | `robot` | the derivation of one robot: legs, constraints, motion |
 //! | `dynamics` | joint forces, mass matrices, the recursion of Newton and Euler |
 //! | `regressor` | one column per standard parameter, on the platform, eq. (30), or on kept actuators, eq. (36) |
+//! | `frames` | frames on bodies: pose, Jacobian, motion |
 //! | `forward` | forward kinematics and forward dynamics |
 //! | `functions` | the functions of the table, from inputs to outputs |
 //!
@@ -25,6 +26,7 @@ mod context;
 mod derivation_error;
 mod dynamics;
 mod forward;
+mod frames;
 mod function_form;
 mod functions;
 mod guard;
@@ -40,7 +42,7 @@ mod selection;
 pub use derivation_error::DerivationError;
 pub use function_form::FunctionForm;
 pub(crate) use functions::inventory::sources;
-pub use functions::inventory::{function_name, inventory};
+pub use functions::inventory::{function_name, inventory, name_in_robot};
 pub(crate) use functions::sums::{Addends, LegRowLayout, ROWS, SUMS};
 pub(crate) use functions::sums::{derive_addends, derive_of_rows, derive_of_sums};
 pub use functions::{Derived, derive};

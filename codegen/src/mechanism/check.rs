@@ -9,7 +9,9 @@ use super::springs::check_lengths;
 use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
-use super::{BaseColumns, Joint, Leg, Mechanism, Platform, PointSpring, SpringBody, SpringEnd};
+use super::{
+    BaseColumns, Frame, Joint, Leg, Mechanism, Number, Platform, PointSpring, SpringBody, SpringEnd,
+};
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
 
@@ -148,6 +150,12 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         parameters: p.parameters.clone(),
         payload: p.payload.clone(),
     });
+    let frame = |frame: &overact_description::Frame| Frame {
+        name: frame.name.value.clone(),
+        body: frame.body,
+        placement: frame.placement.clone(),
+    };
+    let axis = description.platform.as_ref().map(|p| p.axis_at);
     Mechanism {
         name: description.type_name(),
         summary: description.summary.clone(),
@@ -158,6 +166,8 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
         springs: description.springs.iter().map(spring).collect(),
+        frames: description.frames.iter().map(frame).collect(),
+        origin: axis.unwrap_or([Number::ZERO; 3]),
         home: Home::default(),
         // Chosen after the home configuration is known, unless the description gives them.
         base_columns: base_columns(description),

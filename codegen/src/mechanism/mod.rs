@@ -31,8 +31,8 @@ pub use overact_description::TwistCoordinate;
 
 pub use crate::cas::{Angle, Number, Ratio};
 pub use overact_description::{
-    ActuatorNames, BaseColumns, BodyIndex, End, Formula, JointKind, Motion, Placement, Spring,
-    SpringBody, SpringEnd, StandardParameter,
+    ActuatorNames, BaseColumns, BodyIndex, End, Formula, FrameBody, JointKind, Motion, Placement,
+    Spring, SpringBody, SpringEnd, StandardParameter,
 };
 
 /// A joint and the body that it moves.
@@ -154,6 +154,17 @@ pub struct Platform {
     pub payload: Option<Vec<StandardParameter>>,
 }
 
+/// A frame on a body, such as a tool.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// Name, the beginning of the names of its functions.
+    pub name: String,
+    /// The body on which it is fixed.
+    pub body: FrameBody,
+    /// Its placement in the body's frame.
+    pub placement: Placement,
+}
+
 /// A robot.
 #[derive(Debug, Clone)]
 pub struct Mechanism {
@@ -175,6 +186,12 @@ pub struct Mechanism {
     pub legs: Vec<Leg>,
     /// Springs and dampers between two points.
     pub springs: Vec<PointSpring>,
+    /// Frames on bodies.
+    pub frames: Vec<Frame>,
+    /// Origin of the mechanism's axes in the description's base frame, m.
+    ///
+    /// A platform on a fixed axis is described relative to that axis.
+    pub origin: [Number; 3],
     /// The home configuration, which fixes assembly and working modes.
     pub home: Home,
     /// Kept actuators of the actuator projection, as indices among the actuators.

@@ -8,7 +8,7 @@ use crate::derivation::{
 };
 use crate::mechanism::{End, Leg, Mechanism};
 use crate::parallel;
-use overact_core::Function;
+use overact_core::{FrameFunction, FrameQuantity, Function};
 use std::collections::BTreeSet;
 
 /// Largest count at which a search could make a form the cheapest, in percent of the smallest.
@@ -330,6 +330,11 @@ const fn has_motion(function: Function) -> bool {
             Function::JointVelocities
                 | Function::JointAccelerations
                 | Function::AccelerationFromActuators
+                | Function::KineticEnergy
+                | Function::Frame(FrameFunction {
+                    quantity: FrameQuantity::Velocity | FrameQuantity::AccelerationBias,
+                    ..
+                })
         )
 }
 

@@ -144,6 +144,7 @@ const fn is_of_control(function: Function) -> bool {
             | Function::MassMatrix(_)
             | Function::Bias(_)
             | Function::ForwardDynamics(_)
+            | Function::Frame(_)
     )
 }
 

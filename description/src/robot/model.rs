@@ -144,6 +144,26 @@ pub struct BodyIndex {
     pub joint: usize,
 }
 
+/// A frame on a body, such as a tool.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Name, the beginning of the names of its functions.
+    pub name: Spanned<String>,
+    /// The body on which it is fixed.
+    pub body: FrameBody,
+    /// Its placement in the body's frame.
+    pub placement: Placement,
+}
+
+/// The body that carries a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrameBody {
+    /// The platform.
+    Platform,
+    /// The body after a joint.
+    Joint(BodyIndex),
+}
+
 /// A placed leg.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leg {

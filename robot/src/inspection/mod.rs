@@ -98,7 +98,7 @@ pub struct Term {
 #[non_exhaustive]
 pub struct Function {
     /// Name in the table of functions.
-    pub name: &'static str,
+    pub name: String,
     /// Name of the Rust function.
     pub function: String,
     /// Parameters of its columns, if the function is a regressor.
@@ -292,7 +292,7 @@ impl Function {
         }
         let cost = model.cost(function);
         Self {
-            name: function.computes.name(),
+            name: model.function_name(function.computes),
             function: function.name.clone(),
             columns: if function.computes.is_of_base_parameters() {
                 Some(Columns::Base.name())

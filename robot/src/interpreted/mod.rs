@@ -99,16 +99,19 @@ impl InterpretedRobot {
             scratch: Pool::default(),
         };
         let served = |function| robot.program_of(function);
-        robot.functions = Function::ALL.into_iter().filter_map(served).collect();
+        let all = robot.model.all_functions();
+        robot.functions = all.filter_map(served).collect();
         robot
     }
 
-    /// Whether identification, simulation or the search for pose and joints need a function.
+    /// Whether identification, simulation or the search for pose and joints need a function, or
+    /// it is one of a frame.
     ///
     /// A model of only these functions compiles faster.
     #[must_use]
     pub fn serves(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
-        overact_codegen::serves_model(mechanism, function, from)
+        matches!(function, Function::Frame(_))
+            || overact_codegen::serves_model(mechanism, function, from)
     }
 
     /// Whether a function computes pose and joints from encoder positions.
@@ -354,6 +357,10 @@ impl Model for InterpretedRobot {
 
     fn base_columns(&self) -> &[&'static str] {
         &self.names.base_columns
+    }
+
+    fn frames(&self) -> &[&'static str] {
+        &self.names.frames
     }
 
     fn evaluate(

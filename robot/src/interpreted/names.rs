@@ -16,6 +16,7 @@ pub(super) struct Names {
     coordinates: Vec<&'static str>,
     parameters: Vec<Parameter>,
     payload_parameters: Vec<Parameter>,
+    pub(super) frames: Vec<&'static str>,
     /// Standard parameters that the functions of base parameters keep.
     pub(super) base_columns: Vec<&'static str>,
 }
@@ -49,6 +50,9 @@ impl Names {
             coordinates,
             parameters: parameters(model, &model.selection.standard),
             payload_parameters: parameters(model, &model.selection.payload),
+            frames: { mechanism.frames.iter() }
+                .map(|frame| leaked(frame.name.clone()))
+                .collect(),
             base_columns: { model.base.iter() }
                 .map(|base| leaked(model.parameter_name(base.parameter)))
                 .collect(),

@@ -1,7 +1,7 @@
 //! Functions called by name, for other languages and the browser.
 
 use crate::error::Problem;
-use overact::{Function, Input, Model};
+use overact::{FrameQuantity, Function, Input, Model};
 use overact_codegen::diagnostic::{Code, did_you_mean};
 
 /// Name of a function in the table of functions; `_base` marks functions of base parameters.
@@ -14,7 +14,20 @@ pub fn function_of_model(function: Function) -> String {
     }
 }
 
-/// Evaluates a function at samples, by its name ([`function_of_model`]).
+/// The function of a name, of the table or of a frame.
+fn found(model: &dyn Model, name: &str) -> Option<Function> {
+    let mut all = Function::ALL.into_iter();
+    let of_frame = || {
+        let (frame, quantity) = FrameQuantity::in_name(name)?;
+        let frame = model.frames().iter().position(|own| *own == frame)?;
+        Some(Function::of_frame(frame, quantity))
+    };
+    all.find(|one| function_of_model(*one) == name)
+        .or_else(of_frame)
+}
+
+/// Evaluates a function at samples, by its name ([`function_of_model`]) or that of a frame's
+/// function, such as `tool_pose`.
 ///
 /// `inputs` contains all inputs in order, each sample by sample; parameters occur once. The output
 /// is sample by sample, each row-major.
@@ -39,10 +52,12 @@ pub fn values(
     inputs: &[f64],
 ) -> Result<Vec<f64>, Problem> {
     let misused = |message: String| Problem::new(Code::USAGE, message);
-    let mut all = Function::ALL.into_iter();
-    let found = all.find(|one| function_of_model(*one) == function);
-    let found = found.ok_or_else(|| {
-        let names: Vec<String> = Function::ALL.into_iter().map(function_of_model).collect();
+    let found = found(model, function).ok_or_else(|| {
+        let mut names: Vec<String> = Function::ALL.into_iter().map(function_of_model).collect();
+        for frame in model.frames() {
+            let of_frame = FrameQuantity::ALL.into_iter();
+            names.extend(of_frame.map(|quantity| format!("{frame}_{}", quantity.name())));
+        }
         let problem = misused(format!("there is no function `{function}`"));
         match did_you_mean(function, names.iter().map(String::as_str)) {
             Some(help) => problem.help(help),

@@ -25,6 +25,7 @@ pub mod energy;
 pub mod jacobians;
 pub mod kinematics;
 pub mod linear;
+pub mod masses;
 pub mod mechanism;
 pub mod motion;
 pub mod newton_euler;

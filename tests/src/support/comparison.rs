@@ -3,12 +3,13 @@
 use super::agreement::{Agreement, unwound};
 use super::backend::{evaluate, matrix};
 use super::expected::Truth;
+use super::frames::with_sign_of;
 use super::served::project;
 use super::{Backend, Failure, Sample};
 use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use overact::Error;
-use overact::{Columns, Function};
+use overact::{Columns, FrameFunction, FrameQuantity, Function};
 use overact_codegen::derivation::{DerivationError, MotionInput, Selection};
 use overact_codegen::internals::{Assembler, Search};
 use overact_codegen::lowering::Program;
@@ -69,6 +70,13 @@ impl Comparison {
                 Function::Joints | Function::ActuatorPositions | Function::PoseInClosedForm
             ) {
                 found.zip_apply(&wanted, |q, wanted| *q = unwound(*q, wanted));
+            }
+            if let Function::Frame(FrameFunction {
+                quantity: FrameQuantity::Pose,
+                ..
+            }) = function.computes
+            {
+                with_sign_of(&mut found, &wanted);
             }
             agreement.compare(&found, &wanted);
         }

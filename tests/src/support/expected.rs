@@ -1,5 +1,6 @@
 //! Expected outputs of functions, from the numeric reference.
 
+use super::frames::{self, Frames};
 use super::sample::fitted_acceleration;
 use super::{Failure, Parameters, Sample};
 use crate::reference::dynamics::Partition;
@@ -30,6 +31,8 @@ pub struct Expected {
     pub payload: Vec<usize>,
     /// Kept actuators of the actuator projection.
     pub kept: Vec<usize>,
+    /// Frames on bodies.
+    pub frames: Frames,
 }
 
 impl Expected {
@@ -58,6 +61,7 @@ impl Expected {
             regrouped: regrouped.collect::<Result<_, Failure>>()?,
             payload: columns(&model.selection.payload)?,
             kept: model.selection.kept_actuators.clone(),
+            frames: Frames::of(&model.mechanism),
             mechanism,
         })
     }
@@ -86,6 +90,7 @@ impl Expected {
                 .collect(),
             payload: columns(&model.selection.payload),
             kept: model.selection.kept_actuators.clone(),
+            frames: Frames::of(&model.mechanism),
             mechanism,
         }
     }
@@ -239,6 +244,10 @@ impl Truth<'_> {
         );
         let fitted = dynamic && from == MotionInput::Actuators;
         let side = if fitted { &self.fitted } else { &self.here };
+        let own = frames::output(&self.expected.frames, &side.dynamics, function, self.sample)?;
+        if let Some(matrix) = own {
+            return Ok(matrix);
+        }
         match kinematic(&side.dynamics, function, self.sample)? {
             Some(matrix) => Ok(matrix),
             None => self.dynamic(side, function),

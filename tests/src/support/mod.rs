@@ -8,6 +8,7 @@ pub mod comparison;
 pub mod conversion;
 pub mod elements;
 pub mod expected;
+pub mod frames;
 pub mod imports;
 pub mod library;
 pub mod precise;

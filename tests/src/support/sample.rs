@@ -71,6 +71,8 @@ pub struct Sample {
     pub base_parameters: Vec<f64>,
     /// Coordinates of the internal torque.
     pub preload: Vec<f64>,
+    /// Force and moment on a frame.
+    pub wrench: Vec<f64>,
     /// A pose near the sample's, as start of forward kinematics.
     pub start: Vec<f64>,
 }
@@ -115,6 +117,7 @@ impl Sample {
             preload: random(n - r, 3.0).as_slice().to_vec(),
             missed: (actuators + random(n, 0.01)).as_slice().to_vec(),
             start: mechanism.motion.displace(&state.pose, &shift),
+            wrench: random(6, 10.0).as_slice().to_vec(),
             state,
         })
     }
@@ -151,6 +154,7 @@ impl Sample {
             "base_parameters" => &self.base_parameters,
             "preload" => &self.preload,
             "start" => &self.start,
+            "wrench" => &self.wrench,
             _ => return Err(format!("no argument is called `{name}`").into()),
         })
     }

@@ -70,6 +70,7 @@ fn is_offered(model: &RobotModel, function: Function) -> bool {
     let mechanism = &model.mechanism;
     let platform = mechanism.platform.as_ref();
     match function.condition() {
+        _ if function.is_on_request() => false,
         Condition::Platform => !mechanism.is_tree(),
         Condition::Redundancy => mechanism.actuated().len() > mechanism.dof(),
         Condition::Payload => platform.is_some_and(|p| p.payload.is_some()),

@@ -16,7 +16,7 @@ use overact::{Columns, Function};
 use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     Effort, Request, RobotModel,
-    derivation::{MotionInput, function_name},
+    derivation::{FunctionForm, MotionInput, name_in_robot},
     interpreter::Rows,
     lowering::Program,
     mechanism::Mechanism,
@@ -61,13 +61,13 @@ pub(crate) struct Arguments {
 struct Document {
     function: String,
     parameters: Vec<String>,
-    shapes: BTreeMap<&'static str, Vec<usize>>,
-    results: Vec<BTreeMap<&'static str, Vec<f64>>>,
+    shapes: BTreeMap<String, Vec<usize>>,
+    results: Vec<BTreeMap<String, Vec<f64>>>,
 }
 
 /// Quantities that states may contain: inputs of all functions, and the start of forward
 /// kinematics.
-const QUANTITIES: [&str; 14] = [
+const QUANTITIES: [&str; 15] = [
     "pose",
     "twist",
     "acceleration",
@@ -81,6 +81,7 @@ const QUANTITIES: [&str; 14] = [
     "parameters",
     "base_parameters",
     "preload",
+    "wrench",
     "start",
 ];
 
@@ -95,9 +96,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::check(&inputs, output::file(arguments.output.as_ref()).as_slice())?;
     let name = arguments.function.as_str();
     let wanted = |mechanism: &Mechanism, function: Function, from: MotionInput| {
-        let full = || function_name(function, from, mechanism.platform.is_none());
+        let full = || name_in_robot(mechanism, FunctionForm::new(function, from));
+        let is_of_frame = matches!(function, Function::Frame(_));
         InterpretedRobot::finds_pose(mechanism, function, from)
-            || function.name() == name
+            || (function.name() == name && !is_of_frame)
             || full() == name
     };
     let request = Request {
@@ -132,17 +134,18 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let width = program.entries.len();
     let rows = (0..states.len()).map(|at| &values[at * width..(at + 1) * width]);
     let shape = program.output.shape.clone();
+    let label = robot.model().function_name(function);
     let text = if as_json {
         output::json(&Document {
             function: name,
             parameters: parameters(robot.model(), function),
-            shapes: BTreeMap::from([(function.name(), shape)]),
+            shapes: BTreeMap::from([(label.clone(), shape)]),
             results: rows
-                .map(|row| BTreeMap::from([(function.name(), row.to_vec())]))
+                .map(|row| BTreeMap::from([(label.clone(), row.to_vec())]))
                 .collect(),
         })?
     } else {
-        csv(function.name(), &shape, rows)
+        csv(&label, &shape, rows)
     };
     output::emit(&text, output::file(arguments.output.as_ref()))
 }

@@ -10,7 +10,7 @@ use overact::Columns;
 use overact_codegen::diagnostic::Code;
 use overact_codegen::{
     CompiledFunction, RobotModel,
-    derivation::{MotionInput, function_name, inventory},
+    derivation::{MotionInput, inventory, name_in_robot},
     diagnostic::did_you_mean,
 };
 
@@ -27,7 +27,7 @@ pub(super) fn function<'m>(
     let named: Vec<&CompiledFunction> = model
         .functions
         .iter()
-        .filter(|f| f.computes.name() == name)
+        .filter(|f| model.function_name(f.computes) == name)
         .collect();
     if named.is_empty() {
         return by_full_name(model, name);
@@ -86,14 +86,15 @@ fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m CompiledFun
         return Ok(function);
     }
     // The model only has the requested functions; suggest from all that exist.
-    let all = inventory(&model.mechanism, model.selection.joints);
-    let mut names: Vec<&str> = all.iter().map(|form| form.function.name()).collect();
+    let all = inventory(&model.mechanism, &model.selection);
+    let named = all.iter().map(|form| model.function_name(form.function));
+    let mut names: Vec<String> = named.collect();
     names.dedup();
     let full = all
         .iter()
-        .map(|form| function_name(form.function, form.from, model.is_tree()));
+        .map(|form| name_in_robot(&model.mechanism, *form));
     let full: Vec<String> = full.collect();
-    let known = names.iter().copied().chain(full.iter().map(String::as_str));
+    let known = names.iter().chain(&full).map(String::as_str);
     let help = did_you_mean(name, known);
     names.sort_unstable();
     names.dedup();

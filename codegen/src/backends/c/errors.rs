@@ -102,6 +102,16 @@ fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
         name: not_finite("inputs"),
         text: "`inputs` has a number that is not finite".to_owned(),
     });
+    if !model.mechanism.frames.is_empty() {
+        kinds.push(kind(
+            &not_finite("wrench"),
+            "`wrench` has a number that is not finite",
+        ));
+        kinds.push(kind(
+            &out_of_range("wrench"),
+            "`wrench` has a number that is too large: values computed from it might overflow",
+        ));
+    }
     kinds
 }
 

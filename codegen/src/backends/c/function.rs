@@ -188,6 +188,12 @@ fn documented(
 ) -> String {
     let mut lines = vec![function.computes.summary().to_owned(), String::new()];
     lines.push(outline.origin.to_owned());
+    lines.extend(
+        outline
+            .missing_masses
+            .iter()
+            .map(|text| text.replace('`', "")),
+    );
     let meaning = |name: &str| {
         let known = outline.meanings.iter().find(|(known, _)| known == name);
         let meaning = known.map_or("", |(_, meaning)| meaning.as_str());
@@ -202,7 +208,10 @@ fn documented(
         lines.push(format!("@param {name} {} ({size})", meaning(name)));
     }
     let (rows, columns) = function.computes.extents();
-    let extent = |extent| format!("[{}]", naming.constant(extent_name(extent)));
+    let extent = |extent| match extent {
+        Extent::Fixed(count) => format!("[{count}]"),
+        _ => format!("[{}]", naming.constant(extent_name(extent))),
+    };
     let shape = format!(
         "{}{}",
         extent(rows),
@@ -236,6 +245,7 @@ fn size(model: &RobotModel, argument: &str, naming: &Naming) -> String {
         "parameters" => &["PARAMETERS", "PAYLOAD_PARAMETERS"],
         "base_parameters" => &["BASE_PARAMETERS", "PAYLOAD_PARAMETERS"],
         "preload" => &["REDUNDANCY"],
+        "wrench" => return "6".to_owned(),
         "twist" | "acceleration" => &["DOF"],
         "joint_velocities" | "joint_accelerations" if model.is_tree() => &["DOF"],
         _ => &["ACTUATORS"],

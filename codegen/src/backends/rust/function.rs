@@ -273,6 +273,8 @@ fn documentation(
 ) -> Vec<String> {
     let mut lines = vec![format!(" {}", function.computes.summary()), String::new()];
     lines.push(format!(" {}", outline.origin));
+    let missing = outline.missing_masses.iter();
+    lines.extend(missing.map(|sentence| format!(" {sentence}")));
     let meanings = outline.meanings.iter();
     lines.extend(meanings.map(|(name, meaning)| format!(" - `{name}`: {meaning}")));
     let shape = function.program.output.shape.iter();

@@ -3,14 +3,14 @@
 use super::{boundary, expression, function};
 use crate::derivation::MotionInput;
 use crate::model::RobotModel;
-use overact_core::Function;
+use overact_core::{FrameFunction, Function};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// `impl overact::Model for NAME` and `pose_from_actuators`.
 #[must_use]
 pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
-    let arms = Function::ALL.into_iter().filter_map(|f| arm(model, f));
+    let arms = model.all_functions().filter_map(|f| arm(model, f));
     let mechanism = &model.mechanism;
     let payload = Literal::usize_unsuffixed(model.selection.payload.len());
     let standard = Literal::usize_unsuffixed(model.selection.standard.len());
@@ -26,6 +26,14 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
         quote! {
             fn displace(&self, pose: &mut [::core::primitive::f64], step: &[::core::primitive::f64]) {
                 #way(pose, step);
+            }
+        }
+    });
+    let names = mechanism.frames.iter().map(|frame| frame.name.as_str());
+    let frames = (!mechanism.frames.is_empty()).then(|| {
+        quote! {
+            fn frames(&self) -> &[&'static ::core::primitive::str] {
+                &[#(#names),*]
             }
         }
     });
@@ -89,6 +97,8 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
             }
 
             #displace
+
+            #frames
         }
     }
 }
@@ -117,6 +127,14 @@ fn arm(model: &RobotModel, function: Function) -> Option<TokenStream> {
 
 /// The function as a path of the runtime, in the format of its derived `Debug`.
 fn pattern(function: Function) -> TokenStream {
+    if let Function::Frame(FrameFunction { frame, quantity }) = function {
+        let frame = Literal::usize_unsuffixed(frame);
+        let quantity = format_ident!("{quantity:?}");
+        return quote!(::overact::Function::Frame(::overact::FrameFunction {
+            frame: #frame,
+            quantity: ::overact::FrameQuantity::#quantity,
+        }));
+    }
     let path = |text: &str| {
         let name = format_ident!("{text}");
         quote!(::overact::Function::#name)

@@ -37,6 +37,8 @@ pub struct Outline<'m> {
     pub meanings: Vec<(String, String)>,
     /// The parameters of the output's columns.
     pub columns: Option<Table>,
+    /// Sentence on the masses that are missing in the result, if any.
+    pub missing_masses: Option<String>,
     /// Whether it can fail for other reasons than an input that is not finite.
     pub can_fail: bool,
 }
@@ -58,6 +60,7 @@ impl<'m> Outline<'m> {
             origin: origin(model, function),
             meanings: meanings(model, function),
             columns: columns(function),
+            missing_masses: missing_masses(model, function),
             can_fail: model.finds_pose(function)
                 || finds_joints
                 || !function.program.guards.is_empty(),
@@ -135,6 +138,26 @@ fn meanings(model: &RobotModel, function: &CompiledFunction) -> Vec<(String, Str
     meanings
 }
 
+/// Names the bodies whose masses are no parameters, for functions of all masses.
+fn missing_masses(model: &RobotModel, function: &CompiledFunction) -> Option<String> {
+    let is_of_masses = matches!(
+        function.computes,
+        Function::TotalMass
+            | Function::CentreOfMass
+            | Function::CentreOfMassJacobian
+            | Function::PotentialEnergy
+    );
+    let names = model.bodies_without_mass();
+    if !is_of_masses || names.is_empty() {
+        return None;
+    }
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    Some(format!(
+        "Bodies whose mass is no parameter of the robot, so that it counts as zero: {}.",
+        names.join(", ")
+    ))
+}
+
 fn columns(function: &CompiledFunction) -> Option<Table> {
     let columns = function.computes.columns()?;
     Some(match (function.computes, columns) {
@@ -183,6 +206,9 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
             "values of `BASE_PARAMETERS` followed by those of `PAYLOAD_PARAMETERS` (SI)".to_owned()
         }
         "preload" => "coordinates of the internal torque on `null_space` (N, N m)".to_owned(),
+        "wrench" => {
+            "force (N) and moment (N m) of the environment on the frame, at its origin, in the base frame".to_owned()
+        }
         "start" => "a pose near the solution, in its assembly mode (m, rad)".to_owned(),
         _ => return None,
     })

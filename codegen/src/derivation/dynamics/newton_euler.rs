@@ -243,7 +243,7 @@ impl<'a> Transferred<'a> {
 }
 
 /// Sum of two inertias in one frame.
-fn with<'a>(one: &Inertia<'a>, other: &Inertia<'a>) -> Inertia<'a> {
+pub(super) fn with<'a>(one: &Inertia<'a>, other: &Inertia<'a>) -> Inertia<'a> {
     one.moved_onto(other, Vector3::zero(one.mass.arena()))
 }
 
@@ -302,7 +302,7 @@ impl<'a> Chain<'_, 'a> {
     ///
     /// Returns the part that the first joints do not move, in the axes of the leg's base, if the
     /// base moves.
-    fn group(&self, bodies: &mut [Inertia<'a>], is_on_moving_base: bool) -> Inertia<'a> {
+    pub(super) fn group(&self, bodies: &mut [Inertia<'a>], is_on_moving_base: bool) -> Inertia<'a> {
         let mut at_base = Inertia::zero(self.arena());
         for j in (0..bodies.len()).rev() {
             let [kept, rest] = match self.kind(j) {

@@ -121,7 +121,7 @@ impl<'a> DerivationContext<'a, '_> {
     /// constants.
     ///
     /// If base parameters are given all others are zero, since they are regrouped into these.
-    fn parameter_values(&mut self, of: Columns) -> Vec<(BodyParameter, Expr<'a>)> {
+    pub(super) fn parameter_values(&mut self, of: Columns) -> Vec<(BodyParameter, Expr<'a>)> {
         let mut all = self.chosen(of);
         all.extend(&self.selection.payload);
         if let Some(known) = &self.selection.values {

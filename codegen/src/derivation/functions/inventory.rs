@@ -4,13 +4,14 @@ use crate::cas::Arena;
 use crate::derivation::forward::closed_form::closed_form;
 use crate::derivation::function_form::FunctionForm;
 use crate::derivation::motion_input::MotionInput;
-use crate::derivation::selection::JointsBy;
-use crate::mechanism::Mechanism;
-use overact_core::{Condition, Function};
+use crate::derivation::selection::{JointsBy, Selection};
+use crate::mechanism::{Mechanism, StandardParameter};
+use overact_core::{Condition, FrameFunction, FrameQuantity, Function};
 
 /// All functions of a robot, in all forms.
 #[must_use]
-pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<FunctionForm> {
+pub fn inventory(mechanism: &Mechanism, selection: &Selection) -> Vec<FunctionForm> {
+    let joints = selection.joints;
     let tree = mechanism.is_tree();
     let payload = mechanism
         .platform
@@ -25,6 +26,7 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<FunctionForm> {
         Condition::NumericJoints => joints == JointsBy::Newton,
         Condition::Parasitic => mechanism.is_parasitic(),
         Condition::JointsByRule => !tree && joints == JointsBy::Rule,
+        Condition::Masses => has_masses(selection),
         _ => true,
     };
     let with = |function| {
@@ -32,11 +34,19 @@ pub fn inventory(mechanism: &Mechanism, joints: JointsBy) -> Vec<FunctionForm> {
             .iter()
             .map(move |&from| FunctionForm { function, from })
     };
-    Function::ALL
-        .into_iter()
-        .filter(has)
-        .flat_map(with)
-        .collect()
+    let frames = 0..mechanism.frames.len();
+    let of_frames = frames.flat_map(|frame| {
+        let all = FrameQuantity::ALL.into_iter();
+        all.map(move |quantity| Function::of_frame(frame, quantity))
+    });
+    let all = Function::ALL.into_iter().filter(has);
+    all.chain(of_frames).flat_map(with).collect()
+}
+
+/// Whether a mass is among the parameters.
+fn has_masses(selection: &Selection) -> bool {
+    let mut all = selection.standard.iter().chain(&selection.payload);
+    all.any(|parameter| parameter.symbol() == StandardParameter::M)
 }
 
 /// The motions from which a function is evaluated.
@@ -66,7 +76,20 @@ pub(crate) const fn sources(function: Function, tree: bool) -> &'static [MotionI
     }
 }
 
-/// The name of the Rust function, unique in the robot.
+/// The name of a robot's Rust function, unique in the robot.
+#[must_use]
+pub fn name_in_robot(mechanism: &Mechanism, form: FunctionForm) -> String {
+    let FunctionForm { function, from } = form;
+    match function {
+        Function::Frame(FrameFunction { frame, quantity }) => {
+            let frame = mechanism.frames.get(frame).map_or("frame", |own| &own.name);
+            format!("{frame}_{}", quantity.name())
+        }
+        _ => function_name(function, from, mechanism.is_tree()),
+    }
+}
+
+/// The name of a Rust function of the table of functions.
 #[must_use]
 pub fn function_name(function: Function, from: MotionInput, tree: bool) -> String {
     let name = function.name();
@@ -85,7 +108,7 @@ pub fn function_name(function: Function, from: MotionInput, tree: bool) -> Strin
 
 #[cfg(test)]
 mod tests {
-    use super::{JointsBy, inventory};
+    use super::{Selection, inventory};
     use crate::mechanism::check;
     use overact_core::{Condition, Function};
     use overact_description::diagnostic::Source;
@@ -95,7 +118,7 @@ mod tests {
         let source = Source::new("robot.toml", description);
         let description = overact_description::parse(&source).expect("a right description");
         let mechanism = check(&description).expect("a right mechanism");
-        let offered = inventory(&mechanism, JointsBy::Rule);
+        let offered = inventory(&mechanism, &Selection::default());
         let wanted = Function::ALL
             .into_iter()
             .filter(|f| f.condition() == condition);

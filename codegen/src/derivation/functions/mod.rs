@@ -3,8 +3,10 @@
 mod actuators;
 mod divisors;
 mod dynamic_functions;
+mod frame_functions;
 pub(crate) mod inventory;
 mod kinematic_functions;
+mod mass_functions;
 mod matrices;
 pub(crate) mod sums;
 
@@ -65,13 +67,15 @@ pub fn derive<'a>(
     function: Function,
     from: MotionInput,
 ) -> Result<Derived<'a>, DerivationError> {
-    let derived = if function == Function::PoseInClosedForm {
-        pose_in_closed_form(arena, mechanism)?
-    } else {
-        let form = FunctionForm { function, from };
-        derive_with(arena, mechanism, selection, form, |context| {
-            context.rows(function)
-        })?
+    let derived = match function {
+        Function::PoseInClosedForm => pose_in_closed_form(arena, mechanism)?,
+        Function::TotalMass => mass_functions::total_mass(arena, selection),
+        _ => {
+            let form = FunctionForm { function, from };
+            derive_with(arena, mechanism, selection, form, |context| {
+                context.rows(function)
+            })?
+        }
     };
     with_divisors(arena, mechanism, derived)
 }
@@ -171,7 +175,9 @@ impl<'a> DerivationContext<'a, '_> {
     fn rows(&mut self, function: Function) -> Result<Rows<'a>, DerivationError> {
         let n = self.robot.mechanism.actuated().len();
         Ok(match function {
-            Function::PoseInClosedForm => return Err(DerivationError::ForwardKinematics),
+            Function::PoseInClosedForm | Function::TotalMass => {
+                return Err(DerivationError::ForwardKinematics);
+            }
             Function::Joints => column(self.joint_positions()),
             Function::ActuatorPositions => column(self.actuator_positions()),
             Function::PoseStep => column(self.pose_step()),
@@ -222,6 +228,11 @@ impl<'a> DerivationContext<'a, '_> {
             Function::ForwardDynamics(of) => column(self.forward_dynamics(of, n)),
             Function::ProjectTorques => column(self.project_torques(n)),
             Function::NullSpace => self.null_space()?,
+            Function::CentreOfMass => column(self.centre_of_mass()),
+            Function::CentreOfMassJacobian => self.centre_of_mass_jacobian(),
+            Function::KineticEnergy => column(vec![self.kinetic_energy()]),
+            Function::PotentialEnergy => column(vec![self.potential_energy()]),
+            Function::Frame(of) => self.frame_rows(of)?,
         })
     }
 }

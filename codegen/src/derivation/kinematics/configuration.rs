@@ -4,6 +4,7 @@
 //! no passive angle is computed: the closure gives its sine and cosine algebraically, and all other
 //! angles of the leg follow by the addition theorem.
 
+use super::quaternion::half;
 use crate::cas::{Arena, CosineSine, Direction, Expr, Ratio, SymbolId};
 use crate::derivation::motion_input::MotionInput;
 use crate::mechanism::{Home, Mechanism};
@@ -31,6 +32,8 @@ pub struct Configuration<'a> {
     in_pose: Vec<usize>,
     /// For every square root taken: the first joint of its leg, and whether it is positive at home.
     roots: Vec<(usize, bool)>,
+    /// Whether sines and cosines of input angles are computed from those of half the angles.
+    by_halves: bool,
 }
 
 impl<'a> Configuration<'a> {
@@ -54,6 +57,7 @@ impl<'a> Configuration<'a> {
             in_pose: (mechanism.skeleton())
                 .map_or_else(Vec::new, |_| mechanism.coordinate_joints()),
             roots: Vec::new(),
+            by_halves: false,
         }
     }
 
@@ -182,8 +186,8 @@ impl<'a> Configuration<'a> {
     #[must_use]
     pub fn unit(&self, angle: &Direction) -> Option<CosineSine<'a>> {
         let unit = match self.from {
-            MotionInput::Joints => self.arena.cosine_and_sine(angle),
-            _ if self.is_input(angle) => self.arena.cosine_and_sine(angle),
+            MotionInput::Joints => self.unit_of_input(angle),
+            _ if self.is_input(angle) => self.unit_of_input(angle),
             MotionInput::Pose | MotionInput::Actuators => match self.composed(angle) {
                 Some(unit) => unit,
                 None => return self.unknown_unit(angle),
@@ -191,6 +195,31 @@ impl<'a> Configuration<'a> {
         };
         self.name(angle, unit);
         Some(unit)
+    }
+
+    /// The same configuration, in which cos θ = 1 - 2 sin² θ/2 and sin θ = 2 sin θ/2 cos θ/2 for
+    /// angles θ of inputs.
+    ///
+    /// A function that needs half angles then has one trigonometric pair for each.
+    pub(crate) fn with_half_angles(&self) -> Self {
+        Self {
+            by_halves: true,
+            ..self.clone()
+        }
+    }
+
+    /// Cosine and sine of an angle of inputs; `None` if it contains a joint that is no input.
+    pub(crate) fn input_unit(&self, angle: &Direction) -> Option<CosineSine<'a>> {
+        let is_known = self.from == MotionInput::Joints || self.is_input(angle);
+        is_known.then(|| self.arena.cosine_and_sine(angle))
+    }
+
+    fn unit_of_input(&self, angle: &Direction) -> CosineSine<'a> {
+        let half = angle.times(half());
+        match half.filter(|_| self.by_halves && !angle.is_constant()) {
+            Some(half) => self.arena.cosine_and_sine(&half).doubled(),
+            None => self.arena.cosine_and_sine(angle),
+        }
     }
 
     /// Cosine and sine of an angle with an unknown variable part.

@@ -9,6 +9,7 @@ pub(crate) mod joint;
 pub(crate) mod orientation;
 pub(crate) mod path;
 pub(crate) mod platform;
+pub(crate) mod quaternion;
 pub(crate) mod rates;
 pub(crate) mod spatial;
 pub(crate) mod turn;

@@ -16,7 +16,7 @@ use super::spatial::SpatialMotion;
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::motion_input::MotionInput;
-use crate::mechanism::{BodyIndex, JointKind, Mechanism};
+use crate::mechanism::{BodyIndex, JointKind, Leg, Mechanism};
 
 /// Known state of the skeleton and of earlier chains, which paths pass.
 #[derive(Debug)]
@@ -30,20 +30,20 @@ pub(crate) struct KnownMotion<'r, 'a> {
 
 /// A joint on the path.
 #[derive(Debug, Clone)]
-struct Step<'a> {
-    kind: JointKind,
+pub(crate) struct Step<'a> {
+    pub(crate) kind: JointKind,
     /// Joint rate in the quasi-velocities of its leg.
-    rate: Form,
+    pub(crate) rate: Form,
     /// Number of quasi-velocities of the legs before.
-    first: usize,
+    pub(crate) first: usize,
     /// Joint rate per rate of each independent coordinate.
     row: Vec<Expr<'a>>,
     /// Whether the path leads from the joint's antecedent to the joint.
     is_forward: bool,
     /// The joint's axis.
-    axis: Vector3<'a>,
+    pub(crate) axis: Vector3<'a>,
     /// Vector from the antecedent's origin to the joint's.
-    link: Vector3<'a>,
+    pub(crate) link: Vector3<'a>,
 }
 
 /// The path from one body to another.
@@ -80,12 +80,9 @@ impl<'a> Path<'a> {
         axes: &Orientation,
     ) -> Option<Self> {
         let (arena, mechanism) = (known.arena, known.mechanism);
-        let steps = way(mechanism, from, Some(to));
-        let step = |(joint, is_forward)| Step::new(known, axes, joint, is_forward);
-        let steps = steps.into_iter().map(step).collect::<Option<Vec<_>>>()?;
         let mut path = Self {
             arena,
-            steps,
+            steps: steps(known, from, to, axes)?,
             origin: Vector3::zero(arena),
             rotation: seen(known, axes, Some(to))?,
             columns: Vec::new(),
@@ -182,14 +179,7 @@ impl<'a> Step<'a> {
         let (first, rates, rows) = known.legs[at.leg];
         let own = link_vector(arena, leg, at.joint, first, known.configuration)?;
         let before = seen(known, axes, antecedent(known.mechanism, at))?;
-        let link = match leg.joints[at.joint].antecedent {
-            Some(_) => own,
-            // The leg's base frame is fixed on the body on which the leg is mounted.
-            None => {
-                let turned = constant_rotation(arena, leg.base.rotation);
-                Vector3::constant(arena, leg.base.at) + turned * own
-            }
-        };
+        let link = on_base_body(arena, leg, at, own);
         let rate = rates.joint[at.joint].clone();
         Some(Self {
             kind: leg.joints[at.joint].kind,
@@ -203,8 +193,47 @@ impl<'a> Step<'a> {
     }
 }
 
+/// Vector from the origin of the body before a joint to that of the joint, in the axes of that body.
+///
+/// `None` if the configuration does not determine a slide.
+pub(crate) fn link_from_body<'a>(
+    arena: &'a Arena,
+    mechanism: &Mechanism,
+    configuration: &Configuration<'a>,
+    at: BodyIndex,
+) -> Option<Vector3<'a>> {
+    let leg = &mechanism.legs[at.leg];
+    let first = mechanism.leg_range(at.leg).start;
+    let own = link_vector(arena, leg, at.joint, first, configuration)?;
+    Some(on_base_body(arena, leg, at, own))
+}
+
+/// A link vector in the axes of the antecedent, as one from the body before the joint.
+fn on_base_body<'a>(arena: &'a Arena, leg: &Leg, at: BodyIndex, own: Vector3<'a>) -> Vector3<'a> {
+    match leg.joints[at.joint].antecedent {
+        Some(_) => own,
+        // The leg's base frame is fixed on the body on which the leg is mounted.
+        None => {
+            let turned = constant_rotation(arena, leg.base.rotation);
+            Vector3::constant(arena, leg.base.at) + turned * own
+        }
+    }
+}
+
+/// The joints on the path between two bodies, in given axes.
+pub(crate) fn steps<'a>(
+    known: &KnownMotion<'_, 'a>,
+    from: Option<BodyIndex>,
+    to: BodyIndex,
+    axes: &Orientation,
+) -> Option<Vec<Step<'a>>> {
+    let step = |(joint, is_forward)| Step::new(known, axes, joint, is_forward);
+    let steps = way(known.mechanism, from, Some(to)).into_iter();
+    steps.map(step).collect()
+}
+
 /// The orientation of a body in given axes.
-fn seen<'a>(
+pub(crate) fn seen<'a>(
     known: &KnownMotion<'_, 'a>,
     axes: &Orientation,
     body: Option<BodyIndex>,
@@ -328,7 +357,7 @@ impl<'a> Relative<'a> {
 }
 
 /// The body before a joint: its antecedent, or the base body of its leg; `None` is the ground.
-fn antecedent(mechanism: &Mechanism, at: BodyIndex) -> Option<BodyIndex> {
+pub(crate) fn antecedent(mechanism: &Mechanism, at: BodyIndex) -> Option<BodyIndex> {
     let leg = &mechanism.legs[at.leg];
     match leg.joints[at.joint].antecedent {
         Some(joint) => Some(BodyIndex { joint, ..at }),
@@ -337,7 +366,7 @@ fn antecedent(mechanism: &Mechanism, at: BodyIndex) -> Option<BodyIndex> {
 }
 
 /// The joints between two bodies in order, each with whether it is passed from its antecedent on.
-fn way(
+pub(crate) fn way(
     mechanism: &Mechanism,
     from: Option<BodyIndex>,
     to: Option<BodyIndex>,

@@ -5,8 +5,9 @@
 
 use super::configuration::Configuration;
 use super::joint::joint_turn;
+use super::quaternion::{ConstantQuaternion, Quaternion, half};
 use super::rates::parallel;
-use crate::cas::{Angle, Arena, CosineSine, Direction, Matrix3, Ratio};
+use crate::cas::{Angle, Arena, CosineSine, Direction, Matrix3, Number, Ratio, Vector3};
 use crate::derivation::motion_input::MotionInput;
 use crate::mechanism::{Leg, Mechanism};
 
@@ -143,6 +144,86 @@ impl Orientation {
         let back = product(Matrix3::identity(arena), back)?.transposed();
         product(back * middle, forth)
     }
+
+    /// The orientation as a unit quaternion, from half angles.
+    ///
+    /// `None` if it contains a joint that is no input of the function.
+    pub(crate) fn quaternion<'a>(
+        &self,
+        arena: &'a Arena,
+        configuration: &Configuration<'a>,
+    ) -> Option<Quaternion<'a>> {
+        let mut factors = Vec::new();
+        let mut scale = Number::ONE;
+        for part in &self.0 {
+            match part {
+                OrientationFactor::Tilt(angles) => {
+                    let constant = ConstantQuaternion::new(arena, *angles)?;
+                    scale = scale * constant.factor;
+                    factors.push(constant.quaternion);
+                }
+                OrientationFactor::Turn(turn) => {
+                    let half = configuration.input_unit(&turn.times(half())?)?;
+                    factors.push(Quaternion::about(2, half));
+                }
+            }
+        }
+        // The factor of all constants goes to a turn, which has two entries.
+        let is_turn = |part: &OrientationFactor| matches!(part, OrientationFactor::Turn(_));
+        let scaled = self.0.iter().position(is_turn).unwrap_or_default();
+        if let Some(scaled) = factors.get_mut(scaled) {
+            scaled.0 = scaled.0.map(|entry| entry * arena.number(scale));
+        }
+        let one = Quaternion::one(arena);
+        Some(
+            factors
+                .iter()
+                .fold(one, |product, factor| product.times(factor)),
+        )
+    }
+
+    /// Σ R_i v_i over vectors v_i in axes of orientations R_i.
+    ///
+    /// Vectors with the same first factors of their orientations are summed before these rotate
+    /// them. `None` if the configuration does not determine a sine or cosine.
+    pub(crate) fn rotated_sum<'a>(
+        terms: &[(Self, Vector3<'a>)],
+        arena: &'a Arena,
+        configuration: &Configuration<'a>,
+    ) -> Option<Vector3<'a>> {
+        let terms: Vec<(&[OrientationFactor], Vector3<'a>)> = terms
+            .iter()
+            .filter(|(_, vector)| !vector.is_zero())
+            .map(|(orientation, vector)| (orientation.0.as_slice(), *vector))
+            .collect();
+        rotated(&terms, arena, configuration)
+    }
+}
+
+/// Σ R_i v_i over vectors behind factors of orientations.
+fn rotated<'a>(
+    terms: &[(&[OrientationFactor], Vector3<'a>)],
+    arena: &'a Arena,
+    configuration: &Configuration<'a>,
+) -> Option<Vector3<'a>> {
+    let mut sum = Vector3::zero(arena);
+    let mut firsts: Vec<&OrientationFactor> = Vec::new();
+    for (factors, vector) in terms {
+        match factors.first() {
+            None => sum = sum + *vector,
+            Some(first) if !firsts.contains(&first) => firsts.push(first),
+            Some(_) => {}
+        }
+    }
+    for first in firsts {
+        let behind = terms.iter().filter_map(|(factors, vector)| {
+            let (own, rest) = factors.split_first()?;
+            (own == first).then_some((rest, *vector))
+        });
+        let behind = rotated(&behind.collect::<Vec<_>>(), arena, configuration)?;
+        sum = sum + first.matrix(arena, configuration)? * behind;
+    }
+    Some(sum)
 }
 
 /// The axes in which a chain's closure expresses its end body, if not those of the body at its

@@ -1,123 +1,25 @@
-//! Table of a robot's functions: names, descriptions, equations, inputs, shapes.
+//! The lines of the table of functions.
 
+use super::condition::Condition;
+use super::variants::Function;
 use crate::columns::Columns;
-use crate::size::{Extent, Input, Sizes};
-
-/// Condition for a robot to have a function.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Condition {
-    /// None: every robot has the function.
-    Any,
-    /// A platform; without one there is no closure.
-    Platform,
-    /// More actuators than degrees of freedom.
-    Redundancy,
-    /// A payload on the platform.
-    Payload,
-    /// Forward kinematics in closed form.
-    ClosedForm,
-    /// Joints by Newton's method, without closed form.
-    NumericJoints,
-    /// A platform with parasitic motion.
-    Parasitic,
-    /// Loops, with joints in closed form.
-    JointsByRule,
-}
-
-/// A function of a robot; [`Function::summary`] describes each.
-///
-/// The enum is exhaustive: the compiler reports code that does not handle a new function.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(missing_docs, reason = "`Function::summary` says what each is")]
-pub enum Function {
-    PoseInClosedForm,
-    Joints,
-    ActuatorPositions,
-    PoseStep,
-    InverseJacobian,
-    Jacobian,
-    LegsJacobian,
-    LegsPlatformJacobian,
-    ClosurePlatformJacobian,
-    ClosureActuatorJacobian,
-    ClosureError,
-    PlatformJacobian,
-    BlockedError,
-    BlockedJacobian,
-    JointVelocities,
-    JointAccelerations,
-    TwistFromActuators,
-    AccelerationFromActuators,
-    IdmRedPlatform(Columns),
-    IdmRedActuators(Columns),
-    IdmRedPayload,
-    IdmRedPayloadActuators,
-    ProjectPlatform,
-    ProjectActuators,
-    InverseDynamics(Columns),
-    MassMatrix(Columns),
-    Bias(Columns),
-    ForwardDynamics(Columns),
-    InverseDynamicsPreloaded,
-    ProjectTorques,
-    NullSpace,
-}
+use crate::frame::{FrameFunction, FrameQuantity};
+use crate::size::{Extent, Input};
 
 /// A line of the table.
-struct Entry {
-    name: &'static str,
-    summary: &'static str,
-    inputs: &'static [Input],
-    rows: Extent,
+pub(super) struct Entry {
+    pub(super) name: &'static str,
+    pub(super) summary: &'static str,
+    pub(super) inputs: &'static [Input],
+    pub(super) rows: Extent,
     /// `None` for a vector.
-    columns: Option<Extent>,
-    condition: Condition,
+    pub(super) columns: Option<Extent>,
+    pub(super) condition: Condition,
 }
 
 impl Function {
-    /// All functions of all robots.
-    pub const ALL: [Self; 37] = [
-        Self::PoseInClosedForm,
-        Self::Joints,
-        Self::ActuatorPositions,
-        Self::PoseStep,
-        Self::InverseJacobian,
-        Self::Jacobian,
-        Self::LegsJacobian,
-        Self::LegsPlatformJacobian,
-        Self::ClosurePlatformJacobian,
-        Self::ClosureActuatorJacobian,
-        Self::ClosureError,
-        Self::PlatformJacobian,
-        Self::BlockedError,
-        Self::BlockedJacobian,
-        Self::JointVelocities,
-        Self::JointAccelerations,
-        Self::TwistFromActuators,
-        Self::AccelerationFromActuators,
-        Self::IdmRedPlatform(Columns::Standard),
-        Self::IdmRedActuators(Columns::Standard),
-        Self::IdmRedPlatform(Columns::Base),
-        Self::IdmRedActuators(Columns::Base),
-        Self::IdmRedPayload,
-        Self::IdmRedPayloadActuators,
-        Self::ProjectPlatform,
-        Self::ProjectActuators,
-        Self::InverseDynamics(Columns::Standard),
-        Self::InverseDynamics(Columns::Base),
-        Self::MassMatrix(Columns::Standard),
-        Self::MassMatrix(Columns::Base),
-        Self::Bias(Columns::Standard),
-        Self::Bias(Columns::Base),
-        Self::ForwardDynamics(Columns::Standard),
-        Self::ForwardDynamics(Columns::Base),
-        Self::InverseDynamicsPreloaded,
-        Self::ProjectTorques,
-        Self::NullSpace,
-    ];
-
-    const fn entry(self) -> Entry {
+    /// The line of the function.
+    pub(super) const fn entry(self) -> Entry {
         use Input::{
             Acceleration, ActuatorAccelerations, ActuatorVelocities, Actuators, BaseParameters,
             Joints, Parameters, Pose, Preload, Torques, Twist,
@@ -383,89 +285,94 @@ impl Function {
                 columns: Some(Extent::Redundancy),
                 condition: Condition::Redundancy,
             },
+            Self::TotalMass => Entry {
+                name: "total_mass",
+                summary: "Sum of all masses among the parameters, kg.",
+                inputs: &[Parameters],
+                rows: Extent::Fixed(1),
+                columns: None,
+                condition: Condition::Masses,
+            },
+            Self::CentreOfMass => Entry {
+                name: "centre_of_mass",
+                summary: "Centre of mass of the robot in the base frame (m): Σ (m p + R s) / Σ m over all bodies, with the first moments s.",
+                inputs: &[Pose, Parameters],
+                rows: Extent::Fixed(3),
+                columns: None,
+                condition: Condition::Masses,
+            },
+            Self::CentreOfMassJacobian => Entry {
+                name: "centre_of_mass_jacobian",
+                summary: "Velocity of the centre of mass in the base frame, per independent velocity.",
+                inputs: &[Pose, Parameters],
+                rows: Extent::Fixed(3),
+                columns: Some(Extent::Dof),
+                condition: Condition::Masses,
+            },
+            Self::KineticEnergy => Entry {
+                name: "kinetic_energy",
+                summary: "Kinetic energy ½ vᵀ M v of all bodies and rotors, J.",
+                inputs: &[Pose, Twist, Parameters],
+                rows: Extent::Fixed(1),
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::PotentialEnergy => Entry {
+                name: "potential_energy",
+                summary: "Potential energy -g · Σ (m p + R s) of all bodies in the description's gravity, J; zero for masses at the base's origin. Springs are not included.",
+                inputs: &[Pose, Parameters],
+                rows: Extent::Fixed(1),
+                columns: None,
+                condition: Condition::Any,
+            },
+            Self::Frame(FrameFunction { quantity, .. }) => of_frame(quantity),
         }
     }
+}
 
-    /// The name without the input motion.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        self.entry().name
-    }
-
-    /// One sentence with the equation of Briot, Krut, Gautier 2015.
-    #[must_use]
-    pub const fn summary(self) -> &'static str {
-        self.entry().summary
-    }
-
-    /// The inputs in the order of the arguments.
-    ///
-    /// For a robot without a platform their names are [`Input::name_without_platform`].
-    #[must_use]
-    pub const fn inputs(self) -> &'static [Input] {
-        self.entry().inputs
-    }
-
-    /// Rows and columns of the output, which is row-major; a vector has one column.
-    #[must_use]
-    pub const fn shape(self, sizes: &Sizes) -> (usize, usize) {
-        let entry = self.entry();
-        let columns = match entry.columns {
-            Some(columns) => sizes.extent(columns),
-            None => 1,
-        };
-        (sizes.extent(entry.rows), columns)
-    }
-
-    /// Rows and columns of the output as sizes of the robot; `None` columns for a vector.
-    #[must_use]
-    pub const fn extents(self) -> (Extent, Option<Extent>) {
-        let entry = self.entry();
-        (entry.rows, entry.columns)
-    }
-
-    /// Whether the output is a vector and not a matrix.
-    #[must_use]
-    pub const fn is_vector(self) -> bool {
-        self.entry().columns.is_none()
-    }
-
-    /// Condition for a robot to have the function.
-    #[must_use]
-    pub const fn condition(self) -> Condition {
-        self.entry().condition
-    }
-
-    /// Standard or base columns, if the function has columns of parameters.
-    #[must_use]
-    pub const fn columns(self) -> Option<Columns> {
-        match self.entry().columns {
-            Some(Extent::Parameters | Extent::PayloadParameters) => Some(Columns::Standard),
-            Some(Extent::BaseParameters) => Some(Columns::Base),
-            _ => None,
-        }
-    }
-
-    /// Standard or base parameters, if the function has their values as an input.
-    #[must_use]
-    pub const fn parameters(self) -> Option<Columns> {
-        match self {
-            Self::InverseDynamics(columns)
-            | Self::MassMatrix(columns)
-            | Self::Bias(columns)
-            | Self::ForwardDynamics(columns) => Some(columns),
-            Self::InverseDynamicsPreloaded => Some(Columns::Standard),
-            _ => None,
-        }
-    }
-
-    /// Whether the function uses base parameters, as columns or as an input.
-    #[must_use]
-    pub const fn is_of_base_parameters(self) -> bool {
-        let of = match self.columns() {
-            None => self.parameters(),
-            columns => columns,
-        };
-        matches!(of, Some(Columns::Base))
+/// The line of a frame's function.
+const fn of_frame(quantity: FrameQuantity) -> Entry {
+    const SIX: Extent = Extent::Fixed(6);
+    match quantity {
+        FrameQuantity::Pose => Entry {
+            name: "frame_pose",
+            summary: "Position (m) and orientation of the frame in the base frame, `[x, y, z, qw, qx, qy, qz]`. The quaternion has length 1 and a continuous sign.",
+            inputs: &[Input::Pose],
+            rows: Extent::Fixed(7),
+            columns: None,
+            condition: Condition::Any,
+        },
+        FrameQuantity::Jacobian => Entry {
+            name: "frame_jacobian",
+            summary: "Velocity of the frame's origin (first three rows) and angular velocity (last three), both in the base frame, per independent velocity.",
+            inputs: &[Input::Pose],
+            rows: SIX,
+            columns: Some(Extent::Dof),
+            condition: Condition::Any,
+        },
+        FrameQuantity::Velocity => Entry {
+            name: "frame_velocity",
+            summary: "Velocity of the frame's origin (m/s), then angular velocity (rad/s), both in the base frame: J v.",
+            inputs: &[Input::Pose, Input::Twist],
+            rows: SIX,
+            columns: None,
+            condition: Condition::Any,
+        },
+        FrameQuantity::AccelerationBias => Entry {
+            name: "frame_acceleration_bias",
+            summary: "J̇ v: acceleration of the frame's origin (m/s²) and angular acceleration (rad/s²) at v̇ = 0, both in the base frame. The whole acceleration is J v̇ + J̇ v.",
+            inputs: &[Input::Pose, Input::Twist],
+            rows: SIX,
+            columns: None,
+            condition: Condition::Any,
+        },
+        FrameQuantity::Torques => Entry {
+            name: "frame_torques",
+            summary: "Actuator torques τ of least norm that balance a wrench w of the environment on the frame: (J_p^inv)ᵀ τ = -Jᵀ w.",
+            inputs: &[Input::Pose, Input::Wrench],
+            rows: Extent::Actuators,
+            columns: None,
+            condition: Condition::Any,
+        },
     }
 }

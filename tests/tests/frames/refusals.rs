@@ -1,0 +1,101 @@
+//! Frames that cannot be: each error has its place and a way out.
+
+use overact_codegen::{Choice, Effort, Request, Source, compile_with};
+use overact_tests::support::{Failure, description};
+
+/// The errors of a robot with this text after its description.
+fn errors(stem: &str, more: &str) -> Result<String, Failure> {
+    let Source { name, text } = description(stem)?;
+    let source = Source::new(name, format!("{text}\n{more}"));
+    let found = compile_with(&source, &Request::with_effort(Effort::None));
+    Ok(found
+        .err()
+        .map_or_else(String::new, |errors| errors.render_plain(&source)))
+}
+
+fn says(stem: &str, more: &str, all: &[&str]) -> Result<(), Failure> {
+    let found = errors(stem, more)?;
+    for part in all {
+        assert!(found.contains(part), "{stem}: no `{part}` in\n{found}");
+    }
+    Ok(())
+}
+
+#[test]
+fn unknown_bodies_are_refused_with_those_that_exist() -> Result<(), Failure> {
+    let text = "[frame.tool]\nbody = \"7\"\n";
+    says(
+        "rx90",
+        text,
+        &[
+            "the robot has no body `7`",
+            "body = \"7\"",
+            "bodies are 1, 2, 3, 4, 5, 6",
+        ],
+    )?;
+    let text = "[frame.tool]\nbody = \"leg1.9\"\n";
+    says("dualv", text, &["the robot has no body `leg1.9`", "leg1."])?;
+    let text = "[frame.tool]\nbody = \"platform\"\n";
+    says("rx90", text, &["the robot has no body `platform`"])
+}
+
+#[test]
+fn names_of_other_functions_are_refused() -> Result<(), Failure> {
+    for (name, taken) in [
+        ("inverse", "inverse_jacobian"),
+        ("project", "project_torques"),
+        ("centre_of_mass", "centre_of_mass_jacobian"),
+    ] {
+        let text = format!("[frame.{name}]\n");
+        let parts = [
+            &format!("a frame cannot be named `{name}`"),
+            &format!("every robot has a function `{taken}`"),
+            "choose another name",
+        ];
+        says("dualv", &text, &parts.map(|part| part as &str))?;
+    }
+    Ok(())
+}
+
+#[test]
+fn names_are_identifiers() -> Result<(), Failure> {
+    let text = "[frame.\"tool tip\"]\n";
+    says(
+        "dualv",
+        text,
+        &["`tool tip` cannot be the name of a frame", "use letters"],
+    )?;
+    let text = "[frame.2]\n";
+    says("dualv", text, &["`2` cannot be the name of a frame"])
+}
+
+#[test]
+fn unknown_keys_and_units_are_refused() -> Result<(), Failure> {
+    says(
+        "dualv",
+        "[frame.tool]\nat = [0, 0, \"1 kg\"]\nbdy = \"platform\"\n",
+        &["bdy", "1 kg"],
+    )
+}
+
+#[test]
+fn functions_of_missing_frames_are_refused() -> Result<(), Failure> {
+    let source = description("dualv")?;
+    let choice = Choice::new(["tool_pose"]).map_err(|unknown| format!("{unknown:?}"))?;
+    let request = Request {
+        functions: Some(&choice),
+        ..Request::with_effort(Effort::None)
+    };
+    let found = compile_with(&source, &request);
+    let found = found
+        .err()
+        .map_or_else(String::new, |errors| errors.render_plain(&source));
+    for part in [
+        "has no function `tool_pose`",
+        "no frame `tool`",
+        "[frame.tool]",
+    ] {
+        assert!(found.contains(part), "no `{part}` in\n{found}");
+    }
+    Ok(())
+}
