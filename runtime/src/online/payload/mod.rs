@@ -162,7 +162,7 @@ impl<const P: usize, T: Float> PayloadEstimator<P, T> {
     /// let mut estimator = PayloadEstimator::new([StandardParameter::M], size)?;
     /// // Two joints: the payload's rows, and torques beyond those of the robot.
     /// let [first, _] = estimator.update(&[[4.0], [2.0]], &[8.0, 4.0], &[0.1, 0.1])?;
-    /// assert!((first.residual - 8.0).abs() < 1e-12);
+    /// assert!((first.residual - 8.0_f64).abs() < 1e-12);
     /// # Ok::<(), overact::online::Error>(())
     /// ```
     pub fn update<const M: usize>(
