@@ -395,3 +395,25 @@ fn the_example_of_a_controller_builds_and_passes() {
     assert!(tested.contains("100% tests passed"), "{tested}");
     assert!(fs::exists(folder.path().join("build/generated/dualv.h")).is_ok_and(|there| there));
 }
+
+#[test]
+fn online_estimation_comes_with_c() {
+    let bench = Bench::new();
+    bench.good(&["new", "serial-2r", "my.toml"]);
+    let arguments = [
+        "generate",
+        "my.toml",
+        "--lang",
+        "c",
+        "--functions",
+        "control",
+        "--online",
+    ];
+    bench.good(&[&arguments[..], &["-o", "c"]].concat());
+    for file in overact::online::C_FILES {
+        assert_eq!(bench.read(&format!("c/{}", file.name)), file.text);
+    }
+    bench.good(&[&arguments[..], &["-o", "c", "--check"]].concat());
+    let refused = bench.run(&["generate", "my.toml", "--online", "-o", "my.rs"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.err);
+}

@@ -429,3 +429,49 @@ fn emps_has_the_published_digits() {
     assert_eq!(value("fv_neg_1"), "240.4236");
     assert_eq!(value("fs_neg_1"), "20.6277");
 }
+
+#[test]
+fn a_replay_has_estimates_over_time() {
+    let bench = serial();
+    let run = |arguments: &[&str]| {
+        let all = [&["identify", "my.toml", "--seed", "3"], arguments].concat();
+        bench.json(&all)
+    };
+    let document = run(&["--online"]);
+    let base = &document["estimates"][0]["parameters"];
+    let count = base.as_array().expect("a list").len();
+    let online = document["online"].as_array().expect("estimates over time");
+    let last = online.last().expect("an estimate");
+    for key in ["run", "time", "values", "standard_deviations", "change"] {
+        assert!(last.get(key).is_some(), "{key}");
+    }
+    for place in 0..count {
+        let (found, expected) = (
+            number(&last["values"][place]),
+            number(&base[place]["value"]),
+        );
+        assert!(
+            (found - expected).abs() <= 1e-10 * expected.abs().max(1e-2),
+            "{found} {expected}"
+        );
+    }
+    assert!(run(&[]).get("online").is_none());
+    let forgetful = run(&["--online", "--forgetting", "directional:0.99"]);
+    let last = forgetful["online"]
+        .as_array()
+        .expect("a list")
+        .last()
+        .expect("an estimate");
+    let wider = |place: usize| {
+        let own = number(&last["standard_deviations"][place]);
+        own > 1.2 * number(&base[place]["correlated_standard_deviation"])
+    };
+    assert!((0..count).all(wider));
+    let text = bench.good(&["identify", "my.toml", "--online", "--report", "report.html"]);
+    assert!(text.contains("Online estimation"), "{text}");
+    assert!(bench.read("report.html").contains("figure-online"));
+    for rule in ["exponential", "directional:2", "none:1", "slowly:0.9"] {
+        let arguments = ["identify", "my.toml", "--online", "--forgetting", rule];
+        assert_eq!(bench.run(&arguments).code, Some(2), "{rule}");
+    }
+}

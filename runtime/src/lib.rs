@@ -43,6 +43,11 @@
 //!   last digits may differ between processors.
 #![cfg_attr(not(feature = "std"), no_std)]
 
+/// Compiles the program of the page on online estimation.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/online.md")]
+mod online_page {}
+
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!(
     "overact needs square roots and trigonometry: enable the feature `std`, or `libm` where there is no standard library"

@@ -4,7 +4,8 @@
 //! consists of PD control of every actuator, feed-forward torques of the desired motion, and
 //! projection of the sum by eq. (50). The projection prevents four motors on three degrees of
 //! freedom from working against each other. The parameters are constants of the generated modules
-//! ([`unloaded`], [`loaded`]), written by `overact generate --parameters`.
+//! ([`unloaded`], [`loaded`]), written by `overact generate --parameters`. [`payload`] estimates a
+//! payload in closed loop.
 //!
 //! The same code runs in `firmware/` on a Cortex-M7, and in the tests in closed loop with the
 //! virtual robot.
@@ -13,6 +14,11 @@
 /// The robot with payload: inverse dynamics only, because kinematics do not depend on the load.
 #[rustfmt::skip]
 pub mod loaded;
+/// The payload, estimated while the robot moves.
+pub mod payload;
+/// Pose, platform projection and payload columns, independent of the parameters.
+#[rustfmt::skip]
+pub mod platform;
 /// The robot without payload.
 #[rustfmt::skip]
 pub mod unloaded;

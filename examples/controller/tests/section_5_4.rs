@@ -54,11 +54,23 @@ fn load(run: &Run) -> Load {
 #[test]
 fn modules_are_what_their_parameters_generate() {
     let all = ["actuator_positions", "inverse_dynamics", "project_torques"];
+    let platform = ["pose_from_actuators", "project_platform", "idm_red_payload"];
     let modules = [
-        ("unloaded", include_str!("../src/unloaded.rs"), &all[..]),
-        ("loaded", include_str!("../src/loaded.rs"), &all[1..2]),
+        (
+            "unloaded",
+            include_str!("../src/unloaded.rs"),
+            &all[..],
+            true,
+        ),
+        ("loaded", include_str!("../src/loaded.rs"), &all[1..2], true),
+        (
+            "platform",
+            include_str!("../src/platform.rs"),
+            &platform[..],
+            false,
+        ),
     ];
-    for (name, text, functions) in modules {
+    for (name, text, functions, has_parameters) in modules {
         let choice = Choice::new(functions.iter().copied()).unwrap();
         let request = Request {
             functions: Some(&choice),
@@ -68,12 +80,19 @@ fn modules_are_what_their_parameters_generate() {
         let folder = Path::new(HERE);
         let description = folder.join("../../robots/dualv.toml");
         let parameters = folder.join(format!("{name}.toml"));
-        let made = CompiledFile::with_parameters(&description, &parameters, &request).unwrap();
-        let label = format!(
-            "robots/dualv.toml --parameters examples/controller/{name}.toml --functions {}",
-            functions.join(",")
-        );
-        let expected = rust::file(&made.model, &label);
+        let made = if has_parameters {
+            CompiledFile::with_parameters(&description, &parameters, &request)
+        } else {
+            CompiledFile::read(&description, &request)
+        };
+        let parameters = if has_parameters {
+            format!(" --parameters examples/controller/{name}.toml")
+        } else {
+            String::new()
+        };
+        let functions = functions.join(",");
+        let label = format!("robots/dualv.toml{parameters} --functions {functions}");
+        let expected = rust::file(&made.unwrap().model, &label);
         // The full texts would fill the screen.
         let same = expected == text;
         assert!(

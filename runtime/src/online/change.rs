@@ -56,6 +56,13 @@ impl<T: Float> ChangeTest<T> {
     ///
     /// # Errors
     /// A shift outside 0.01 to 100, or a number of samples outside 10 to 10¹⁵.
+    ///
+    /// ```
+    /// use overact::online::ChangeTest;
+    ///
+    /// assert!(ChangeTest::new(1.0, 1e6).is_ok());
+    /// assert!(ChangeTest::new(0.0, 1e6).is_err());
+    /// ```
     pub fn new(shift: T, samples: T) -> Result<Self, Error> {
         let (shift, samples): (f64, f64) = (shift.into(), samples.into());
         for (setting, value, condition, least, most) in [
@@ -78,12 +85,29 @@ impl<T: Float> ChangeTest<T> {
     }
 
     /// The threshold h of the sums.
+    ///
+    /// ```
+    /// use overact::online::ChangeTest;
+    ///
+    /// let [seldom, often] = [1e6, 1e3].map(|samples| ChangeTest::new(1.0, samples));
+    /// assert!(seldom?.threshold() > often?.threshold());
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
     #[must_use]
     pub const fn threshold(&self) -> T {
         self.threshold
     }
 
     /// Adds a normalised innovation; a number that is not finite is left out.
+    ///
+    /// ```
+    /// use overact::online::{Change, ChangeTest};
+    ///
+    /// let mut test = ChangeTest::new(1.0, 100.0)?;
+    /// assert_eq!(test.update(f64::NAN), None);
+    /// assert_eq!([0; 3].map(|_| test.update(-3.0))[1], Some(Change::Decrease));
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
     pub fn update(&mut self, normalised: T) -> Option<Change> {
         if !normalised.is_finite() {
             return None;

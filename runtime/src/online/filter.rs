@@ -250,6 +250,15 @@ impl<const P: usize, T: Float> Filter<P, T> {
     /// # Errors
     /// [`Error::NotDetermined`] without prior before the rows determine all parameters;
     /// [`Error::Overflow`] of an estimate that is not finite.
+    ///
+    /// ```
+    /// use overact::online::Filter;
+    ///
+    /// let mut filter = Filter::<1>::without_prior();
+    /// filter.update(&[2.0], 6.0, 1.0)?;
+    /// assert_eq!(filter.estimate()?, [3.0]);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
     pub fn estimate(&self) -> Result<[T; P], Error> {
         if !self.status.is_regular {
             return Err(Error::NotDetermined);
@@ -266,6 +275,15 @@ impl<const P: usize, T: Float> Filter<P, T> {
     ///
     /// # Errors
     /// As [`estimate`](Self::estimate).
+    ///
+    /// ```
+    /// use overact::online::Filter;
+    ///
+    /// let mut filter = Filter::<1>::without_prior();
+    /// filter.update(&[2.0], 6.0, 0.5)?;
+    /// assert_eq!(filter.standard_deviations()?, [0.25]);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
     pub fn standard_deviations(&self) -> Result<[T; P], Error> {
         if !self.status.is_regular {
             return Err(Error::NotDetermined);

@@ -63,6 +63,12 @@ pub struct SliceFilter<'a, T = f64> {
 
 impl<'a, T: Float> SliceFilter<'a, T> {
     /// Lengths of the two slices for a number of parameters: p² and 4 p.
+    ///
+    /// ```
+    /// use overact::online::SliceFilter;
+    ///
+    /// assert_eq!(SliceFilter::<f64>::lengths(10), [100, 40]);
+    /// ```
     #[must_use]
     pub const fn lengths(parameters: usize) -> [usize; 2] {
         [parameters * parameters, 4 * parameters]

@@ -67,6 +67,13 @@ impl<const N: usize, T: Float> StateVariableFilter<N, T> {
     /// # Errors
     /// A cutoff below 10⁻⁵ or above 0.45 of the sampling frequency, or numbers that are not finite
     /// and positive.
+    ///
+    /// ```
+    /// use overact::online::StateVariableFilter;
+    ///
+    /// assert!(StateVariableFilter::<3>::new(40.0, 1000.0).is_ok());
+    /// assert!(StateVariableFilter::<3>::new(600.0, 1000.0).is_err());
+    /// ```
     pub fn new(cutoff: T, sampling: T) -> Result<Self, Error> {
         const { assert!(N >= 3 && N <= 8, "the order must be from 3 to 8") };
         let (cutoff, sampling): (f64, f64) = (cutoff.into(), sampling.into());
@@ -115,6 +122,16 @@ impl<const N: usize, T: Float> StateVariableFilter<N, T> {
     /// # Errors
     /// [`Error::NotFinite`] of a sample and [`Error::Overflow`] of a result. The state is then
     /// unchanged.
+    ///
+    /// ```
+    /// use overact::online::StateVariableFilter;
+    ///
+    /// let mut filter = StateVariableFilter::<3>::new(40.0, 1000.0)?;
+    /// let first = filter.update(2.0)?;
+    /// assert_eq!([first.value, first.velocity, first.acceleration], [2.0, 0.0, 0.0]);
+    /// assert!(filter.update(f64::NAN).is_err());
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
     pub fn update(&mut self, sample: T) -> Result<Signal<T>, Error> {
         if !sample.is_finite() {
             return Err(Error::NotFinite { input: "sample" });

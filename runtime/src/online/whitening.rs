@@ -53,6 +53,12 @@ impl<T: Float> Default for Whitening<T> {
 
 impl<T: Float> Whitening<T> {
     /// Whitening with a memory of 1000 numbers.
+    ///
+    /// ```
+    /// use overact::online::Whitening;
+    ///
+    /// assert_eq!(Whitening::<f64>::new(), Whitening::default());
+    /// ```
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -64,6 +70,12 @@ impl<T: Float> Whitening<T> {
     }
 
     /// The correlation of successive numbers, between -0.999 and 0.999.
+    ///
+    /// ```
+    /// use overact::online::Whitening;
+    ///
+    /// assert_eq!(Whitening::<f64>::new().correlation(), 0.0);
+    /// ```
     #[must_use]
     pub fn correlation(&self) -> T {
         let ratio = self.covariance / self.variance;
@@ -71,6 +83,14 @@ impl<T: Float> Whitening<T> {
     }
 
     /// Whitens a number; zero for one that is not finite, which is left out.
+    ///
+    /// ```
+    /// use overact::online::Whitening;
+    ///
+    /// let mut whitening = Whitening::new();
+    /// assert_eq!(whitening.update(0.5), 0.5);
+    /// assert_eq!(whitening.update(f64::NAN), 0.0);
+    /// ```
     pub fn update(&mut self, number: T) -> T {
         if !number.is_finite() {
             return T::ZERO;

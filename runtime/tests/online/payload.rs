@@ -50,10 +50,9 @@ fn eigenvalues(mut a: [[f64; 4]; 4]) -> [f64; 4] {
                     let (x, y) = (row[p], row[q]);
                     (row[p], row[q]) = (c * x - s * y, s * x + c * y);
                 }
-                for k in 0..4 {
-                    let (x, y) = (a[p][k], a[q][k]);
-                    (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
-                }
+                let [above, below] = [a[p], a[q]];
+                a[p] = std::array::from_fn(|k| c * above[k] - s * below[k]);
+                a[q] = std::array::from_fn(|k| s * above[k] + c * below[k]);
             }
         }
     }

@@ -60,8 +60,7 @@ fn run<T: Float>(forgetting: Forgetting<T>, samples: usize, has_prior: bool) {
             let (factor, side) = filter.factor();
             let mut numbers = factor.as_flattened().iter().chain(side);
             assert!(numbers.all(|x| x.is_finite()), "{filter:?}");
-            let diagonal = (0..P).map(|k| factor[k][k]);
-            let is_regular = diagonal.fold(true, |all, r| all && r > T::ZERO);
+            let is_regular = (0..P).all(|k| factor[k][k] > T::ZERO);
             assert!(is_regular || !was_regular, "{filter:?}");
             let estimate = filter.estimate();
             assert!(estimate.is_ok() || !was_regular, "{filter:?}");

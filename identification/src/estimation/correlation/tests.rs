@@ -90,6 +90,7 @@ pub(crate) fn settings() -> Settings {
         known: Default::default(),
         kept_actuators: Vec::new(),
         seed: 1,
+        online: None,
     }
 }
 

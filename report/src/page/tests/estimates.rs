@@ -172,3 +172,25 @@ fn what_was_calibrated_is_told_with_its_intervals() {
     // Without calibration there is no section on it.
     assert!(!full(&identification()).contains("id=\"calibration\""));
 }
+
+#[test]
+fn parameters_over_time_have_plots_and_words() {
+    let mut identification = identification();
+    let html = full(&identification);
+    let document = parsed(&html);
+    let figure = { document.descendants() }
+        .find(|node| node.attribute("id") == Some("figure-online"))
+        .expect("a figure");
+    let plots = figure
+        .descendants()
+        .filter(|node| node.tag_name().name() == "svg");
+    assert_eq!(plots.count(), 2);
+    let words = summary(&identification, None, Extent::Whole);
+    assert!(words.contains("Changes detected at 7 s"), "{words}");
+    // 1.96 · 0.5/t is below 5 % of 1.9 from t = 11 s on.
+    assert!(words.contains("m_platformR 11 s"), "{words}");
+    identification.online.clear();
+    let words = summary(&identification, None, Extent::Whole);
+    assert!(!words.contains("Online estimation"), "{words}");
+    assert!(!full(&identification).contains("figure-online"));
+}

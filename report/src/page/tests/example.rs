@@ -9,10 +9,10 @@ use overact_identification::{
     About, ActuatorRange, Axis, BaseParameter, Check, CheckKind, ConditionSeries, Consistent,
     ConsistentBody, ConsistentParameter, CorrelationFigures, CrossValidation, Curve, Drift,
     Estimate, Estimator, Evidence, Figures, Grade, Identification, Instruments, LineError,
-    LineNorms, LineResidual, ModelKind, Normalisation, ParameterEstimate, PartitionCondition,
-    PredictionFigures, Prior, Regrouping, Removal, ResidualFigures, ResidualSeries, RunFigures,
-    RunSummary, Series, Settings, Stage, StageVerdict, Thresholds, TorqueComparison, TrackingError,
-    VelocitySeries, Verdict,
+    LineNorms, LineResidual, ModelKind, Normalisation, OnlineChange, OnlineEstimate,
+    ParameterEstimate, PartitionCondition, PredictionFigures, Prior, Regrouping, Removal,
+    ResidualFigures, ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, StageVerdict,
+    Thresholds, TorqueComparison, TrackingError, VelocitySeries, Verdict,
 };
 
 /// Name that breaks unescaped output.
@@ -241,7 +241,27 @@ pub(super) fn settings() -> Settings {
         validation_samples: None,
         kept_actuators: vec![0],
         seed: 1,
+        online: None,
     }
+}
+
+/// Estimates over time of a replay, with a change.
+fn online() -> Vec<OnlineEstimate> {
+    let point = |step: u32| {
+        let time = f64::from(step);
+        let deviation = 0.5 / time;
+        OnlineEstimate {
+            run: HOSTILE.to_owned(),
+            time,
+            values: vec![(step > 2).then_some(0.0445), Some(-1.9)],
+            standard_deviations: vec![(step > 2).then_some(0.01 * deviation), Some(deviation)],
+            change: (step == 7).then(|| OnlineChange {
+                line: HOSTILE.to_owned(),
+                increase: true,
+            }),
+        }
+    };
+    (1..=50).map(point).collect()
 }
 
 fn consistent() -> Consistent {
@@ -337,6 +357,7 @@ pub(super) fn identification() -> Identification {
                 largest: vec![largest],
             })
             .collect(),
+        online: online(),
         errors_in_regressor: Vec::new(),
         settings: settings(),
         figures: figures(),

@@ -384,6 +384,7 @@ fn an_identification_without_anything_still_has_a_page() {
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),
+        online: Vec::new(),
         errors_in_regressor: Vec::new(),
         settings: settings(),
         figures: Figures::default(),

@@ -153,6 +153,18 @@ impl<const P: usize, T: Float> PayloadEstimator<P, T> {
     ///
     /// # Errors
     /// As [`Filter::update_block`]; the state is then unchanged.
+    ///
+    /// ```
+    /// use overact::StandardParameter;
+    /// use overact::online::{PayloadEstimator, PayloadSize};
+    ///
+    /// let size = PayloadSize { mass: 10.0, length: 0.3 };
+    /// let mut estimator = PayloadEstimator::new([StandardParameter::M], size)?;
+    /// // Two joints: the payload's rows, and torques beyond those of the robot.
+    /// let [first, _] = estimator.update(&[[4.0], [2.0]], &[8.0, 4.0], &[0.1, 0.1])?;
+    /// assert!((first.residual - 8.0_f64).abs() < 1e-12);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
     pub fn update<const M: usize>(
         &mut self,
         rows: &[[T; P]; M],
@@ -206,6 +218,19 @@ impl<const P: usize, T: Float> PayloadEstimator<P, T> {
     ///
     /// # Errors
     /// [`Error::Overflow`] of an estimate that is not finite.
+    ///
+    /// ```
+    /// use overact::StandardParameter;
+    /// use overact::online::{PayloadEstimator, PayloadSize};
+    ///
+    /// let size = PayloadSize { mass: 10.0, length: 0.3 };
+    /// let mut estimator = PayloadEstimator::new([StandardParameter::M], size)?;
+    /// // No body has a negative mass.
+    /// estimator.update(&[[1.0]], &[-2.0], &[0.1])?;
+    /// let payload = estimator.payload()?;
+    /// assert!(payload.is_projected && payload.mass > 0.0 && payload.mass < 0.01);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
     pub fn payload(&self) -> Result<Payload<T>, Error> {
         let estimate = self.filter.estimate()?;
         let mut raw: Inertia<T> = [T::ZERO; 10];
