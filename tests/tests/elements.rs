@@ -16,7 +16,7 @@ use overact_tests::reference::states::frictionless;
 use overact_tests::reference::trajectory;
 use overact_tests::support::conversion::reference;
 use overact_tests::support::elements::{with_point_springs, with_springs};
-use overact_tests::support::expected::Expected;
+use overact_tests::support::expected::{Expected, has_masses};
 use overact_tests::support::library::workspace;
 use overact_tests::support::random::{Sketch, parasitic_motion, skeleton};
 use overact_tests::support::sample::samples;
@@ -110,12 +110,16 @@ fn differences(name: &str, text: &str) -> Result<Vec<String>, Failure> {
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparisons = TOLERANCES.map(Comparison::new);
+    let has_masses = has_masses(&truths)?;
     for function in &model.functions {
+        if !has_masses && matches!(function.computes, Function::ForwardDynamics(_)) {
+            continue;
+        }
         let at = usize::from(!function.name.contains("_base"));
         comparisons[at].function(function, &Evaluated(&model), &all, &truths)?;
     }
     let [of_base, others] = comparisons;
-    assert!(others.lines.len() > 5, "{name}: {:?}", others.lines);
+    assert!(others.lines.len() >= 4, "{name}: {:?}", others.lines);
     let failures = of_base.failures.into_iter().chain(others.failures);
     Ok(failures.map(|line| format!("{name}: {line}")).collect())
 }

@@ -303,6 +303,30 @@ impl Truth<'_> {
     }
 }
 
+/// Smallest eigenvalue of the normalised mass matrix for which the motion is compared.
+const LIGHT: f64 = 1e-8;
+
+/// Whether every motion has kinetic energy at all samples.
+///
+/// A description may omit the parameters of everything that a joint moves; torques then do not
+/// determine its acceleration.
+///
+/// # Errors
+///
+/// If the reference can't compute the mass matrix.
+pub fn has_masses(truths: &[Truth<'_>]) -> Result<bool, Failure> {
+    for truth in truths {
+        let mass = truth.output(Function::MassMatrix(Columns::Standard), MotionInput::Pose)?;
+        let scale = mass.diagonal().map(|entry| entry.sqrt().recip());
+        let scaled = DMatrix::from_diagonal(&scale) * mass * DMatrix::from_diagonal(&scale);
+        let is_finite = scaled.iter().all(|entry| entry.is_finite());
+        if !is_finite || scaled.symmetric_eigenvalues().min() < LIGHT {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 /// Output of functions without parameters; `None` for others.
 fn kinematic(
     dynamics: &Dynamics<'_>,
