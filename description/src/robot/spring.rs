@@ -124,7 +124,7 @@ fn given(
         );
         let unit = match example {
             "l" => "N/m",
-            _ => unit,
+            _ => unit.as_str(),
         };
         let help = format!("give its factors their units, for instance \"2 {unit} * {example}\"");
         item.context
