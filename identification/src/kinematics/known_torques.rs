@@ -1,8 +1,9 @@
 //! Known torques and forces of the description, subtracted from measured torques.
 //!
 //! They are the inverse dynamics with all parameters zero: the actuator torques that balance the
-//! known torques of all joints, and the known forces of springs and dampers between points. With redundant actuators these are the torques of least norm,
-//! whose projections are those of the known torques.
+//! known torques of all joints, and the known forces of springs and dampers between points. With
+//! redundant actuators these are the torques of least norm, whose projections are those of the known
+//! torques.
 
 use overact::{Columns, Function, Model};
 
