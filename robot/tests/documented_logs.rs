@@ -104,7 +104,7 @@ fn shown_texts_are_read_with_the_tables_below_them() {
         .collect();
     assert!(shown.len() >= 10, "{}", shown.len());
     for example in shown {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(example.title.replace(' ', '_'));
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(example.title.replace(' ', "_"));
         fs::create_dir_all(&folder).expect("a folder");
         for (name, content) in &example.texts {
             fs::write(folder.join(name), content).expect("written");

@@ -99,7 +99,7 @@ fn a_standstill_in_the_middle_splits_the_run() {
     let halved = |values: &[f64]| {
         [
             &values[..half],
-            &values[half - n..half].repeat(rest),
+            &values[half - n..half].repeat(rest)[..],
             &values[half..],
         ]
         .concat()

@@ -53,6 +53,13 @@ static number weight_of(number sigma)
     return ((sigma > (number)0.0) && (weight > (number)0.0) && isfinite(weight)) ? weight : (number)0.0;
 }
 
+/* A product; zero if its square would not be a normal number. */
+static number scaled(number x, number by)
+{
+    const number product = x * by;
+    return (MAGNITUDE(product) < SMALLEST) ? (number)0.0 : product;
+}
+
 static int is_factor(number factor)
 {
     return ((factor > (number)0.0) && (factor <= (number)1.0)) ? 1 : 0;
@@ -159,9 +166,9 @@ static void forget_along(overact_online_filter *filter, const number *row, numbe
         }
     }
     for (int j = 0; j < p; j++) {
-        filter->factor[j] *= root_of_lambda;
+        filter->factor[j] = scaled(filter->factor[j], root_of_lambda);
     }
-    filter->side[0] *= root_of_lambda;
+    filter->side[0] = scaled(filter->side[0], root_of_lambda);
     for (int upper = 0; upper < (p - 1); upper++) {
         const number a = filter->factor[upper * p + upper];
         const number b = filter->factor[(upper + 1) * p + upper];
@@ -250,10 +257,10 @@ static void discount(overact_online_filter *filter, number factor)
     const int p = filter->parameters;
     const number root = ROOT(factor);
     for (int i = 0; i < (p * p); i++) {
-        filter->factor[i] *= root;
+        filter->factor[i] = scaled(filter->factor[i], root);
     }
     for (int i = 0; i < p; i++) {
-        filter->side[i] *= root;
+        filter->side[i] = scaled(filter->side[i], root);
     }
     weigh_residuals(filter, factor);
     keep_regular(filter);

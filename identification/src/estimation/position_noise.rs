@@ -16,52 +16,134 @@ const ROUNDING: f64 = 1.0 / 12.0;
 /// Noise in steps from which on the smallest step is a resolution.
 const SEEN: f64 = 0.1;
 
-/// Standard deviation of the noise of a signal.
-pub(crate) fn deviation(signal: &[f64]) -> f64 {
-    let steps = signal.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let smallest = steps
-        .filter(|step| *step > 0.0)
-        .fold(f64::INFINITY, f64::min);
-    let white = white(signal);
-    // The smallest step of a smooth motion is no resolution. An encoder repeats values, or its step
-    // is comparable to the noise.
-    let repeats = signal.windows(2).any(|pair| pair[0] == pair[1]);
-    let is_rounded = smallest.is_finite() && (repeats || white > SEEN * smallest);
-    if is_rounded {
-        white.max(smallest * ROUNDING.sqrt())
-    } else {
-        white
+/// Smallest fraction of the noise variance that depends on the speed.
+///
+/// For white noise, 4000 samples give about 0.05.
+const BY_SPEED: f64 = 0.2;
+
+/// Samples on either side over which a speed is measured.
+const SPEED_REACH: usize = 4;
+
+/// Variance of the noise of a signal: σ² + κ v² at the speed v, in units of the signal per sample.
+///
+/// Stamps that are late or rounded act as noise of the positions that vanishes at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct NoiseVariance {
+    constant: f64,
+    by_speed: f64,
+}
+
+impl NoiseVariance {
+    /// The variance of a signal's noise.
+    fn of(signal: &[f64]) -> Self {
+        let steps = signal.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let smallest = steps
+            .filter(|step| *step > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        let (white, order, differences) = white(signal);
+        // The smallest step of a smooth motion is no resolution. An encoder repeats values, or its
+        // step is comparable to the noise.
+        let repeats = signal.windows(2).any(|pair| pair[0] == pair[1]);
+        let is_rounded = smallest.is_finite() && (repeats || white.sqrt() > SEEN * smallest);
+        let least = if is_rounded {
+            smallest * smallest * ROUNDING
+        } else {
+            0.0
+        };
+        let all = white.max(least);
+        let speeds = speeds(signal, order);
+        let slope = slope(&speeds, &differences);
+        let mean = speeds.iter().sum::<f64>() / speeds.len().max(1) as f64;
+        let depends = slope * mean > BY_SPEED * all;
+        if !depends {
+            return Self {
+                constant: all,
+                by_speed: 0.0,
+            };
+        }
+        let constant = (all - slope * mean).max(least);
+        Self {
+            constant,
+            by_speed: (all - constant) / mean,
+        }
+    }
+
+    /// Standard deviations of the noise of each sample of a signal.
+    fn deviations(self, signal: &[f64]) -> impl Iterator<Item = f64> {
+        let speed = move |sample: usize| match self.by_speed {
+            0.0 => 0.0,
+            _ => squared_speed(signal, sample),
+        };
+        (0..signal.len()).map(move |sample| (self.constant + self.by_speed * speed(sample)).sqrt())
     }
 }
 
-/// Standard deviation of white noise in a signal.
-fn white(signal: &[f64]) -> f64 {
+/// Square of the speed at a sample, by a difference over some samples.
+fn squared_speed(signal: &[f64], sample: usize) -> f64 {
+    let first = sample.saturating_sub(SPEED_REACH);
+    let last = (sample + SPEED_REACH).min(signal.len() - 1);
+    let steps = (last - first).max(1) as f64;
+    ((signal[last] - signal[first]) / steps).powi(2)
+}
+
+/// Squared speeds at the centres of differences of some order.
+fn speeds(signal: &[f64], order: usize) -> Vec<f64> {
+    let count = signal.len().saturating_sub(order);
+    (0..count)
+        .map(|first| squared_speed(signal, first + order / 2))
+        .collect()
+}
+
+/// Slope of the regression of `y` on `x`; 0 for a constant `x`.
+fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let count = x.len().min(y.len()).max(1) as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+    let (x_mean, y_mean) = (mean(x), mean(y));
+    let (mut products, mut squares) = (0.0, 0.0);
+    for (x, y) in x.iter().zip(y) {
+        products += (x - x_mean) * (y - y_mean);
+        squares += (x - x_mean).powi(2);
+    }
+    if squares > 0.0 {
+        products / squares
+    } else {
+        0.0
+    }
+}
+
+/// Variance of white noise in a signal, the order of the differences that gives it, and their
+/// squares in units of this variance's estimate.
+fn white(signal: &[f64]) -> (f64, usize, Vec<f64>) {
     let mut differences = signal.to_vec();
-    let (mut gain, mut order) = (1.0, 0.0);
-    let mut least = f64::INFINITY;
-    for _ in 1..=*ORDERS.end() {
+    let mut gain = 1.0;
+    let mut least = (f64::INFINITY, 0, Vec::new());
+    for order in 1..=*ORDERS.end() {
         for at in 1..differences.len() {
             differences[at - 1] = differences[at] - differences[at - 1];
         }
         if differences.pop().is_none() || differences.is_empty() {
-            return 0.0;
+            return (0.0, 0, Vec::new());
         }
-        order += 1.0;
         // C(2m, m) from C(2m - 2, m - 1).
-        gain *= 2.0 * (2.0 * order - 1.0) / order;
-        if order < *ORDERS.start() as f64 {
+        let m = order as f64;
+        gain *= 2.0 * (2.0 * m - 1.0) / m;
+        if order < *ORDERS.start() {
             continue;
         }
         let sum: f64 = differences.iter().map(|one| one * one).sum();
-        least = least.min(sum / differences.len() as f64 / gain);
+        let variance = sum / differences.len() as f64 / gain;
+        if variance < least.0 {
+            let squares = differences.iter().map(|one| one * one / gain);
+            least = (variance, order, squares.collect());
+        }
     }
-    least.sqrt()
+    least
 }
 
 /// A copy of a run in memory, with noise added to positions and measured velocities.
 ///
-/// The added white noise has the size of the noise already present. It is the same for the same
-/// run.
+/// The added noise is white and has the size of the noise already present, also if that depends on
+/// the speed. It is the same for the same run.
 ///
 /// # Errors
 /// A file cannot be read any more.
@@ -78,9 +160,11 @@ pub(crate) fn with_added_noise(log: &Log) -> Result<Log, Error> {
     for signals in [&mut positions, &mut velocities] {
         for actuator in 0..n {
             let own: Vec<f64> = signals.iter().skip(actuator).step_by(n).copied().collect();
-            let deviation = deviation(&own);
-            let own = signals.iter_mut().skip(actuator).step_by(n);
-            own.for_each(|value| *value += deviation * noise.next());
+            let deviations = NoiseVariance::of(&own).deviations(&own);
+            let values = signals.iter_mut().skip(actuator).step_by(n);
+            for (value, deviation) in values.zip(deviations) {
+                *value += deviation * noise.next();
+            }
         }
     }
     let (name, frequency) = (log.name(), log.sampling_frequency());
@@ -129,7 +213,40 @@ impl Noise {
 
 #[cfg(test)]
 mod tests {
-    use super::{Noise, deviation};
+    use super::{Noise, NoiseVariance};
+
+    /// Standard deviation of a signal's noise at rest.
+    fn deviation(signal: &[f64]) -> f64 {
+        NoiseVariance::of(signal).constant.sqrt()
+    }
+
+    #[test]
+    fn noise_of_late_stamps_vanishes_at_rest() {
+        let mut noise = Noise::default();
+        let resolution = 1e-4;
+        let signal: Vec<f64> = (0..5000)
+            .map(|sample| {
+                let time = f64::from(sample) / 100.0;
+                let late = time + 3e-4 * noise.next();
+                resolution * ((1.5 * late).sin() / resolution).round()
+            })
+            .collect();
+        let found = NoiseVariance::of(&signal);
+        let rest = found.constant.sqrt();
+        assert!(rest < 1.5 * resolution, "{rest}");
+        let deviations: Vec<f64> = found.deviations(&signal).collect();
+        // The speed is 1.5 per s at sample 0.
+        assert!(
+            (deviations[4] / 4.5e-4 - 1.0).abs() < 0.2,
+            "{}",
+            deviations[4]
+        );
+        // Noise of an encoder does not depend on the speed.
+        let white: Vec<f64> = (0..5000)
+            .map(|sample| (0.015 * f64::from(sample)).sin() + 1e-4 * noise.next())
+            .collect();
+        assert_eq!(NoiseVariance::of(&white).by_speed, 0.0);
+    }
 
     #[test]
     fn noise_is_distinguished_from_motion_and_from_encoders() {

@@ -1,8 +1,9 @@
-//! Known torques of the description, subtracted from measured ones.
+//! Known torques and forces of the description, subtracted from measured torques.
 //!
-//! They are the inverse dynamics at rest with all parameters zero: the actuator torques that balance
-//! the known torques of all joints. With redundant actuators these are the torques of least norm,
-//! whose projections are those of the known torques.
+//! They are the inverse dynamics with all parameters zero: the actuator torques that balance the
+//! known torques of all joints, and the known forces of springs and dampers between points. With
+//! redundant actuators these are the torques of least norm, whose projections are those of the known
+//! torques.
 
 use overact::{Columns, Function, Model};
 
@@ -14,7 +15,7 @@ use overact_logs::Error;
 /// They may vanish at home, and a large displacement may be out of a small robot's reach.
 const PROBES: [f64; 4] = [0.0, 1e-3, 1e-2, 0.1];
 
-/// Torques at rest that are independent of parameters.
+/// Torques that are independent of parameters.
 pub(super) struct KnownTorques<'a> {
     model: &'a dyn Model,
     /// Whether there are any.
@@ -35,7 +36,9 @@ impl<'a> KnownTorques<'a> {
             let step: Vec<f64> = (0..sizes.dof).map(step).collect();
             let mut pose = info.home_pose.to_vec();
             model.displace(&mut pose, &step);
-            let found = known.at(&pose, 1);
+            // A known force may depend on velocities only.
+            let moving = vec![1.0; sizes.dof];
+            let found = known.at(&pose, &moving, 1);
             found.is_ok_and(|torques| torques.iter().any(|torque| *torque != 0.0))
         };
         Self {
@@ -44,13 +47,18 @@ impl<'a> KnownTorques<'a> {
         }
     }
 
-    /// Torques at poses.
-    fn at(&self, poses: &[f64], samples: usize) -> Result<Vec<f64>, overact::SampleError> {
+    /// Torques at poses and twists.
+    fn at(
+        &self,
+        poses: &[f64],
+        twists: &[f64],
+        samples: usize,
+    ) -> Result<Vec<f64>, overact::SampleError> {
         let sizes = self.model.info().sizes;
         let still = vec![0.0; samples * sizes.dof];
         let parameters = vec![0.0; sizes.parameters + sizes.payload_parameters];
         let mut torques = vec![0.0; samples * sizes.actuators];
-        let inputs: [&[f64]; 4] = [poses, &still, &still, &parameters];
+        let inputs: [&[f64]; 4] = [poses, twists, &still, &parameters];
         self.model.evaluate(
             Function::InverseDynamics(Columns::Standard),
             &inputs,
@@ -67,7 +75,7 @@ impl<'a> KnownTorques<'a> {
         if !self.present {
             return Ok(());
         }
-        let known = self.at(&motion.pose, motion.samples);
+        let known = self.at(&motion.pose, &motion.twist, motion.samples);
         let known = known.map_err(|error| motion.outside(error.sample, error.error))?;
         for (torque, known) in motion.torques.iter_mut().zip(known) {
             *torque -= known;

@@ -8,6 +8,7 @@
 //! of the batch estimate.
 
 mod replay;
+mod timeline;
 
 use serde::Serialize;
 

@@ -358,7 +358,7 @@ impl<'a> Search<'a> {
         if self
             .gaps
             .get(self.passed)
-            .is_none_or(|gap| !(time > gap.before))
+            .is_none_or(|gap| time.is_nan() || time <= gap.before)
         {
             let range = self.found[self.passed].get_or_insert(RowRange {
                 first: number,

@@ -95,8 +95,18 @@ fn rotate_rows<T: Float>(
 
 /// Multiplies R and z by a factor.
 pub(super) fn scale<T: Float>(factor: &mut [T], side: &mut [T], by: T) {
-    for number in factor.iter_mut().chain(side) {
-        *number *= by;
+    let all = factor.iter_mut().chain(side);
+    all.for_each(|number| *number = scaled(*number, by));
+}
+
+/// A product; zero if its square would not be a normal number, since numbers that decay further
+/// become slow to compute with.
+fn scaled<T: Float>(number: T, by: T) -> T {
+    let product = number * by;
+    if product.abs() < bounds::smallest::<T>() {
+        T::ZERO
+    } else {
+        product
     }
 }
 
@@ -141,8 +151,8 @@ pub(super) fn forget_along<T: Float>(
         rotate_rows(factor, side, upper, upper, cosine, sine);
     }
     let first_row = factor.iter_mut().take(count);
-    first_row.for_each(|r| *r *= root_of_lambda);
-    side.iter_mut().take(1).for_each(|z| *z *= root_of_lambda);
+    let first_numbers = first_row.chain(side.iter_mut().take(1));
+    first_numbers.for_each(|number| *number = scaled(*number, root_of_lambda));
     for upper in 0..count.saturating_sub(1) {
         let diagonal = factor.get(upper * count + upper).copied();
         let below = factor.get((upper + 1) * count + upper).copied();

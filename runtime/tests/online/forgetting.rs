@@ -130,3 +130,20 @@ fn factors_outside_their_range_are_errors() {
     }
     assert_eq!(Forgetting::<f64>::factor_of_memory(100.0), 0.99);
 }
+
+#[test]
+fn information_that_decays_becomes_zero_and_never_subnormal() {
+    let filter = Filter::<2>::without_prior();
+    let mut filter = filter
+        .with_forgetting(Forgetting::Exponential(0.5))
+        .unwrap();
+    // One row does not determine two parameters, so nothing keeps its information.
+    filter.update(&[1.0, 2.0], 3.0, 1.0).unwrap();
+    for _ in 0..2000 {
+        filter.update(&[0.0, 0.0], 0.0, 1.0).unwrap();
+        let (factor, side) = filter.factor();
+        let mut numbers = factor.as_flattened().iter().chain(side);
+        assert!(numbers.all(|number| !number.is_subnormal()));
+    }
+    assert_eq!(filter.factor().0, &[[0.0; 2]; 2]);
+}

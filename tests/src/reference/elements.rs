@@ -89,7 +89,7 @@ fn gradient(mechanism: &Mechanism, state: &State, element: &Element) -> DVector<
         }
         Opened::new(mechanism, &q, frame).length(element)
     };
-    let slope = |index: usize| {
+    let slope = |index: usize| -> f64 {
         let term = |(n, weight): (usize, &f64)| {
             let step = (n + 1) as f64 * STEP;
             weight * (at(index, step) - at(index, -step)) / STEP

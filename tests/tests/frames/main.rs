@@ -5,6 +5,7 @@
 mod agreement;
 mod compiled;
 mod differences;
+mod operation_counts;
 mod refusals;
 
 use overact::Function;

@@ -23,13 +23,13 @@ fn says(stem: &str, more: &str, all: &[&str]) -> Result<(), Failure> {
 
 #[test]
 fn unknown_bodies_are_refused_with_those_that_exist() -> Result<(), Failure> {
-    let text = "[frame.tool]\nbody = \"7\"\n";
+    let text = "[frame.tool]\nbody = \"hand\"\n";
     says(
         "rx90",
         text,
         &[
-            "the robot has no body `7`",
-            "body = \"7\"",
+            "the robot has no body `hand`",
+            "body = \"hand\"",
             "bodies are 1, 2, 3, 4, 5, 6",
         ],
     )?;

@@ -58,41 +58,6 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
         return new(String::from(words)).found();
     };
     let largest = directions.noise.iter().copied().fold(0.0, f64::max);
-    if std::env::var_os("OVERACT_DEBUG_NOISE").is_some() {
-        let mut sorted = directions.noise.clone();
-        sorted.sort_by(|a, b| b.total_cmp(a));
-        eprintln!("noise {:?}", &sorted[..sorted.len().min(12)]);
-        for (place, own) in estimate.parameters.iter().enumerate() {
-            let steps = directions.steps.row(place);
-            let share = |limit: f64| {
-                let lost: f64 = { steps.iter().zip(&directions.noise) }
-                    .filter(|(_, noise)| **noise > limit)
-                    .map(|(step, _)| step * step)
-                    .sum();
-                lost / steps.norm_squared()
-            };
-            let all = steps
-                .iter()
-                .zip(&directions.noise)
-                .zip(directions.sizes.iter());
-            let (mut bias, mut variance) = (0.0, 0.0);
-            for ((step, noise), size) in all {
-                if *noise <= 0.5 {
-                    bias += step * size * noise / (1.0 - noise);
-                    variance += (step * noise / (1.0 - noise)).powi(2);
-                }
-            }
-            eprintln!(
-                "{} share>.1 {:.2e} >.5 {:.2e} bias {:.2} sd {:.2} white/corr {:.2}",
-                own.name,
-                share(0.1),
-                share(0.5),
-                bias / own.correlated_standard_deviation,
-                variance.sqrt() / own.correlated_standard_deviation,
-                steps.norm() / own.correlated_standard_deviation
-            );
-        }
-    }
     for (place, own) in estimate.parameters.iter().enumerate() {
         let is_lost = directions.is_undetermined(place) || directions.is_biased(place, own);
         if is_lost && !spoiled.contains(&own.name) {
