@@ -78,7 +78,9 @@ fn with_frames(stem: &str) -> Result<Source, Failure> {
 /// work.
 fn each(part: usize, check: fn(&Robot) -> Result<(), Failure>) -> Result<(), Failure> {
     let mut failures = Vec::new();
-    for (_, stem) in { stems()?.iter().enumerate() }.filter(|(at, _)| at % PARTS == part) {
+    let stems = stems()?;
+    let own = stems.iter().enumerate();
+    for (_, stem) in own.filter(|(at, _)| at % PARTS == part) {
         if !is_of_the_tier(stem) {
             continue;
         }

@@ -59,9 +59,11 @@ fn system(a: f64, seed: u64) -> System {
             run: 0,
             lines,
             instruments: Vec::new(),
+            checks: crate::settings::CheckScope::All,
         }],
         partition: None,
         instruments: Vec::new(),
+        checks: crate::settings::CheckScope::All,
     }
 }
 
@@ -85,6 +87,7 @@ pub(crate) fn settings() -> Settings {
         asymmetric_friction: false,
         weighted: true,
         instruments: crate::settings::Instruments::None,
+        checks: crate::settings::CheckScope::All,
         period_s: None,
         prior: Default::default(),
         known: Default::default(),

@@ -233,6 +233,7 @@ pub(super) fn settings() -> Settings {
         asymmetric_friction: false,
         weighted: true,
         instruments: Instruments::None,
+        checks: overact_identification::CheckScope::All,
         period_s: None,
         prior: Prior::default(),
         known: std::collections::BTreeMap::new(),
