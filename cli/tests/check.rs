@@ -252,3 +252,42 @@ fn columns_that_a_log_lacks_are_told_with_the_line_that_names_them() {
     );
     assert!(said.contains(&expected), "{said}");
 }
+
+/// A planar five-bar of two arms; the first turns about an axis with a given `alpha`.
+fn five_bar(alpha: &str) -> String {
+    let pin = |leg: &str, name: &str, more: &str| {
+        format!("[[leg.{leg}.joint]]\nname = \"{name}\"\ntype = \"revolute\"\n{more}\n")
+    };
+    let driven = |alpha: &str| format!("alpha = \"{alpha}\"\nactuated = true");
+    [
+        "name = \"Arms\"\n".to_owned(),
+        pin("left", "l1", &driven(alpha)),
+        pin("left", "l2", "d = 0.3"),
+        "[leg.right]\nbase = { at = [0.4, 0, 0] }\n".to_owned(),
+        pin("right", "r1", &driven("90 deg")),
+        pin("right", "r2", "d = 0.3"),
+        "[[leg.right.joint]]\nname = \"tip\"\ntype = \"fixed\"\nd = 0.35\nparameters = []\n"
+            .to_owned(),
+        "[leg.right.end]\ntype = \"point\"\nbody = \"l2\"\nat = [0.35, 0, 0]\n".to_owned(),
+        "[[place]]\nname = \"left\"\nshape = \"left\"\nhome = { l1 = 2.0, l2 = -1.2 }\n".to_owned(),
+        "[[place]]\nname = \"right\"\nshape = \"right\"\nhome = { r1 = 1.1, r2 = 1.2 }\n"
+            .to_owned(),
+    ]
+    .concat()
+}
+
+#[test]
+fn a_misfit_by_rounded_angles_is_a_length_with_digits() {
+    let bench = Bench::new();
+    bench.write("my.toml", &five_bar("90 deg"));
+    bench.good(&["check", "my.toml"]);
+    for alpha in ["1.5708 rad", "1.570796 rad"] {
+        bench.write("my.toml", &five_bar(alpha));
+        let said = bench.bad(&["check", "my.toml"]);
+        assert!(
+            said.contains("misses its place") && said.contains("write angles exactly"),
+            "{said}"
+        );
+        assert!(!said.contains("0.000 mm"), "{said}");
+    }
+}
