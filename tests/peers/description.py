@@ -104,7 +104,7 @@ class Description:
         # The head of the file lists the bodies that are fixed together; the first gives the name.
         head = text.split("\nname =")[0].replace("\n# ", " ")
         self.together = {}
-        for own, others in re.findall(r"one body here: `([^`]*)` and ((?:`[^`]*`(?:, )?)*)", head):
+        for own, others in re.findall(r"One body here, fixed together: `([^`]*)` and ((?:`[^`]*`(?:, )?)*)", head):
             self.together[own] = re.findall(r"`([^`]*)`", others)
 
     def joints(self):
