@@ -201,12 +201,35 @@ fn shells_and_man_are_served() {
     assert!(none.contains("error[OA602]"), "{none}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_named_pipe_is_read_as_a_log() {
+    let bench = Bench::new();
+    bench.good(&["new", "serial-2r", "my.toml"]);
+    let run = ["simulate", "my.toml", "--run", "identification", "-o"];
+    bench.good(&[&run[..], &["log.csv"]].concat());
+    let made = Command::new("mkfifo").arg(bench.path("pipe.csv")).status();
+    assert!(made.expect("mkfifo").success());
+    let (log, pipe) = (bench.read("log.csv"), bench.path("pipe.csv"));
+    let writer = std::thread::spawn(move || fs::write(pipe, log));
+    let identify = |log| vec!["identify", "my.toml", "--json", "--data", log];
+    let streamed = bench.good(&identify("pipe.csv"));
+    writer.join().expect("a thread").expect("a log in the pipe");
+    let read = bench.good(&identify("log.csv"));
+    let estimates = |text: &str| {
+        let document: serde_json::Value = serde_json::from_str(text).expect("JSON");
+        document["estimates"].to_string()
+    };
+    let renamed = streamed.replace("pipe.csv", "log.csv");
+    assert!(estimates(&renamed) == estimates(&read), "other estimates");
+}
+
 /// An unread pipe keeps the command waiting between temporary files and their final names.
 #[cfg(unix)]
 #[test]
 fn a_signal_leaves_no_temporary_file() {
     use std::{os::unix::process::ExitStatusExt, thread::sleep, time::Duration};
-    for (name, number) in [("INT", 2), ("TERM", 15)] {
+    for (name, number) in [("HUP", 1), ("INT", 2), ("TERM", 15)] {
         let bench = Bench::new();
         let made = Command::new("mkfifo").arg(bench.path("pipe.svg")).status();
         assert!(made.expect("mkfifo").success());

@@ -11,7 +11,7 @@ use crate::{
     },
     bounds,
     experiment::{self, Experiment},
-    files::{Errors, Files},
+    files::{Errors, Files, Place},
     format::Format,
     mjcf,
     model::Model,
@@ -224,12 +224,13 @@ impl<'m> Robot<'m> {
 
 fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)> {
     let text = files.text(file);
-    if !text
-        .trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n'])
-        .starts_with('<')
-        && is_table(&text)
-    {
-        return par::read(files, file, options).map(|model| (model, Format::Par));
+    let start = text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']);
+    if !start.starts_with('<') {
+        if is_table(&text) {
+            return par::read(files, file, options).map(|model| (model, Format::Par));
+        }
+        refuse_text(files, file, start);
+        return None;
     }
     let root = xml::parse(files, file)?;
     match root.name.as_str() {
@@ -247,6 +248,18 @@ fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)
             None
         }
     }
+}
+
+/// Reports a file that is neither XML nor a table.
+fn refuse_text(files: &Files, file: usize, text: &str) {
+    let message = if text.is_empty() {
+        "the file is empty"
+    } else {
+        "the file is neither XML nor a .par table"
+    };
+    let help = "give a robot as MJCF (<mujoco>), URDF (<robot>), SDFormat (<sdf>) or .par (NJ = …)";
+    let span = 0..0;
+    files.report(&Place { file, span }, message, help);
 }
 
 /// Whether a text is in the .par format.

@@ -40,7 +40,7 @@ fn keep_inside(files: &Files, index: &Index, rule: &Rule, outer: &str, element: 
             is_empty: false,
             place,
         };
-        is_kept(files, rule.attribute(name), &subject)
+        is_kept(files, rule.attribute(name), &subject, rule.names())
     });
     let (text, text_place) = &element.text;
     if rule.treatment == Treatment::Honoured && !text.is_empty() && !index.has_text(&tag) {
@@ -56,7 +56,8 @@ fn keep_inside(files: &Files, index: &Index, rule: &Rule, outer: &str, element: 
             is_empty: is_empty(child),
             place: &child.place,
         };
-        let is_kept = is_kept(files, rule.map(|rule| rule.treatment), &subject);
+        let names = index.names(outer, &tag);
+        let is_kept = is_kept(files, rule.map(|rule| rule.treatment), &subject, names);
         let Some(rule) = rule else {
             return is_kept;
         };
@@ -106,7 +107,14 @@ struct Subject<'s> {
 }
 
 /// Records the treatment of an element or attribute; true if readers are to see it.
-fn is_kept(files: &Files, treatment: Option<Treatment>, subject: &Subject<'_>) -> bool {
+///
+/// An unknown name is compared with the `known` ones.
+fn is_kept(
+    files: &Files,
+    treatment: Option<Treatment>,
+    subject: &Subject<'_>,
+    known: impl Iterator<Item = &'static str>,
+) -> bool {
     let record = |kind, reason| {
         files.record(
             kind,
@@ -145,7 +153,12 @@ fn is_kept(files: &Files, treatment: Option<Treatment>, subject: &Subject<'_>) -
             };
             files.record(Use::Reported, subject.place, names.0, names.1, UNKNOWN);
         }
-        None => record(Use::Reported, UNKNOWN),
+        None => {
+            let name = subject.attribute.unwrap_or(subject.element);
+            let near = files.did_you_mean(name, known);
+            let reason = near.map(|near| format!("{UNKNOWN}; {near}"));
+            record(Use::Reported, reason.as_deref().unwrap_or(UNKNOWN));
+        }
     }
     false
 }
@@ -167,5 +180,7 @@ pub(crate) fn record_key(
         is_empty: false,
         place,
     };
-    is_kept(files, rule.and_then(|rule| rule.attribute(key)), &subject);
+    let known = rule.into_iter().flat_map(Rule::names);
+    let treatment = rule.and_then(|rule| rule.attribute(key));
+    is_kept(files, treatment, &subject, known);
 }

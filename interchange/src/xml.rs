@@ -242,7 +242,7 @@ impl Element {
             Some(Ok(values)) => Some(values),
             _ => {
                 let message = format!("`{name}` of `{}` must be {}", self.name, expected(N));
-                files.report(place, message, "write numbers with blanks between them");
+                files.report(place, message, "write numbers with a decimal point, without units, and with blanks between them");
                 None
             }
         }
@@ -257,7 +257,11 @@ impl Element {
                 "`{name}` of `{}` must be a list of finite numbers",
                 self.name
             );
-            files.report(place, message, "write numbers with blanks between them");
+            files.report(
+                place,
+                message,
+                "write numbers with a decimal point, without units, and with blanks between them",
+            );
         }
         found
     }

@@ -104,6 +104,10 @@ fn names_outside_the_specification_are_reported_and_counted() {
         reported(&found.account),
         ["3: body weight ×1", "4: joint dampign ×1", "5: mass ×2"]
     );
+    let mut all = found.account.reported.iter();
+    let slip = all.find(|entry| entry.attribute.as_deref() == Some("dampign"));
+    let reason = &slip.expect("an entry").reason;
+    assert!(reason.ends_with("did you mean `damping`?"), "{reason}");
 }
 
 #[test]

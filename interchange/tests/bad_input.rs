@@ -443,3 +443,50 @@ fn a_second_frame_may_be_fixed_on_another_one() {
         "{said}"
     );
 }
+
+#[test]
+fn files_of_other_formats_are_told_what_is_read() {
+    for (text, expected) in [
+        ("", "1: the file is empty"),
+        ("\n \n", "1: the file is empty"),
+        (
+            "solid robot\n",
+            "1: the file is neither XML nor a .par table",
+        ),
+    ] {
+        let said = refused("robot.urdf", text);
+        assert!(
+            said.starts_with(expected) && said.contains("URDF (<robot>)"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn slips_of_beginners_are_told_with_what_is_right() {
+    let mass = |value: &str| {
+        two_links(
+            "revolute",
+            &format!("<link name='c'><inertial><mass value='{value}'/></inertial></link>"),
+        )
+    };
+    for value in ["1 kg", "0,5"] {
+        let said = refused("robot.urdf", &mass(value));
+        assert!(
+            said.contains("a decimal point, without units"),
+            "{value}: {said}"
+        );
+    }
+    let said = refused(
+        "robot.xml",
+        &one_body("<geom type='capsul' size='1 1'/>", ""),
+    );
+    assert!(
+        said.contains("`capsul` is not a value of `type` of `geom`"),
+        "{said}"
+    );
+    let said = refused("two.par", &table("gamma = {0,0}\n", ""));
+    assert!(said.contains("the table has no `GAMMA`"), "{said}");
+    let said = refused("two.par", &table("{0,pi/2}", "{0,90 deg}"));
+    assert!(said.contains("angles in rad"), "{said}");
+}

@@ -342,3 +342,20 @@ fn equal_compensation_of_all_weights_scales_gravity() {
     );
     assert!(found.account.reported.is_empty());
 }
+
+#[test]
+fn adhesion_acts_on_contacts_and_drives_no_joint() {
+    let more = |adhesion: &str| {
+        hinges(&format!(
+            "<actuator><motor joint='j1'/>{adhesion}</actuator>"
+        ))
+    };
+    let found = imported(
+        "robot.xml",
+        &more("<adhesion body='a' gain='3' ctrlrange='0 1'/>"),
+    );
+    assert_eq!(joints(&found), joints(&imported("robot.xml", &more(""))));
+    assert!(found.account.reported.is_empty(), "{:?}", found.account);
+    let mut ignored = found.account.ignored.iter();
+    assert!(ignored.any(|entry| entry.element == "adhesion"));
+}

@@ -60,6 +60,33 @@ const TENDON: &[(&str, Treatment)] = &[
     ("material rgba width", APPEARANCE),
 ];
 
+const ACTUATOR: &[(&str, Treatment)] = &[
+    (
+        "name class joint jointinparent tendon gear armature damping",
+        Honoured,
+    ),
+    (
+        "site refsite body slidersite cranksite",
+        rejected(
+            "actuators of sites and bodies are not supported",
+            ON_A_JOINT,
+        ),
+    ),
+    (
+        "cogging lugre",
+        reported("torques inside the drive are missing from the model"),
+    ),
+    (
+        "actdim actearly actlimited actrange area bias biasprm biastype controller \
+             cranklength ctrllimited ctrlrange dampratio delay diameter dynprm dyntype ffrange \
+             force forcelimited forcerange fpmax fvmax gain gainprm gaintype group imax \
+             inductance inheritrange input instance interp ki kp kv lengthrange lmax lmin \
+             motorconst nominal nsample plugin posrange range resistance saturation scale \
+             slewmax tausmooth thermal timeconst user velrange vmax",
+        CONTROL,
+    ),
+];
+
 const RULES: &[Rule] = &[
     Rule {
         within: "",
@@ -466,34 +493,21 @@ const RULES: &[Rule] = &[
     Rule {
         within: "actuator default",
         elements: "general motor position velocity intvelocity orientation pid damper cylinder muscle \
-                   adhesion dcmotor plugin",
+                   dcmotor plugin",
         treatment: Honoured,
-        attributes: &[
-            (
-                "name class joint jointinparent tendon gear armature damping",
-                Honoured,
-            ),
-            (
-                "site refsite body slidersite cranksite",
-                rejected(
-                    "actuators of sites and bodies are not supported",
-                    ON_A_JOINT,
-                ),
-            ),
-            (
-                "cogging lugre",
-                reported("torques inside the drive are missing from the model"),
-            ),
-            (
-                "actdim actearly actlimited actrange area bias biasprm biastype controller \
-                 cranklength ctrllimited ctrlrange dampratio delay diameter dynprm dyntype ffrange \
-                 force forcelimited forcerange fpmax fvmax gain gainprm gaintype group imax \
-                 inductance inheritrange input instance interp ki kp kv lengthrange lmax lmin \
-                 motorconst nominal nsample plugin posrange range resistance saturation scale \
-                 slewmax tausmooth thermal timeconst user velrange vmax",
-                CONTROL,
-            ),
-        ],
+        attributes: ACTUATOR,
+    },
+    Rule {
+        within: "default",
+        elements: "adhesion",
+        treatment: Honoured,
+        attributes: ACTUATOR,
+    },
+    Rule {
+        within: "actuator",
+        elements: "adhesion",
+        treatment: CONTACT,
+        attributes: &[],
     },
     Rule {
         within: "plugin",

@@ -94,20 +94,40 @@ impl Index {
         self.texts.contains(name)
     }
 
+    /// Names of the elements that a parent inside `outer` may have.
+    pub(crate) fn names(&self, outer: &str, parent: &str) -> impl Iterator<Item = &'static str> {
+        let place = self.place(outer, parent);
+        let own = self.by_parent.keys();
+        let own = own.filter(move |(within, _)| *within == place);
+        let anywhere = self.by_name.keys().copied();
+        own.map(|(_, name)| *name).chain(anywhere)
+    }
+
+    /// Name under which the rules of a parent's elements are given.
+    fn place(&self, outer: &str, parent: &str) -> String {
+        let path = format!("{outer}/{parent}");
+        if self.paths.contains(path.as_str()) {
+            path
+        } else {
+            parent.to_owned()
+        }
+    }
+
     /// Rule of an element in a parent, which is in `outer`; `None` if the element is unknown.
     pub(crate) fn rule(&self, outer: &str, parent: &str, name: &str) -> Option<&'static Rule> {
-        let path = format!("{outer}/{parent}");
-        let place = if self.paths.contains(path.as_str()) {
-            path.as_str()
-        } else {
-            parent
-        };
-        let found = self.by_parent.get(&(place, name));
+        let place = self.place(outer, parent);
+        let found = self.by_parent.get(&(place.as_str(), name));
         found.or_else(|| self.by_name.get(name)).copied()
     }
 }
 
 impl Rule {
+    /// Names of all attributes.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+        let all = self.attributes.iter();
+        all.flat_map(|(names, _)| names.split_whitespace())
+    }
+
     /// Treatment of an attribute; `None` if it is unknown.
     pub(crate) fn attribute(&self, name: &str) -> Option<Treatment> {
         let mut all = self.attributes.iter();

@@ -13,7 +13,8 @@ use crate::{
 
 pub(super) fn read(reader: &Reader<'_>, root: &Element, tendons: &mut Tendons, model: &mut Model) {
     for section in root.all("actuator") {
-        for element in &section.children {
+        // Adhesion acts on contacts.
+        for element in section.children.iter().filter(|own| own.name != "adhesion") {
             model.says_motors = true;
             let whole = reader
                 .defaults

@@ -11,6 +11,19 @@ use crate::{
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use std::f64::consts::PI;
 
+/// Types of geoms.
+const SHAPES: &[&str] = &[
+    "plane",
+    "hfield",
+    "sphere",
+    "capsule",
+    "ellipsoid",
+    "cylinder",
+    "box",
+    "mesh",
+    "sdf",
+];
+
 /// MuJoCo's default density of geoms, kg/m³.
 const DENSITY: f64 = 1000.0;
 
@@ -142,7 +155,7 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
         .attribute("mass")
         .map(|_| geom.number(files, "mass", 0.0));
     let density = geom.number(files, "density", DENSITY);
-    let kind = geom.get("type").unwrap_or("sphere");
+    let kind = geom.keyword(files, "type", SHAPES).unwrap_or("sphere");
     for key in ["mass", "density"] {
         if let Some((_, place)) = geom
             .attribute(key)

@@ -384,7 +384,11 @@ impl Reader<'_> {
     fn entry(&self, key: &str, at: usize) -> Option<&(String, Place)> {
         let found = self.entries.get(key).and_then(|(_, values)| values.get(at));
         if found.is_none() {
-            let message = format!("`{key}` has no value for frame {}", at + 1);
+            let message = if self.entries.contains_key(key) {
+                format!("`{key}` has no value for frame {}", at + 1)
+            } else {
+                format!("the table has no `{key}`")
+            };
             let help = "geometric parameters have NF values, dynamic ones NL";
             self.files.report(&self.place(key), message, help);
         }
@@ -434,7 +438,7 @@ impl Reader<'_> {
             }
             Err(Fault::Unreadable) => {
                 let message = format!("`{text}` is not an expression");
-                let help = "numbers, symbols, pi, + - * / ** ^, parentheses, sqrt, sin, cos, tan, asin, acos, atan and atan2 are allowed";
+                let help = "numbers, symbols, pi, + - * / ** ^, parentheses, sqrt, sin, cos, tan, asin, acos, atan and atan2 are allowed; lengths are in m and angles in rad";
                 self.files.report(place, message, help);
                 None
             }

@@ -33,7 +33,11 @@ pub(super) fn several<const N: usize>(files: &Files, element: &Element) -> Optio
         }
         _ => {
             let message = format!("<{}> must be {}", element.name, expected(N));
-            files.report(place, message, "write numbers with blanks between them");
+            files.report(
+                place,
+                message,
+                "write numbers with a decimal point, without units, and with blanks between them",
+            );
             None
         }
     }

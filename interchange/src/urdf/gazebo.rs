@@ -106,7 +106,11 @@ fn several<const N: usize>(files: &Files, element: &Element) -> Option<[f64; N]>
     let found = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
     if found.is_none() {
         let message = format!("<{}> must be {N} finite numbers", element.name);
-        files.report(place, message, "write numbers with blanks between them");
+        files.report(
+            place,
+            message,
+            "write numbers with a decimal point, without units, and with blanks between them",
+        );
     }
     found
 }
