@@ -177,7 +177,7 @@ fn refuse(files: &Files, model: &Model, worst: &Worst, tolerance: f64) {
         ..
     } = *worst;
     let message = format!(
-        "the loop of `{}` can't close: at best {} remain open, and the tolerance is {}",
+        "the loop of `{}` can't close from this start: {} remain open, and the tolerance is {}",
         closure.name,
         amount(length, angle),
         amount(tolerance * size, tolerance),
