@@ -34,7 +34,8 @@ class Engine:
         model, data = self.model, self.data
         still = self.description.motion(home, 0 * home, 0 * home)
         data.qpos[:] = model.qpos0
-        values = dict(zip(self.description.names(), home))
+        values = {name: value[0] for name, value in self.description.home.items() if len(value) == 1}
+        values |= dict(zip(self.description.names(), home))
         for name, value in with_followers(values, self.followers).items():
             joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
             if joint >= 0:
