@@ -108,7 +108,7 @@ fn stretches_that_are_too_short_are_left_out() {
         "{note}"
     );
     // Nothing is left.
-    let text = rows(uniform(), |time| time % 1.0 < 0.4);
+    let text = rows(uniform(), |time| (100.0 * time).round() as i64 % 100 < 40);
     let told = runs("a.csv", &[("a.csv", &text)], &timed("q", "tau")).expect_err("too short");
     assert!(
         told.starts_with("a.csv: the time has 59 gaps, and the longest stretch without a gap has 40 samples: the filters need at least 50"),
@@ -143,7 +143,7 @@ fn stretches_are_resampled_each_on_its_own() {
     let text = rows(jittered(), |time| !(12.0..12.02).contains(&time));
     let own = runs("a.csv", &[("a.csv", &text)], &mapping).expect("a run");
     assert_eq!(names(&own), ["a.csv"]);
-    assert!(own[0].note().expect("a note").contains("1 gap of up to"));
+    assert!(!own[0].note().expect("a note").contains("gap"));
 }
 
 #[test]
@@ -263,6 +263,10 @@ fn a_range_of_time_may_have_gaps() {
 
 #[test]
 fn large_logs_are_split_in_bounded_memory() {
+    // It writes and parses 30 MB.
+    if !overact_tier::is_full() {
+        return;
+    }
     let times = || (0..700_000).map(|k| f64::from(k) / 100.0);
     let text = rows(times(), |time| {
         !(1000.0..1001.0).contains(&time) && !(6000.0..6002.0).contains(&time)

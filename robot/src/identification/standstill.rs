@@ -40,7 +40,8 @@ fn moving(run: &Log, settings: &Settings) -> Result<Vec<Log>, Error> {
     let rests = run.long_standstills()?;
     let parts = motions(&rests, run.samples(), settings);
     let used: usize = parts.iter().map(Range::len).sum();
-    if used == run.samples() || is_static(&rests, run.samples()) {
+    let stays = rests.is_empty() || parts.is_empty() || used == run.samples();
+    if stays || is_static(&rests, run.samples()) {
         return Ok(vec![run.clone()]);
     }
     let left_out = run.samples() - used;
