@@ -59,11 +59,9 @@ fn system(a: f64, seed: u64) -> System {
             run: 0,
             lines,
             instruments: Vec::new(),
-            checks: crate::settings::CheckScope::All,
         }],
         partition: None,
         instruments: Vec::new(),
-        checks: crate::settings::CheckScope::All,
     }
 }
 
