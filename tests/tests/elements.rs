@@ -34,15 +34,14 @@ const ROUNDING: f64 = 64.0;
 /// States in the default tier and in the full one.
 const STATES: [usize; 2] = [2, 10];
 /// Words of the reasons for which a draw is refused.
-const REFUSED: [&str; 8] = [
+const REFUSED: [&str; 7] = [
     "never reaches",
     "does not close",
     "singular",
     "regular",
     "stretched",
     "independent",
-    "more motions",
-    "further motions",
+    "do not restrict",
 ];
 /// Largest number of draws for each random robot.
 const DRAWS: u64 = 20;

@@ -46,7 +46,10 @@ impl<'a> Robot<'a> {
         let mut guards = Vec::new();
         for (index, leg) in self.mechanism.legs.iter().enumerate() {
             let mut radicands = Vec::new();
-            self.arena.enter(&leg.name);
+            // Of a tree, springs are no part of a leg in generated code.
+            if !self.mechanism.is_tree() {
+                self.arena.enter(&leg.name);
+            }
             for joint in 0..leg.joints.len() {
                 let at = JointIndex { leg: index, joint };
                 for formula in self.formulas(at) {
@@ -60,7 +63,9 @@ impl<'a> Robot<'a> {
                 leg: leg.name.clone(),
             }));
         }
-        self.arena.enter("");
+        if !self.mechanism.is_tree() {
+            self.arena.enter("");
+        }
         guards
     }
 
