@@ -67,6 +67,9 @@ impl<'a> Robot<'a> {
     /// Guards for forces of springs between points to have a value: radicands must not be negative.
     pub(crate) fn point_spring_guards(&self, motion: &RobotMotion<'a>) -> Vec<Guard<'a>> {
         let mut guards = Vec::new();
+        if self.mechanism.springs.is_empty() {
+            return guards;
+        }
         for spring in &self.mechanism.springs {
             let leg = self.place(spring);
             self.arena.enter(leg);
