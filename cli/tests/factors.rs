@@ -51,14 +51,14 @@ fn factored(bench: &Bench, more: &[&str]) {
     }
 }
 
-/// Least-squares estimates of a document: values with a key, in order.
+/// Least-squares estimates of a document: values with a key, or a pointer such as `/key/0`, in order.
 fn values(document: &Value, key: &str) -> Vec<f64> {
     let estimates = document["estimates"].as_array().expect("estimates");
     let own = estimates
         .iter()
         .filter(|one| one["estimator"] == "least_squares" || one["estimator"] == "least-squares");
     own.flat_map(|one| one["parameters"].as_array().expect("parameters"))
-        .map(|parameter| number(&parameter[key]))
+        .map(|parameter| number(parameter.pointer(key).unwrap_or(&parameter[key])))
         .collect()
 }
 
@@ -92,9 +92,15 @@ fn sessions_of_factor_files_widen_intervals_as_those_of_logs() {
     let logs = bench.json(&[&data[..], &days].concat());
     let key = "correlated_standard_deviation";
     assert_same(&values(&logs, key), &values(&merged, key), 1e-12);
-    // Without sessions, the deviations are others.
+    let widths = |document: &Value| -> Vec<f64> {
+        let bounds = |place: &str| values(document, &format!("/interval_95/{place}"));
+        let pairs = bounds("1").into_iter().zip(bounds("0"));
+        pairs.map(|(high, low)| high - low).collect()
+    };
+    assert_same(&widths(&logs), &widths(&merged), 1e-9);
+    // Without sessions, the intervals are others.
     let one = bench.json(&data);
-    assert_ne!(values(&one, key), values(&merged, key));
+    assert_ne!(widths(&one), widths(&merged));
 }
 
 #[test]

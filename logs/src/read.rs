@@ -339,6 +339,7 @@ fn split(
             let mut own = files.clone();
             own.enter(stretch);
             let log = log(own, summary, mapping, payload, stretch.start)?;
+            let log = log.with_unwrapped(!wraps.is_empty());
             Ok(log.as_stretch(stretch, place > 0).with_note(note.take()))
         });
     runs.collect()

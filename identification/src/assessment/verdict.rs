@@ -152,7 +152,10 @@ pub fn failed_checks(checks: &[Check], model: ModelKind, stage: Stage) -> Failed
         let parts = found.iter().filter_map(|(_, check)| check.explained);
         parts.fold(0.0, f64::max)
     };
-    let explained = |check: &Check| check.explained.unwrap_or(f64::INFINITY);
+    let explained = |check: &Check| {
+        let part = check.explained.filter(|_| !check.kind.is_certain());
+        part.unwrap_or(f64::INFINITY)
+    };
     // A stable sort keeps the order of checks that are equal in all three.
     found.sort_by(|(_, a), (_, b)| {
         let causes = a.kind.is_consequence().cmp(&b.kind.is_consequence());
@@ -161,7 +164,8 @@ pub fn failed_checks(checks: &[Check], model: ModelKind, stage: Stage) -> Failed
     });
     let (reported, named_only): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, check)| {
         let own = explained(check);
-        own >= WORTH_TELLING * most && (1.0 - own) <= LEAVES_AT_MOST * (1.0 - most).max(0.0)
+        let leaves_little = (1.0 - own) <= LEAVES_AT_MOST * (1.0 - most).max(0.0);
+        own >= WORTH_TELLING * most && leaves_little
     });
     let mut named_only: Vec<&str> = named_only
         .iter()

@@ -113,8 +113,8 @@ pub fn output(
         }
         Function::PotentialEnergy => {
             let of_origin = mechanism.gravity.dot(&frames.origin);
-            let mass = masses(mechanism, state, parameters).mass;
-            number(total_energy(mechanism, &moving(&still)?, parameters) - mass * of_origin)
+            let sums = masses(mechanism, state, parameters);
+            number(-mechanism.gravity.dot(&sums.moment) - sums.mass * of_origin)
         }
         Function::KineticEnergy => {
             let at_rest = total_energy(mechanism, &moving(&still)?, parameters);

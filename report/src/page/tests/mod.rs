@@ -251,7 +251,7 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
         .filter_map(|node| node.attribute("id"))
         .collect();
     assert_eq!(sections[..3], ["verdict", "parameters", "scope"]);
-    assert_eq!(sections.len(), 18, "{sections:?}");
+    assert_eq!(sections.len(), 19, "{sections:?}");
     let summary = "Platform projection, recommended parameters: use it for what is listed. Actuator projection, recommended parameters: do not use it.";
     let header = document
         .descendants()
