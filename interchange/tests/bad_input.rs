@@ -476,7 +476,7 @@ fn slips_of_beginners_are_told_with_what_is_right() {
     }
     let said = refused(
         "robot.xml",
-        &one_body("<geom type='capsul' size='1 1'/>", ""),
+        "<mujoco><worldbody><body><joint/><geom type='capsul' size='1 1'/></body></worldbody></mujoco>",
     );
     assert!(
         said.contains("`capsul` is not a value of `type` of `geom`"),
