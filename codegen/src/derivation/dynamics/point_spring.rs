@@ -155,7 +155,7 @@ impl<'a> Robot<'a> {
         let [from, to] = &spring.ends;
         let [from, to] = match (from.body, to.body) {
             (SpringBody::Platform, _) | (_, SpringBody::Platform) => {
-                [self.from_ground(from)?, self.from_ground(to)?]
+                [self.seen_from_ground(from)?, self.seen_from_ground(to)?]
             }
             // A path leads to a body.
             (SpringBody::Joint(_), SpringBody::Ground) => [self.fixed(to), self.seen(None, from)?],
@@ -180,7 +180,7 @@ impl<'a> Robot<'a> {
     }
 
     /// A point of any body as seen from the ground.
-    fn from_ground(&self, end: &SpringEnd) -> Option<Point<'a>> {
+    fn seen_from_ground(&self, end: &SpringEnd) -> Option<Point<'a>> {
         match end.body {
             SpringBody::Ground => Some(self.fixed(end)),
             SpringBody::Platform => self.on_platform(end),
