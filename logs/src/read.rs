@@ -340,7 +340,7 @@ fn split(
             own.enter(stretch);
             let log = log(own, summary, mapping, payload, stretch.start)?;
             let log = log.with_unwrapped(!wraps.is_empty());
-            Ok(log.as_stretch(stretch, place > 0).with_note(note.take()))
+            Ok(log.into_stretch(stretch, place > 0).with_note(note.take()))
         });
     runs.collect()
 }

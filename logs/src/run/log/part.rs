@@ -13,7 +13,7 @@ impl Log {
     /// The run as a stretch of a recording with gaps.
     ///
     /// `continues` says whether an earlier stretch is used, too.
-    pub(crate) fn as_stretch(mut self, stretch: &Stretch, continues: bool) -> Self {
+    pub(crate) fn into_stretch(mut self, stretch: &Stretch, continues: bool) -> Self {
         let (name, [start, end]) = time_range::name_and_bounds(&self.name);
         let [own_start, own_end] = stretch.bounds.each_ref().map(Option::as_deref);
         let range = format!(
@@ -68,7 +68,7 @@ impl Log {
         // Half a sample before a time, which is that of no sample.
         let bound =
             |sample: usize| significant(self.first_time + seconds(sample) - seconds(1) / 2.0, 7);
-        part.as_stretch(
+        part.into_stretch(
             &Stretch {
                 tables: Vec::new(),
                 bounds: [
