@@ -49,7 +49,7 @@ impl Control for Observed {
         if changed {
             self.changes.push(time);
         }
-        if self.samples % EVERY == 0 {
+        if self.samples.is_multiple_of(EVERY) {
             self.masses.push(self.observer.mass().expect("a mass"));
         }
         self.samples += 1;
