@@ -159,7 +159,11 @@ impl<'a> Robot<'a> {
             }
             // A path leads to a body.
             (SpringBody::Joint(_), SpringBody::Ground) => [self.fixed(to), self.seen(None, from)?],
-            (SpringBody::Joint(body), _) => [self.fixed(from), self.seen(Some(body), to)?],
+            (SpringBody::Joint(body), _) => match self.seen(Some(body), to) {
+                Some(to) => [self.fixed(from), to],
+                // A body of one chain does not determine those of another.
+                None => [self.seen_from_ground(from)?, self.seen_from_ground(to)?],
+            },
             (SpringBody::Ground, _) => [self.fixed(from), self.seen(None, to)?],
         };
         let between = to.position - from.position;
