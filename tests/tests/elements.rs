@@ -26,7 +26,7 @@ use overact_tests::support::{
 use overact_tier::{by_tier, drawn};
 
 /// Tolerances of functions of base parameters, whose regroupings may be numeric, and of others.
-const TOLERANCES: [f64; 2] = [1e-7, 1e-9];
+const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 /// Tolerance of the power, in units of the largest power of a motor.
 const POWER: f64 = 1e-9;
 /// Rounding of the energy in its differences, in units of the last place.

@@ -89,7 +89,7 @@ impl Log {
     /// which is that of noise.
     ///
     /// # Errors
-    /// As [`Log::reader`] and [`Reader::next`].
+    /// As [`Log::reader`] and [`Reader::next`](crate::Reader::next).
     pub fn long_standstills(&self) -> Result<Vec<Range<usize>>, Error> {
         if let Some(ranges) = &self.ranges {
             return Ok(ranges.long_standstills(self.sampling_frequency));
