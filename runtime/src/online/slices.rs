@@ -3,7 +3,7 @@
 use super::{Error, Forgetting, Innovation, bounds, triangle};
 use crate::float::Float;
 
-/// Numbers of a filter besides R and z.
+/// Numbers of a filter other than R and z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Status<T> {
     /// How old information loses weight.
@@ -125,7 +125,7 @@ impl<'a, T: Float> SliceFilter<'a, T> {
         }
     }
 
-    /// Numbers besides R and z.
+    /// Numbers other than R and z.
     pub(super) const fn status(&self) -> Status<T> {
         self.status
     }
