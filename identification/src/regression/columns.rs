@@ -17,7 +17,9 @@
 
 use std::cell::Cell;
 
-use overact::{Body, Columns, Function, Info, Model, Parameter, SampleError, StandardParameter};
+use overact::{
+    Body, Columns, Function, Info, Model, Parameter, SampleError, Sizes, StandardParameter,
+};
 
 use super::{
     collect_rows::{RowSource, collect_rows},
@@ -390,6 +392,32 @@ impl ColumnSet {
         (0..self.columns.len())
             .filter(|&index| self.columns[index].origin.is_of_payload() == payload)
             .collect()
+    }
+
+    /// Values of the model's standard parameters, then of the payload, for values of some columns.
+    ///
+    /// They reproduce the columns except for the treatment of reversals. `None` if a column is
+    /// friction of one direction, for which the model has no parameter.
+    pub(crate) fn parameters(
+        &self,
+        picked: &[usize],
+        values: &[f64],
+        sizes: &Sizes,
+        carried: Load<'_>,
+    ) -> Option<Vec<f64>> {
+        let mut all = vec![0.0; sizes.parameters + sizes.payload_parameters];
+        for (&index, &value) in picked.iter().zip(values) {
+            let column = self.columns.get(index)?;
+            let place = match column.origin {
+                Origin::Robot(_) if column.direction.is_some() => return None,
+                Origin::Robot(k) | Origin::Both([k, _]) | Origin::Carried(k) => k,
+                Origin::Payload(k) => sizes.parameters + k,
+            };
+            if column.counts(carried) {
+                all[place] = value;
+            }
+        }
+        Some(all)
     }
 
     /// Evaluates the columns `picked` of Γ¹.

@@ -8,7 +8,7 @@ use super::{
     columns::{ActuatorSignals, FaultHypothesis, Sample, rates},
     misreading::Misreading,
     pass::Pass,
-    prediction::{Prediction, dot},
+    prediction::{Prediction, dot, inputs_of},
     shapes::ActuatorState,
 };
 use crate::{
@@ -71,7 +71,7 @@ impl<'a> MotionData<'a> {
         let positions = ask(Function::ActuatorPositions, &states[..1])?;
         let base = base(pass, motion)?;
         let explained = explained(pass, &base);
-        let inputs = measured(motion, jacobians, n, sizes.dof);
+        let inputs = inputs_of(jacobians, &motion.torques, n, sizes.dof);
         let [torques, smooth] = torques_without_residual(motion, jacobians, &inputs, &explained);
         let torque_rates = rates(&torques, n, frequency);
         let prediction = Prediction {
@@ -80,6 +80,7 @@ impl<'a> MotionData<'a> {
             base: pass.base,
             values: pass.frame.values,
         };
+        let predicted = prediction.inputs(motion, states, 1.0 / frequency)?;
         let [velocities, accelerations] = prediction.actuators(motion, jacobians)?;
         let signals = ActuatorSignals {
             positions: &positions,
@@ -109,7 +110,7 @@ impl<'a> MotionData<'a> {
             torque_turns,
             torque_bends: rates(&rates(&smooth, n, frequency), n, frequency),
             common_filter,
-            clock: prediction.clock(motion, &explained.all)?,
+            clock: prediction.clock(motion, &predicted)?,
             lengths: prediction.lengths(motion, pass.variants, &explained.all)?,
             pose: &motion.pose,
             pass,
@@ -212,20 +213,6 @@ fn explained(pass: &Pass<'_>, base: &[Vec<Vec<f64>>]) -> Explained {
         }
     }
     Explained { all, dry }
-}
-
-/// Measured inputs Γ¹, samples × r.
-fn measured(motion: &Motion, jacobians: &[f64], n: usize, r: usize) -> Vec<f64> {
-    let mut inputs = vec![0.0; motion.samples * r];
-    let torques = motion.torques.chunks_exact(n);
-    let jacobians = jacobians.chunks_exact(n * r).zip(torques);
-    for (own, (jacobian, torques)) in inputs.chunks_exact_mut(r).zip(jacobians) {
-        for (row, torque) in jacobian.chunks_exact(r).zip(torques) {
-            let sums = own.iter_mut().zip(row);
-            sums.for_each(|(sum, share)| *sum += share * torque);
-        }
-    }
-    inputs
 }
 
 /// Torques without the residual, and torques without residual and dry friction.

@@ -1,16 +1,16 @@
 //! Columns of hypotheses that change the motion, by finite differences.
 //!
 //! They compare the estimate's prediction for the motion with that for a slightly different one.
+//! The inverse dynamics with the estimated parameters give it with few operations. Friction that
+//! the settings split by direction has no standard parameter, so it needs the regressor. Both take
+//! the sign of a velocity at the sample or over the interval, the same before and after the change.
 
-use overact::{Function, Model};
+use overact::{Columns, Function, Model};
 
 use super::{columns::rates, misreading::Misreading, shapes::ActuatorState};
 use crate::{
     blocks::{BLOCK, evaluate, slice},
-    kinematics::{
-        Motion,
-        distribution::{least_norm, transposed_product},
-    },
+    kinematics::{Motion, distribution::least_norm},
     regression::{columns::ColumnSet, states::SampledStates},
 };
 use overact_logs::{Error, Variant};
@@ -42,7 +42,33 @@ impl<'a> Prediction<'a> {
     }
 
     /// Predicted Γ¹, samples × r, for samples one `interval` (s) apart.
-    fn explained(
+    pub(super) fn inputs(
+        &self,
+        motion: &Motion,
+        states: [&[f64]; 3],
+        interval: f64,
+    ) -> Result<Vec<f64>, Error> {
+        let sizes = self.model.info().sizes;
+        let own = (self.base, self.values);
+        let Some(parameters) = { self.columns }.parameters(own.0, own.1, &sizes, motion.carried())
+        else {
+            return self.inputs_by_regressor(motion, states, interval);
+        };
+        let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
+        let ask = |function: Function, inputs: &[&[f64]]| {
+            evaluate(self.model, function, inputs, motion.samples).map_err(at)
+        };
+        let [pose, twist, acceleration] = states;
+        let torques = ask(
+            Function::InverseDynamics(Columns::Standard),
+            &[pose, twist, acceleration, &parameters],
+        )?;
+        let jacobians = ask(Function::InverseJacobian, &[pose])?;
+        Ok(inputs_of(&jacobians, &torques, sizes.actuators, sizes.dof))
+    }
+
+    /// The same by the columns of the model.
+    fn inputs_by_regressor(
         &self,
         motion: &Motion,
         states: [&[f64]; 3],
@@ -116,7 +142,7 @@ impl<'a> Prediction<'a> {
     /// Derivative of Y - W χ with respect to the relative error of the clock, samples × r.
     ///
     /// The sampling interval changes, too, so that velocities reverse at the same fraction of an
-    /// interval. `here` is W χ of the motion as it is.
+    /// interval. `here` are the inputs of the motion as it is.
     pub(super) fn clock(&self, motion: &Motion, here: &[f64]) -> Result<Vec<f64>, Error> {
         let faster = 1.0 + STEP;
         let twist: Vec<f64> = motion.twist.iter().map(|v| v * faster).collect();
@@ -127,7 +153,7 @@ impl<'a> Prediction<'a> {
             .collect();
         let interval = 1.0 / motion.sampling_frequency;
         let states: [&[f64]; 3] = [&motion.pose, &twist, &acceleration];
-        let there = self.explained(motion, states, interval / faster)?;
+        let there = self.inputs(motion, states, interval / faster)?;
         Ok(here
             .iter()
             .zip(there)
@@ -137,7 +163,8 @@ impl<'a> Prediction<'a> {
 
     /// Derivative of Y - W χ with respect to errors of the lengths, samples × lengths × r.
     ///
-    /// `here` is W χ of the motion as it is.
+    /// `here` are the inputs of the motion as it is, by the regressor, since the models of the variants
+    /// have no inverse dynamics.
     pub(super) fn lengths(
         &self,
         motion: &Motion,
@@ -152,7 +179,9 @@ impl<'a> Prediction<'a> {
         let states: [&[f64]; 3] = [&motion.pose, &motion.twist, &motion.acceleration];
         let mut all = vec![0.0; here.len() * variants.len()];
         for (number, variant) in variants.iter().enumerate() {
-            let there = self.of(variant.model).explained(motion, states, interval)?;
+            let there = self
+                .of(variant.model)
+                .inputs_by_regressor(motion, states, interval)?;
             for (place, (a, b)) in here.iter().zip(&there).enumerate() {
                 let (sample, line) = (place / r, place % r);
                 all[(sample * variants.len() + number) * r + line] = (a - b) / variant.step;
@@ -177,9 +206,11 @@ impl<'a> Prediction<'a> {
         let rates: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
         let changes: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
         let here = self.left(motion, &motion.pose, &rates, &changes, torques)?;
+        let distributions = distributions(jacobians, n, r);
         let revolute = self.model.info().actuator_is_revolute;
         let count = errors.len();
         let mut all = vec![0.0; motion.samples * n * count * r];
+        let mut step = vec![0.0; r];
         for (number, (actuator, error)) in (0..n)
             .flat_map(|actuator| errors.iter().map(move |error| (actuator, error)))
             .enumerate()
@@ -194,12 +225,10 @@ impl<'a> Prediction<'a> {
                 let [shift, rate, change] = error.at(actuators[place]);
                 rates[place] += STEP * rate;
                 changes[place] += STEP * change;
-                let jacobian = slice(jacobians, n * r, sample, 1);
-                if let Some(distribution) = least_norm(jacobian, r) {
-                    let row = &distribution[actuator * r..(actuator + 1) * r];
-                    let step: Vec<f64> = row.iter().map(|part| STEP * shift * part).collect();
-                    self.model.displace(pose, &step);
-                }
+                let row = slice(&distributions, r, place, 1);
+                let parts = step.iter_mut().zip(row);
+                parts.for_each(|(step, part)| *step = STEP * shift * part);
+                self.model.displace(pose, &step);
             }
             let there = self.left(motion, &poses, &rates, &changes, torques)?;
             for (place, (a, b)) in here.iter().zip(&there).enumerate() {
@@ -235,13 +264,13 @@ impl<'a> Prediction<'a> {
             both.map(|(value, bend)| value + SQUARE * bend).collect()
         };
         let mut poses = motion.pose.clone();
-        for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {
-            let bends = slice(&accelerations, n, sample, 1);
-            if let Some(distribution) = least_norm(slice(jacobians, n * r, sample, 1), r) {
-                let step = transposed_product(&distribution, bends, r);
-                let step: Vec<f64> = step.iter().map(|part| SQUARE * part).collect();
-                self.model.displace(pose, &step);
-            }
+        let steps = inputs_of(&distributions(jacobians, n, r), &accelerations, n, r);
+        for (pose, step) in poses
+            .chunks_exact_mut(sizes.pose)
+            .zip(steps.chunks_exact(r))
+        {
+            let step: Vec<f64> = step.iter().map(|part| SQUARE * part).collect();
+            self.model.displace(pose, &step);
         }
         let here = self.left(motion, &motion.pose, &velocities, &accelerations, torques)?;
         let there = self.left(
@@ -280,16 +309,32 @@ impl<'a> Prediction<'a> {
         )?;
         let jacobians = ask(Function::InverseJacobian, &[poses])?;
         let interval = 1.0 / motion.sampling_frequency;
-        let explained = self.explained(motion, [poses, &twist, &acceleration], interval)?;
-        let mut left = Vec::with_capacity(explained.len());
-        for sample in 0..motion.samples {
-            let jacobian = slice(&jacobians, n * r, sample, 1);
-            let inputs = transposed_product(jacobian, slice(torques, n, sample, 1), r);
-            let explained = slice(&explained, r, sample, 1);
-            left.extend(inputs.iter().zip(explained).map(|(y, w)| y - w));
-        }
+        let predicted = self.inputs(motion, [poses, &twist, &acceleration], interval)?;
+        let mut left = inputs_of(&jacobians, torques, n, r);
+        let both = left.iter_mut().zip(predicted);
+        both.for_each(|(y, w)| *y -= w);
         Ok(left)
     }
+}
+
+/// J_p^inv+ᵀ of each sample, samples × n × r; zero if the actuators do not determine the platform.
+fn distributions(jacobians: &[f64], n: usize, r: usize) -> Vec<f64> {
+    let one = |jacobian| least_norm(jacobian, r).unwrap_or_else(|| vec![0.0; n * r]);
+    jacobians.chunks_exact(n * r).flat_map(one).collect()
+}
+
+/// Γ¹ = J_p^invᵀ τ of each sample, samples × r.
+pub(super) fn inputs_of(jacobians: &[f64], torques: &[f64], n: usize, r: usize) -> Vec<f64> {
+    let mut inputs = vec![0.0; torques.len() / n * r];
+    let torques = torques.chunks_exact(n);
+    let jacobians = jacobians.chunks_exact(n * r).zip(torques);
+    for (own, (jacobian, torques)) in inputs.chunks_exact_mut(r).zip(jacobians) {
+        for (row, torque) in jacobian.chunks_exact(r).zip(torques) {
+            let sums = own.iter_mut().zip(row);
+            sums.for_each(|(sum, share)| *sum += share * torque);
+        }
+    }
+    inputs
 }
 
 /// Number of partial sums of a dot product.
