@@ -2,6 +2,7 @@
 //!
 //! The random states include unreachable and singular ones, and inputs that are not numbers.
 
+mod cpp;
 mod driver;
 mod expected;
 mod extreme;

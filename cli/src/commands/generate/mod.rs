@@ -1,4 +1,4 @@
-//! `overact generate`: generates Rust or C, one module per robot.
+//! `overact generate`: generates Rust, C or C++, one module per robot.
 
 mod module;
 
@@ -26,10 +26,10 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "TOML")]
     pub(super) files: Vec<PathBuf>,
     /// A file for one robot, or a folder for `<description>.rs` of each; for C a folder for
-    /// `<robot>.h` and `<robot>.c` of each; `-` is standard output
+    /// `<robot>.h` and `<robot>.c` of each, for C++ also `<robot>.hpp`; `-` is standard output
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
-    /// The language: Rust, or C99 that needs only `math.h`
+    /// The language: Rust, C99 that needs only `math.h`, or C99 with a header for C++
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
     /// Also write the C files of online estimation: overact_online.h and its sources
@@ -61,6 +61,24 @@ enum Language {
     Rust,
     /// A header and a source file of C99
     C,
+    /// The same, and a header for C++17 with arrays of checked lengths
+    Cpp,
+}
+
+impl Language {
+    /// Whether the output has C files.
+    const fn has_c(self) -> bool {
+        matches!(self, Self::C | Self::Cpp)
+    }
+
+    /// The value of `--lang`.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Rust => "rust",
+            Self::C => "c",
+            Self::Cpp => "cpp",
+        }
+    }
 }
 
 impl Arguments {
@@ -77,7 +95,7 @@ impl Arguments {
         output.is_dir()
             || self.files.len() > 1
             || written.ends_with(std::path::is_separator)
-            || self.lang == Language::C
+            || self.lang.has_c()
     }
 
     /// Number type; the argument parser accepts known names only.
@@ -88,8 +106,8 @@ impl Arguments {
     /// Options that determine the output, as on the command line.
     fn options(&self) -> String {
         let language = match self.lang {
-            Language::Rust => "",
-            Language::C => " --lang c",
+            Language::Rust => String::new(),
+            other => format!(" --lang {}", other.name()),
         };
         let path = self.runtime.as_ref().map(Runtime::path);
         let path = path.map_or_else(String::new, |path| format!(" --crate {path}"));
@@ -103,16 +121,16 @@ impl Arguments {
     /// Message on incompatible arguments.
     fn contradiction(&self, as_json: bool) -> Option<String> {
         let is_printed = self.output.is_none() && !as_json;
-        if is_printed && self.lang == Language::C {
+        if is_printed && self.lang.has_c() {
             let message = "C is a header and a source file: add `-o FOLDER`";
             return Some(message.to_owned());
         }
-        if self.online && self.lang != Language::C {
+        if self.online && !self.lang.has_c() {
             let message =
                 "`--online` writes C files: add `--lang c`; Rust has the module `overact::online`";
             return Some(message.to_owned());
         }
-        if self.runtime.is_some() && self.lang == Language::C {
+        if self.runtime.is_some() && self.lang.has_c() {
             let message = "C uses no crate: leave out `--crate`, or generate Rust";
             return Some(message.to_owned());
         }
@@ -130,8 +148,8 @@ impl Arguments {
         }
         let extension = self.output().and_then(Path::extension);
         let is_file =
-            extension.is_some_and(|e| ["c", "h"].iter().any(|c| e.eq_ignore_ascii_case(c)));
-        if self.lang == Language::C && is_file {
+            extension.is_some_and(|e| ["c", "h", "hpp"].iter().any(|c| e.eq_ignore_ascii_case(c)));
+        if self.lang.has_c() && is_file {
             let message =
                 "C is a header and a source file: give a folder instead of a file, `-o FOLDER`";
             return Some(message.to_owned());

@@ -52,7 +52,7 @@ impl Module {
                 file: rust_file(path, arguments),
                 code: rust::file(&robot.model, &labels),
             }],
-            Language::C => {
+            Language::C | Language::Cpp => {
                 let files = c::files(&robot.model, &labels);
                 let part = |extension: &str, code: String| {
                     let name = format!("{}.{extension}", files.stem);
@@ -62,10 +62,14 @@ impl Module {
                         code,
                     }
                 };
-                vec![
+                let mut parts = vec![
                     part("h", files.header.clone()),
                     part("c", files.source.clone()),
-                ]
+                ];
+                if arguments.lang == Language::Cpp {
+                    parts.push(part("hpp", c::cpp_header(&robot.model, &labels)));
+                }
+                parts
             }
         };
         Self {
@@ -205,7 +209,9 @@ pub(super) fn distinct(modules: &[Module]) -> Result<(), Failure> {
             );
             let help = match module.language {
                 Language::Rust => "give each description a file name of its own",
-                Language::C => "give each robot a `name` that differs not only in capitals",
+                Language::C | Language::Cpp => {
+                    "give each robot a `name` that differs not only in capitals"
+                }
             };
             problems.push(problem(message).help(help));
         }
@@ -230,7 +236,7 @@ pub(super) fn compare(modules: &[Module]) -> Result<(), Failure> {
             };
             let (arguments, path) = (&module.arguments, file.display());
             let output = match (module.language, file.parent()) {
-                (Language::C, Some(folder)) => folder.display(),
+                (language, Some(folder)) if language.has_c() => folder.display(),
                 _ => path,
             };
             let help = format!("renew it with `overact generate {arguments} -o {output}`");

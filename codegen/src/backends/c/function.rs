@@ -207,16 +207,8 @@ fn documented(
         let (name, size) = (&argument.name, size(model, &argument.name, naming));
         lines.push(format!("@param {name} {} ({size})", meaning(name)));
     }
-    let (rows, columns) = function.computes.extents();
-    let extent = |extent| match extent {
-        Extent::Fixed(count) => format!("[{count}]"),
-        _ => format!("[{}]", naming.constant(extent_name(extent))),
-    };
-    let shape = format!(
-        "{}{}",
-        extent(rows),
-        columns.map(extent).unwrap_or_default()
-    );
+    let extents = extents(function, naming).into_iter();
+    let shape: String = extents.map(|extent| format!("[{extent}]")).collect();
     let table = outline.columns.map(|table| match table {
         Table::Parameters => "parameters",
         Table::BaseParameters => "base_parameters",
@@ -237,8 +229,20 @@ fn documented(
     documentation(&lines)
 }
 
+/// The extents of a function's output, one of a vector or two of a matrix, as macros of sizes.
+#[must_use]
+pub fn extents(function: &CompiledFunction, naming: &Naming) -> Vec<String> {
+    let (rows, columns) = function.computes.extents();
+    let extent = |extent| match extent {
+        Extent::Fixed(count) => count.to_string(),
+        _ => naming.constant(extent_name(extent)),
+    };
+    std::iter::once(rows).chain(columns).map(extent).collect()
+}
+
 /// Number of elements of an argument, as macros of sizes.
-fn size(model: &RobotModel, argument: &str, naming: &Naming) -> String {
+#[must_use]
+pub fn size(model: &RobotModel, argument: &str, naming: &Naming) -> String {
     let sizes: &[&str] = match argument {
         "pose" | "start" => &["POSE"],
         "joints" => &["JOINTS"],

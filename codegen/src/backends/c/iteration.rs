@@ -124,7 +124,8 @@ fn has_partitions(model: &RobotModel) -> bool {
 }
 
 /// The arguments of `pose_from_actuators`.
-fn forward_arguments(model: &RobotModel) -> [Array; 2] {
+#[must_use]
+pub fn forward_arguments(model: &RobotModel) -> [Array; 2] {
     let array = |name: &str, length: usize| Array {
         name: name.to_owned(),
         shape: vec![length],

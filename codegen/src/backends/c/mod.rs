@@ -22,9 +22,11 @@
 //! | `runtime`, `iteration` | counterparts of the runtime crate; their C is in `text/` |
 //! | `single` | conversion to single precision |
 //! | `lines` | line breaks, comments, strings |
+//! | `cpp` | the header for C++ that wraps the functions |
 
 #![allow(unreachable_pub, reason = "public to the files of this folder")]
 
+mod cpp;
 mod errors;
 mod expression;
 mod function;
@@ -85,6 +87,19 @@ fn in_numbers(code: String, float: Float) -> String {
         Float::F64 => code,
         Float::F32 => single::converted(&code),
     }
+}
+
+/// The C++17 header that wraps the functions of a robot's C code, `STEM.hpp`.
+///
+/// It includes the C header and needs only `<array>` and `<cstddef>`; link it with the C source.
+/// `label` is as in [`files`].
+#[must_use]
+pub fn cpp_header(model: &RobotModel, label: &str) -> String {
+    let naming = Naming {
+        float: model.float,
+        ..Naming::new(&model.mechanism.name)
+    };
+    cpp::header(model, label, &naming)
 }
 
 /// The line with the origin of a file.

@@ -128,6 +128,12 @@ impl Naming {
     }
 }
 
+/// Whether a word is a keyword of C, or a compiler may define it.
+#[must_use]
+pub fn is_keyword(word: &str) -> bool {
+    holds(WORDS, word)
+}
+
 /// Whether a word is in a list.
 fn holds(list: &str, word: &str) -> bool {
     list.split_ascii_whitespace().any(|one| one == word)
