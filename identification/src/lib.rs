@@ -37,6 +37,7 @@
 //! | `with_avx`, `units`, `blocks` | vectorisation; plausible ranges of quantities; evaluation of a model in blocks |
 //! | `thresholds`, `series` | thresholds of the elimination and the conditioning; series for plots |
 //! | [`filters`] | zero-phase filtering, decimation, differences |
+//! | `gear_friction` | friction of gears, removed from measured torques |
 //! | `prior`, `online_settings`, `settings` | prior values of standard parameters; settings of an identification |
 //! | `kinematics` | forward kinematics, platform motion, conditioning and distribution of actuators |
 //! | `regression` | columns of the model; decimated systems (39)-(41) of all projections, as R factors |
@@ -60,6 +61,7 @@ mod estimation;
 pub mod factors;
 pub mod filters;
 mod gains;
+mod gear_friction;
 mod gravity;
 mod identify;
 mod kinematics;
@@ -94,12 +96,14 @@ pub use estimation::{
     },
 };
 pub use gains::{DriveGain, Gains, JointParameter, drive_gains};
+pub use gear_friction::GearFriction;
 pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
-    BaseParameter, Identification, PreparedSystem, PriorStage, Progress, ProjectionEstimates,
-    RankedProjection, Study, estimate_projection,
+    BaseParameter, DriveGearFriction, GearCoefficient, GearFrictionEstimate, Identification,
+    PreparedSystem, PriorStage, Progress, ProjectionEstimates, RankedProjection, Study,
+    estimate_projection,
     figures::{ActuatorRange, CorrelationFigures, Figures, PredictionFigures, ResidualFigures},
-    identify, identify_after, prepare, study,
+    gear_friction, identify, identify_after, prepare, study,
     tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     filters::{DECIMATION_PADDING, Decimator, butterworth, settling},
+    gear_friction::GearFriction,
     online_settings::OnlineSettings,
     prior::Prior,
 };
@@ -160,6 +161,9 @@ pub struct Settings {
     pub weighted: bool,
     /// Source of the instruments.
     pub instruments: Instruments,
+    /// Known friction of the gears, one for each actuator; empty for none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gear_friction: Vec<GearFriction>,
     /// Checks that are run.
     #[serde(default)]
     pub checks: CheckScope,
@@ -222,6 +226,7 @@ impl Settings {
             asymmetric_friction: false,
             weighted: true,
             instruments: Instruments::default(),
+            gear_friction: Vec::new(),
             checks: CheckScope::default(),
             period_s: None,
             prior: Prior::default(),
@@ -337,6 +342,7 @@ impl Settings {
             );
         }
         problems.extend(self.check_standstill(info));
+        problems.extend(self.check_gears(info));
         if self.r_sigma.is_nan() || self.r_sigma <= 1.0 {
             problems.push(
                 Problem::new(
@@ -350,6 +356,26 @@ impl Settings {
             problems.extend(check_partition(&self.kept_actuators, info));
         }
         Error::check(problems)
+    }
+
+    /// The problem of invalid friction of gears.
+    fn check_gears(&self, info: &Info<'_>) -> Option<Problem> {
+        let (gears, actuators) = (&self.gear_friction, info.sizes.actuators);
+        if !gears.is_empty() && gears.len() != actuators {
+            let message = format!("there are {} gears for {actuators} actuators", gears.len());
+            let help = "give the friction of one gear for each actuator, or none";
+            return Some(Problem::new(Code::SETTINGS, message).help(help));
+        }
+        let is_possible = |gear: &GearFriction| {
+            gear.driving.is_finite() && gear.driving > -1.0 && gear.back_driving.abs() < 1.0
+        };
+        let bad = gears.iter().find(|gear| !is_possible(gear))?;
+        let message = format!(
+            "a gear has the friction coefficients {} and {}",
+            bad.driving, bad.back_driving
+        );
+        let help = "the coefficient of driving is above -1, that of back-driving between -1 and 1";
+        Some(Problem::new(Code::SETTINGS, message).help(help))
     }
 
     /// The problem of invalid standstill velocities.

@@ -103,12 +103,25 @@ fn add_gravity<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     }
 }
 
-/// Drive gains, and parameters that were estimated together with them.
+/// Drive gains, parameters that were estimated together with them, and friction of gears.
 fn add_gains<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     for gain in &identification.gains {
         let name = gain.actuator.as_str();
         rows.add("gain", name, "factor", gain.factor);
         rows.add("gain", name, "deviation", gain.deviation);
+    }
+    for drive in &identification.gear_friction {
+        let both = [
+            ("driving", drive.driving),
+            ("back_driving", drive.back_driving),
+        ];
+        for (motion, coefficient) in both {
+            if let Some(own) = coefficient {
+                let name = drive.actuator.as_str();
+                rows.add("gear_friction", name, motion, own.value);
+                rows.add("gear_friction_deviation", name, motion, own.deviation);
+            }
+        }
     }
     for one in &identification.gain_parameters {
         rows.add("gain_parameter", &one.name, "value", one.value);

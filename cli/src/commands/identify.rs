@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     runs: runs::Arguments,
     /// Factor files (`overact factor`) instead of logs
-    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "online", "parameters", "strict", "all", "tables", "reports", "published"])]
+    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "gear_friction", "online", "parameters", "strict", "all", "tables", "reports", "published"])]
     factors: Vec<PathBuf>,
     /// Skip unusable parts of factor files, and report them
     #[arg(long, requires = "factors")]
@@ -80,6 +80,10 @@ pub(crate) struct Arguments {
     /// [default: that of the description]
     #[arg(long, conflicts_with = "gains")]
     gravity_direction: bool,
+    /// First identify the friction of the gears that is proportional to the transmitted torque
+    /// [default: that of the description]
+    #[arg(long, conflicts_with_all = ["gains", "gravity_direction"])]
+    gear_friction: bool,
     /// Replay the runs through the online filter: parameters with standard deviations over time,
     /// and detected changes
     #[arg(long)]
@@ -197,6 +201,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let identifier = if arguments.gravity_direction {
         identifier.gravity_direction(true)
+    } else {
+        identifier
+    };
+    let identifier = if arguments.gear_friction {
+        identifier.gear_friction(true)
     } else {
         identifier
     };

@@ -5,6 +5,7 @@ pub(crate) mod data;
 pub(crate) mod drives;
 pub(crate) mod excitation;
 pub(crate) mod experiment;
+pub(crate) mod gears;
 pub(crate) mod gravity;
 pub(crate) mod known;
 pub(crate) mod payloads;

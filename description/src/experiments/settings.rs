@@ -108,6 +108,8 @@ pub struct Identification {
     pub gains: bool,
     /// Whether the direction of gravity is identified together with the parameters.
     pub gravity_direction: bool,
+    /// Whether the friction of the gears is identified first.
+    pub gear_friction: bool,
     /// Standard parameters that are known exactly, by name, SI units.
     pub known: Vec<(String, f64)>,
 }
@@ -141,6 +143,7 @@ pub(crate) fn identification(
         period: None,
         gains: false,
         gravity_direction: false,
+        gear_friction: false,
         known: Vec::new(),
     };
     if let Some(table) = item.and_then(|item| item.table("the table `[identification]`")) {
@@ -148,6 +151,9 @@ pub(crate) fn identification(
         settings.gravity_direction = table.get("gravity_direction").is_some_and(|item| {
             crate::experiments::gravity::direction(&item, settings.gains, gravity)
         });
+        settings.gear_friction = table
+            .get("gear_friction")
+            .is_some_and(|item| crate::experiments::gears::friction(&item, &settings, robot));
         table.finish();
     }
     settings

@@ -16,7 +16,6 @@
 //! - `noise`: noise of the drives' signals, from the residuals;
 //! - `solve`: generalised total least squares with exact columns W and w;
 //! - `deviations`: standard deviations of the gains;
-//! - `uncertainty_propagation`: effect of their uncertainty on later estimates;
 //! - `result`: the result.
 
 mod deviations;
@@ -26,10 +25,8 @@ mod observation;
 mod result;
 mod selection;
 mod solve;
-mod uncertainty_propagation;
 
 pub use result::{DriveGain, Gains, JointParameter};
-pub(crate) use uncertainty_propagation::propagate_gain_uncertainty;
 
 use overact::Code;
 use overact::Model;

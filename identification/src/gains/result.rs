@@ -3,6 +3,8 @@
 use nalgebra::DMatrix;
 use serde::Serialize;
 
+use crate::regression::torque_uncertainty::TorqueCorrection;
+
 /// Smallest significant difference from the description, in standard deviations.
 const DEVIATIONS: f64 = 3.0;
 
@@ -64,8 +66,17 @@ pub struct Gains {
 }
 
 impl Gains {
+    /// Effect of the relative errors δg/g on torques that have been multiplied by the gains.
+    pub(crate) fn correction(&self) -> TorqueCorrection<'_> {
+        TorqueCorrection {
+            actuators: (0..self.drives.len()).collect(),
+            covariance: self.relative_covariance(),
+            derivative: &|_, torque, _| torque,
+        }
+    }
+
     /// Covariance of the relative errors δg/g of the gains.
-    pub(super) fn relative_covariance(&self) -> DMatrix<f64> {
+    fn relative_covariance(&self) -> DMatrix<f64> {
         let factors = self.factors();
         DMatrix::from_fn(factors.len(), factors.len(), |i, j| {
             self.covariance[(i, j)] / (factors[i] * factors[j])

@@ -35,7 +35,7 @@ use crate::{
     thresholds::Thresholds,
 };
 
-use super::{figures::Figures, tracking::TrackingError};
+use super::{figures::Figures, gear_friction::DriveGearFriction, tracking::TrackingError};
 
 /// Result of an identification.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -87,6 +87,11 @@ pub struct Identification {
     /// `standard_deviation`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gain_parameters: Vec<JointParameter>,
+    /// Friction of the gears, if it was identified from the runs.
+    ///
+    /// All torques are those that the gears transmit.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gear_friction: Vec<DriveGearFriction>,
     /// Motor-side parameters of the drives, if motors are described.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub motors: Vec<MotorParameter>,

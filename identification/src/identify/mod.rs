@@ -9,6 +9,7 @@ mod consistency;
 mod cross_validation;
 mod estimates;
 pub(crate) mod figures;
+mod gear_friction;
 mod identification;
 mod instruments;
 mod plots;
@@ -20,6 +21,7 @@ pub(crate) mod tracking;
 use overact::Model;
 
 pub use estimates::{ProjectionEstimates, estimate_projection};
+pub use gear_friction::{DriveGearFriction, GearCoefficient, GearFrictionEstimate, gear_friction};
 pub use identification::{BaseParameter, Identification};
 pub(crate) use prepare::session_numbers;
 pub use prepare::{PreparedSystem, prepare};
@@ -36,7 +38,7 @@ use crate::{
         self, Context, RunMonitor,
         assumptions::{PreviouslyIdentified, assumptions, not_tested, rests_on, unseen},
         check::{Check, Grade},
-        hypotheses::{PositionRange, ScoreTest},
+        hypotheses::{PositionRange, ScoreTest, fault_hypotheses},
         verdict::verdicts,
     },
     estimation::instruments::regressor::ErrorsInRegressor,
@@ -74,6 +76,8 @@ pub enum PriorStage<'a> {
     Gains(&'a Gains),
     /// Direction of gravity; the model already has it.
     Gravity(&'a GravityDirection),
+    /// Friction of the gears; the settings contain it.
+    GearFriction(&'a GearFrictionEstimate),
 }
 
 /// [`identify`] after a previous identification.
@@ -101,7 +105,11 @@ pub fn identify_after(
     match before {
         PriorStage::Nothing => {}
         PriorStage::Gains(gains) => {
-            prepared = prepared.with_gains(model, dataset.runs, gains, settings)?;
+            let correction = gains.correction();
+            prepared = prepared.with_correction(model, dataset.runs, &correction, settings)?;
+        }
+        PriorStage::GearFriction(gears) => {
+            prepared = gears.propagated(prepared, model, dataset.runs, settings)?;
         }
         PriorStage::Gravity(direction) => prepared = prepared.with_gravity(direction),
     }
@@ -143,6 +151,7 @@ pub fn identify_after(
         columns: &prepared.columns,
         base: &prepared.base.columns,
         estimate,
+        hypotheses: fault_hypotheses(model, dataset.variants.len(), estimate.model),
         position_ranges: &position_ranges,
         periodic_motions: &prepared.periodic_motions,
         settings,
@@ -210,6 +219,7 @@ pub fn identify_after(
         gravity: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
+        gear_friction: Vec::new(),
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),
@@ -262,7 +272,7 @@ pub(crate) fn estimates_of(
 }
 
 /// Position ranges and speeds of the actuators in all runs.
-fn position_ranges(watched: &[RunMonitor]) -> Vec<PositionRange> {
+pub(super) fn position_ranges(watched: &[RunMonitor]) -> Vec<PositionRange> {
     let of_run = |one: &RunMonitor| -> Vec<PositionRange> {
         let bounds = one.monitor.bounds().into_iter();
         let speeds = one.monitor.speeds();

@@ -11,7 +11,6 @@ use crate::{
         base::{BaseParameters, PayloadUse, base_parameters, payload_names},
         column_noise::ColumnNoise,
     },
-    gains::{Gains, propagate_gain_uncertainty},
     gravity::GravityDirection,
     kinematics,
     prior::Prior,
@@ -23,6 +22,7 @@ use crate::{
         projection::Projection,
         sink::LARGEST_STRETCHES,
         system::{RunEquations, System},
+        torque_uncertainty::TorqueCorrection,
         uncertainty_propagation::PropagatedUncertainty,
     },
     result::{Estimate, RunSummary},
@@ -85,12 +85,12 @@ impl PreparedSystem {
         }
     }
 
-    /// Adds the uncertainty of gains by which the torques of the runs were multiplied.
-    pub(super) fn with_gains(
+    /// Adds the uncertainty of a correction of the runs' torques.
+    pub(super) fn with_correction(
         mut self,
         model: &dyn Model,
         runs: &[Log],
-        gains: &Gains,
+        correction: &TorqueCorrection<'_>,
         settings: &Settings,
     ) -> Result<Self, Error> {
         let observer = Observer {
@@ -100,7 +100,7 @@ impl PreparedSystem {
             projections: &self.projections,
             settings,
         };
-        self.propagated_uncertainty = Some(propagate_gain_uncertainty(&observer, runs, gains)?);
+        self.propagated_uncertainty = Some(correction.propagated(&observer, runs)?);
         Ok(self)
     }
 

@@ -11,6 +11,7 @@ mod dense;
 pub(crate) mod distribution;
 mod forward;
 mod gauss_newton;
+pub(crate) mod gears;
 mod known_torques;
 mod motion;
 mod stream;
@@ -23,6 +24,7 @@ use overact_logs::{Error, Log, Problem, monitor::Monitor, significant};
 
 use forward::Forward;
 pub(crate) use forward::approach;
+use gears::Gears;
 use known_torques::KnownTorques;
 pub use motion::Motion;
 use motion::outside;
@@ -57,6 +59,7 @@ pub struct Motions<'a> {
     stream: Stream<'a>,
     forward: Forward<'a>,
     known: KnownTorques<'a>,
+    gears: Gears,
     /// Samples to keep.
     kept: std::ops::Range<usize>,
     /// Whether closure and raw numbers are monitored.
@@ -77,6 +80,7 @@ impl<'a> Motions<'a> {
             stream: Stream::new(log, settings)?,
             forward: Forward::new(model, log),
             known: KnownTorques::new(model),
+            gears: Gears::new(settings),
             kept: settings.skip_start..log.samples() - settings.skip_end,
             is_watched: true,
         })
@@ -201,6 +205,7 @@ impl<'a> Motions<'a> {
             torques: keep(&block.torques, n),
             ..self.empty()
         };
+        self.gears.take_losses(&mut motion, &accelerations);
         self.known.subtract(&mut motion)?;
         Ok(motion)
     }

@@ -26,7 +26,7 @@ use super::{
     friction::{Rate, friction_rates},
     states::SampledStates,
 };
-use crate::settings::Settings;
+use crate::{kinematics::gears::mean_sign, settings::Settings};
 use StandardParameter as P;
 use overact_logs::{Error, Load};
 
@@ -515,29 +515,5 @@ impl ColumnSet {
             }
         }
         Ok(lines)
-    }
-}
-
-/// Mean sign over an interval in which a value changes by `step`, with `value` at its centre.
-fn mean_sign(value: f64, step: f64) -> f64 {
-    if value == 0.0 {
-        0.0
-    } else {
-        (2.0 * value / step.abs()).clamp(-1.0, 1.0)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::mean_sign;
-
-    #[test]
-    fn the_mean_sign_is_that_of_the_interval() {
-        // From -0.5 to 1.5: a quarter of the interval is negative.
-        assert_eq!(mean_sign(0.5, 2.0), 0.5);
-        assert_eq!(mean_sign(-0.5, -2.0), -0.5);
-        assert_eq!(mean_sign(0.0, 0.0), 0.0);
-        assert_eq!(mean_sign(1e-9, 0.0), 1.0);
-        assert_eq!(mean_sign(-3.0, 2.0), -1.0);
     }
 }

@@ -12,6 +12,7 @@
 //! - `projection`: projections of the inputs;
 //! - `points`: motion data for plots;
 //! - `uncertainty_propagation`: effect of the uncertainty of previous identifications on estimates;
+//! - `torque_uncertainty`: the same for corrections of the measured torques;
 //! - `score_batches`: sums of scores over batches of successive samples;
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: linearly dependent columns;
@@ -33,6 +34,7 @@ pub(crate) mod score_batches;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;
+pub(crate) mod torque_uncertainty;
 mod transpose;
 pub(crate) mod uncertainty_propagation;
 mod update;

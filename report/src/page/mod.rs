@@ -68,6 +68,7 @@ pub fn page(contents: &Contents<'_>) -> String {
         calibrations::calibration::section(contents),
         calibrations::gravity::section(contents),
         calibrations::gains::section(contents),
+        calibrations::gears::section(contents),
         estimates::motors::section(contents),
         estimates::online::section(contents),
         estimates::consistent::section(contents),

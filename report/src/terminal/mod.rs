@@ -2,6 +2,7 @@
 
 pub(crate) mod calibration;
 pub(crate) mod gains;
+pub(crate) mod gears;
 pub(crate) mod gravity;
 pub(crate) mod motors;
 

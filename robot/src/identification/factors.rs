@@ -90,13 +90,16 @@ impl Robot {
         Ok(found)
     }
 
-    /// Rejects identification of gains and gravity, which needs the logs themselves.
+    /// Rejects identification of gains, gears and gravity, which needs the logs themselves.
     fn check_factors(&self) -> Result<(), Error> {
         let identification = &self.description().identification;
-        if !identification.gains && !identification.gravity_direction {
+        let is_of_logs = identification.gains
+            || identification.gravity_direction
+            || identification.gear_friction;
+        if !is_of_logs {
             return Ok(());
         }
-        let message = "the description requests gains of drives or the direction of gravity, which factors do not support";
+        let message = "the description requests gains of drives, friction of gears or the direction of gravity, which factors do not support";
         let help =
             "first identify them from logs, write them into the description and leave out the key";
         Err(Problem::new(Code::FACTORS, message)

@@ -9,12 +9,14 @@ use crate::{
     robot::Robot,
 };
 use overact::Model;
-use overact_codegen::description::{COUPLED_MOTORS, GAINS_AND_GRAVITY, KNOWN_TORQUES, Leg};
+use overact_codegen::description::{
+    COUPLED_MOTORS, GAINS_AND_GRAVITY, GEARS_ALONE, GEARS_OF_COUPLED_MOTORS, KNOWN_TORQUES, Leg,
+};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Calibration, CalibrationScope, Dataset, Estimate, Gains, GravityDirection, Identification,
-    Instruments, Log, PriorStage, Progress, Settings, Stage, Study, drive_gains, identify_after,
-    study,
+    Instruments, Log, PriorStage, Progress, Settings, Stage, Study, drive_gains, gear_friction,
+    identify_after, study,
 };
 use std::collections::BTreeMap;
 
@@ -44,6 +46,7 @@ pub struct Identifier<'a> {
     calibration: Option<CalibrationScope>,
     gains: bool,
     gravity_direction: bool,
+    gear_friction: bool,
     progress: &'a dyn Fn(Progress<'_>),
 }
 
@@ -72,6 +75,7 @@ impl<'a> Identifier<'a> {
             calibration: None,
             gains: robot.description().identification.gains,
             gravity_direction: robot.description().identification.gravity_direction,
+            gear_friction: robot.description().identification.gear_friction,
             progress: &|_| {},
         }
     }
@@ -130,6 +134,17 @@ impl<'a> Identifier<'a> {
     pub fn gravity_direction(self, gravity_direction: bool) -> Self {
         Self {
             gravity_direction,
+            ..self
+        }
+    }
+
+    /// Sets whether the friction of the gears is identified first, from the training runs.
+    ///
+    /// This overrides the description.
+    #[must_use]
+    pub fn gear_friction(self, gear_friction: bool) -> Self {
+        Self {
+            gear_friction,
             ..self
         }
     }
@@ -200,14 +215,19 @@ impl<'a> Identifier<'a> {
         own.identified()
     }
 
-    /// Identification without calibration, with gains and gravity direction as requested.
+    /// Identification without calibration, with gains, gravity direction and friction of gears as
+    /// requested.
     fn identified(&self) -> Result<Identification, Error> {
+        self.check_gears()?;
         if self.gravity_direction {
             let made = self.in_gravity(|own, found| own.estimated(PriorStage::Gravity(found)))?;
             let (mut result, found) = made;
             result.warnings.splice(0..0, found.warnings());
             result.gravity = Some(found);
             return Ok(result);
+        }
+        if self.gear_friction {
+            return self.with_gear_friction();
         }
         if !self.gains {
             return self.estimated(PriorStage::Nothing);
@@ -218,6 +238,42 @@ impl<'a> Identifier<'a> {
         result.warnings = [gains.warnings(), others].concat();
         result.gains = gains.drives;
         result.gain_parameters = gains.parameters;
+        Ok(result)
+    }
+
+    /// Rejects the friction of gears next to other corrections of the torques.
+    fn check_gears(&self) -> Result<(), Error> {
+        let mut legs = self.robot.description().legs.iter();
+        let why = if self.gains || self.gravity_direction {
+            GEARS_ALONE
+        } else if legs.any(Leg::has_coupled_motors) {
+            GEARS_OF_COUPLED_MOTORS
+        } else {
+            return Ok(());
+        };
+        if !self.gear_friction {
+            return Ok(());
+        }
+        let problem = Problem::new(Code::CONTRADICTION, why).file(self.robot.file());
+        Err(problem.help("identify without `gear_friction`").into())
+    }
+
+    /// Identification from the torques that the gears transmit.
+    fn with_gear_friction(&self) -> Result<Identification, Error> {
+        let settings = self.with_checks();
+        let dataset = self.dataset();
+        let model = self.robot.model();
+        let found = gear_friction(model, &dataset, &settings, self.progress)?;
+        let own = Identifier {
+            settings: Some(Settings {
+                gear_friction: found.gears(),
+                ..settings
+            }),
+            ..self.clone()
+        };
+        let mut result = own.estimated(PriorStage::GearFriction(&found))?;
+        result.warnings.splice(0..0, found.warnings());
+        result.gear_friction = found.drives;
         Ok(result)
     }
 

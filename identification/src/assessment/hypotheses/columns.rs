@@ -67,6 +67,8 @@ pub(crate) enum FaultHypothesis {
     AllTorques(Shape),
     /// Crosstalk between all neighbours, each of its own size.
     AllCrosstalk,
+    /// Load-dependent friction of all gears, each of its own size.
+    AllGears,
 }
 
 impl FaultHypothesis {
@@ -92,7 +94,8 @@ impl FaultHypothesis {
     fn is_joined_by(self, all: Self) -> bool {
         match (all, self) {
             (Self::AllTorques(shape), Self::Torque(_, own)) => shape == own,
-            (Self::AllCrosstalk, Self::Crosstalk { .. }) => true,
+            (Self::AllCrosstalk, Self::Crosstalk { .. })
+            | (Self::AllGears, Self::Torque(_, Shape::Driving | Shape::BackDriving)) => true,
             _ => false,
         }
     }
@@ -102,7 +105,7 @@ impl FaultHypothesis {
         match self {
             Self::Torque(_, Shape::Waves | Shape::LoadWaves) => WAVES,
             Self::Potential(joints) => joints.products(),
-            Self::AllTorques(_) | Self::AllCrosstalk => 0,
+            Self::AllTorques(_) | Self::AllCrosstalk | Self::AllGears => 0,
             _ => 1,
         }
     }
@@ -166,7 +169,7 @@ impl Layout {
 /// The fault hypotheses of a robot for the model `kind`, with this number of `lengths`.
 ///
 /// Waves come after those with one column, several faults together last.
-pub(super) fn fault_hypotheses(
+pub(crate) fn fault_hypotheses(
     model: &dyn Model,
     lengths: usize,
     kind: ModelKind,
@@ -233,6 +236,22 @@ pub(super) fn fault_hypotheses(
         all.push(FaultHypothesis::AllCrosstalk);
     }
     all
+}
+
+/// The hypotheses that gears have friction: for each coefficient its actuator and shape.
+///
+/// The last one joins all; constant torques are the columns from which others are made.
+pub(crate) fn gear_hypotheses(
+    actuators: usize,
+    coefficients: &[(usize, Shape)],
+) -> Vec<FaultHypothesis> {
+    let constant = (0..actuators).map(|i| FaultHypothesis::Torque(i, Shape::Constant));
+    let gears = coefficients.iter();
+    let gears = gears.map(|(i, shape)| FaultHypothesis::Torque(*i, *shape));
+    constant
+        .chain(gears)
+        .chain([FaultHypothesis::AllGears])
+        .collect()
 }
 
 /// Crosstalk between drives that follow each other, in both directions.
@@ -366,7 +385,8 @@ impl Sample<'_> {
             // Their columns follow after decimation, or are those of the faults that they join.
             FaultHypothesis::Potential(_)
             | FaultHypothesis::AllTorques(_)
-            | FaultHypothesis::AllCrosstalk => 0.0,
+            | FaultHypothesis::AllCrosstalk
+            | FaultHypothesis::AllGears => 0.0,
         }
     }
 }

@@ -64,7 +64,7 @@ mod shapes;
 mod test;
 mod wald_test;
 
-pub(crate) use columns::FaultHypothesis;
+pub(crate) use columns::{FaultHypothesis, fault_hypotheses, gear_hypotheses};
 pub(crate) use correlations::Correlation;
 pub(crate) use group::Group;
 pub(crate) use misreading::Misreading;

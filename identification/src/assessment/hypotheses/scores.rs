@@ -7,7 +7,7 @@ use overact::Model;
 use rayon::prelude::*;
 
 use super::{
-    columns::{FaultHypothesis, Layout, fault_hypotheses},
+    columns::{FaultHypothesis, Layout},
     model_columns::ModelColumns,
     pass::Pass,
     scaled::{Scaled, independent_columns},
@@ -79,6 +79,8 @@ pub(crate) struct ScoreTest<'a> {
     pub(crate) columns: &'a ColumnSet,
     pub(crate) base: &'a [usize],
     pub(crate) estimate: &'a Estimate,
+    /// The hypotheses to test.
+    pub(crate) hypotheses: Vec<FaultHypothesis>,
     /// Position ranges of the actuators.
     pub(crate) position_ranges: &'a [PositionRange],
     /// Periodic motion of each run, if it has one.
@@ -96,7 +98,7 @@ impl ScoreTest<'_> {
     pub(crate) fn scores(&self, times: usize) -> Result<Scores, Error> {
         let (model, settings, estimate) = (self.model, self.settings, self.estimate);
         let (runs, variants) = (self.dataset.runs, self.dataset.variants);
-        let hypotheses = fault_hypotheses(model, variants.len(), estimate.model);
+        let hypotheses = self.hypotheses.clone();
         let payload = model.info().payload_parameters;
         let friction = coulomb(self.columns, self.base);
         let base = self.base.len();

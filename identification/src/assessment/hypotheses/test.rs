@@ -113,15 +113,15 @@ impl Scores {
         let test = Hotelling::new(score.dot(&distance.column(0)), count, freedom);
         // z⊥ is orthonormal, so the scores are its sizes.
         let sizes = orthogonal.white.tr_mul(&score);
-        let first = orthogonal.white.column(0);
-        let variance = (first.transpose() * &covariance * first)[(0, 0)];
+        let of_sizes = orthogonal.white.tr_mul(&(&covariance * orthogonal.white));
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
         let shifts = off * &sizes;
         let selected = orthogonal.model_columns.selected.iter().copied();
         Some(WaldTest {
-            deviation: variance.max(0.0).sqrt(),
+            deviation: of_sizes[(0, 0)].max(0.0).sqrt(),
             freedom,
             probability: test.probability,
+            covariance: of_sizes,
             explained: score.norm_squared() / total.max(f64::MIN_POSITIVE),
             noise: covariance.trace() / count / total.max(f64::MIN_POSITIVE),
             sizes: orthogonal

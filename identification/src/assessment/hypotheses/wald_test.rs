@@ -1,5 +1,7 @@
 //! Test result of a fault hypothesis.
 
+use nalgebra::DMatrix;
+
 use crate::estimation::intervals::distributions::{fisher_tail, student_quantile};
 
 /// Probability with which a just detectable fault is missed.
@@ -13,6 +15,8 @@ const LEAST_PROBABILITY: f64 = 1e-30;
 pub(crate) struct WaldTest {
     /// δ of each separable column, with its place in the group.
     pub(crate) sizes: Vec<(usize, f64)>,
+    /// Covariance of all δ.
+    pub(crate) covariance: DMatrix<f64>,
     /// Standard deviation of the first δ.
     pub(crate) deviation: f64,
     /// Degrees of freedom of that standard deviation.

@@ -70,6 +70,7 @@ pub(crate) fn settings() -> Settings {
         filter_order: 4,
         filter_cutoff_hz: 10.0,
         decimation: 1,
+        gear_friction: Vec::new(),
         skip_start: 0,
         skip_end: 0,
         difference_order: 4,

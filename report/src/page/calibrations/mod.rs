@@ -2,4 +2,5 @@
 
 pub(crate) mod calibration;
 pub(crate) mod gains;
+pub(crate) mod gears;
 pub(crate) mod gravity;

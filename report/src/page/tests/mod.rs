@@ -381,6 +381,7 @@ fn an_identification_without_anything_still_has_a_page() {
         gravity: None,
         gains: Vec::new(),
         gain_parameters: Vec::new(),
+        gear_friction: Vec::new(),
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),

@@ -1,0 +1,234 @@
+//! Friction of gears: coefficients from logs of virtual arms and robots with loops.
+
+use overact_identification::{DriveGearFriction, GearFriction, Identification, Log};
+use overact_robot::{Identifier, Robot};
+use overact_tier::by_tier;
+
+/// A vertical arm of two joints whose gravity torques vary at equal speeds.
+const ARM: &str = r#"
+name = "Arm"
+gravity = [0, "-9.81 m/s^2", 0]
+
+[leg.arm]
+
+[[leg.arm.joint]]
+name = "shoulder"
+type = "revolute"
+actuated = true
+parameters = ["zz", "ia", "fv", "fs", "off"]
+
+[[leg.arm.joint]]
+name = "elbow"
+type = "revolute"
+d = "0.4 m"
+actuated = true
+parameters = ["inertia", "ia", "fv", "fs", "off"]
+
+[experiment]
+sampling = "1 kHz"
+duration = "20 s"
+bandwidth = "20 Hz"
+encoder = 1e-5
+torque_noise = [0.3, 0.1]
+
+[experiment.parameters]
+zz_shoulder = 0.9
+mx_shoulder = 2.4
+m_elbow = 3
+mx_elbow = 0.6
+zz_elbow = 0.15
+ia_shoulder = 0.3
+ia_elbow = 0.1
+fv_shoulder = 2
+fs_shoulder = 1.5
+fv_elbow = 0.5
+fs_elbow = 0.6
+
+[[experiment.run]]
+name = "training"
+fundamental = "0.1 Hz"
+terms = [
+  { coordinate = "shoulder", harmonic = 1, amplitude = 0.8 },
+  { coordinate = "shoulder", harmonic = 4, amplitude = 0.3, phase = 1 },
+  { coordinate = "elbow", harmonic = 2, amplitude = 0.9, phase = 2 },
+  { coordinate = "elbow", harmonic = 5, amplitude = 0.3 },
+]
+"#;
+
+/// True friction of all gears.
+const GEAR: GearFriction = GearFriction {
+    driving: 0.04,
+    back_driving: 0.1,
+};
+
+/// Logs of a robot's virtual experiment, with lossy gears.
+///
+/// `gears` has one gear for each actuator. The sign of a velocity comes from positions without
+/// noise of more than their rounding, at the centre of two sampling intervals.
+fn logs(robot: &Robot, gears: &[GearFriction], seed: u64) -> Vec<Log> {
+    let mut experiment = robot.experiment().expect("an experiment");
+    experiment.experiment.seed = seed;
+    let runs = experiment.runs(&[], &|_, _| {}).expect("runs").identified;
+    let lossy = |run: &Log| {
+        let n = run.actuators();
+        let (positions, mut torques) = run.load().expect("numbers");
+        let samples = positions.len() / n;
+        for place in 0..torques.len() {
+            let (sample, drive) = (place / n, place % n);
+            let around = [sample.saturating_sub(5), (sample + 5).min(samples - 1)];
+            let [before, after] = around.map(|sample| positions[sample * n + drive]);
+            torques[place] = gears[drive].delivered(torques[place], (after - before).signum());
+        }
+        Log::new(
+            run.name(),
+            run.sampling_frequency(),
+            n,
+            positions,
+            torques,
+            run.payload(),
+        )
+        .expect("a run")
+    };
+    runs.iter().map(lossy).collect()
+}
+
+fn identified(robot: &Robot, logs: &[Log]) -> Identification {
+    let identifier = Identifier::new(robot).runs(logs).gear_friction(true);
+    identifier.run().expect("a result")
+}
+
+/// Number of 95 % intervals that contain the true coefficients, and of all intervals.
+fn covered(drives: &[DriveGearFriction], gears: &[GearFriction]) -> (usize, usize) {
+    let both = drives.iter().zip(gears).flat_map(|(drive, gear)| {
+        [
+            (drive.driving, gear.driving),
+            (drive.back_driving, gear.back_driving),
+        ]
+    });
+    let determined = both.filter_map(|(found, value)| Some((found?, value)));
+    determined.fold((0, 0), |(inside, all), (found, value)| {
+        let [low, high] = found.interval_95;
+        (inside + usize::from(low <= value && value <= high), all + 1)
+    })
+}
+
+#[test]
+fn coefficients_lie_in_their_intervals() {
+    let robot = Robot::from_text("arm.toml", ARM).expect("a robot");
+    let gears = [GEAR; 2];
+    let (mut inside, mut all) = (0, 0);
+    for seed in 1..=by_tier([4, 100]) {
+        let result = identified(&robot, &logs(&robot, &gears, seed));
+        let own = covered(&result.gear_friction, &gears);
+        assert_eq!(own.1, 4, "{:?}", result.gear_friction);
+        (inside, all) = (inside + own.0, all + own.1);
+        for (drive, gear) in result.gear_friction.iter().zip(&gears) {
+            let driving = drive.driving.expect("determined");
+            assert!((driving.value - gear.driving).abs() < 0.01, "{drive:?}");
+            assert!(driving.deviation < 0.01, "{drive:?}");
+        }
+    }
+    println!("{inside} of {all} intervals contain the true coefficient");
+    assert!(inside * 10 >= all * 9, "{inside} of {all}");
+}
+
+#[test]
+fn parameters_are_right_only_without_the_losses() {
+    let robot = Robot::from_text("arm.toml", ARM).expect("a robot");
+    let logs = logs(&robot, &[GEAR; 2], 1);
+    let lossless = identified(&robot, &logs);
+    let plain = Identifier::new(&robot).runs(&logs).run().expect("a result");
+    let elbow = |result: &Identification| {
+        let mut all = result.estimates[0].parameters.iter();
+        let own = all
+            .find(|one| one.name == "mx_elbow")
+            .expect("a moment")
+            .clone();
+        (own.value, own.interval_95)
+    };
+    let (value, [low, high]) = elbow(&lossless);
+    assert!(low <= 0.6 && 0.6 <= high, "{value} in {low} to {high}");
+    assert!(
+        lossless.estimates[0].relative_error_percent < plain.estimates[0].relative_error_percent
+    );
+    let (_, [low, high]) = elbow(&plain);
+    assert!(!(low <= 0.6 && 0.6 <= high), "{low} to {high}");
+}
+
+/// Each drive of a redundant robot has its own measured torque.
+#[test]
+fn gears_of_a_redundant_robot() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/dualv.toml");
+    let robot = Robot::from_toml(path).expect("a robot");
+    let gears = [GEAR, GearFriction::default(), GEAR, GearFriction::default()];
+    let result = identified(&robot, &logs(&robot, &gears, 3));
+    let (inside, all) = covered(&result.gear_friction, &gears);
+    assert!(all >= 4 && inside + 1 >= all, "{:?}", result.gear_friction);
+}
+
+/// With a load of constant size, its friction is Coulomb friction.
+#[test]
+fn friction_of_a_constant_load_is_not_separable() {
+    let text = r#"
+name = "Lift"
+gravity = [0, 0, "-9.81 m/s^2"]
+
+[leg.arm]
+
+[[leg.arm.joint]]
+name = "lift"
+type = "prismatic"
+actuated = true
+parameters = ["m", "fv", "fs"]
+
+[experiment]
+sampling = "500 Hz"
+duration = "20 s"
+bandwidth = "20 Hz"
+encoder = 1e-6
+torque_noise = 2.0
+
+[experiment.parameters]
+m_lift = 20
+fv_lift = 30
+fs_lift = 10
+
+[[experiment.run]]
+name = "training"
+fundamental = "0.1 Hz"
+terms = [{ coordinate = "lift", harmonic = 1, amplitude = "50 mm" }]
+"#;
+    let robot = Robot::from_text("lift.toml", text).expect("a robot");
+    let logs = logs(&robot, &[GEAR], 1);
+    let result = identified(&robot, &logs);
+    let [drive] = &result.gear_friction[..] else {
+        panic!("one drive");
+    };
+    assert!(
+        drive.driving.is_none() || drive.back_driving.is_none(),
+        "{drive:?}"
+    );
+    assert!(
+        result
+            .warnings
+            .iter()
+            .any(|one| one.contains("is not determined")),
+        "{:?}",
+        result.warnings
+    );
+}
+
+#[test]
+fn gears_and_gains_are_not_identified_together() {
+    let robot = Robot::from_text("arm.toml", ARM).expect("a robot");
+    let logs = logs(&robot, &[GEAR; 2], 1);
+    let identifier = Identifier::new(&robot).runs(&logs).gear_friction(true);
+    let error = identifier
+        .gravity_direction(true)
+        .run()
+        .expect_err("a problem");
+    assert!(error.to_string().contains("friction of gears"), "{error}");
+    let text = format!("{ARM}\n[identification]\ngravity_direction = true\ngear_friction = true\n");
+    let errors = Robot::from_text("arm.toml", &text).expect_err("a problem");
+    assert!(errors.to_string().contains("friction of gears"), "{errors}");
+}
