@@ -294,7 +294,13 @@ overact_online_error overact_online_set_prior(
     const overact_online_number *square_root_information)
 {
     const int p = filter->parameters;
-    overact_online_error error = check(prior, p, (number)1.0);
+    overact_online_error error;
+    for (int i = 0; i < (p * p); i++) {
+        if (filter->factor[i] != (number)0.0) {
+            return OVERACT_ONLINE_SETTING;
+        }
+    }
+    error = check(prior, p, (number)1.0);
     if (error == OVERACT_ONLINE_OK) {
         error = check(square_root_information, p * p, (number)1.0);
     }
@@ -326,7 +332,9 @@ overact_online_error overact_online_set_prior(
 overact_online_error overact_online_set_forgetting(
     overact_online_filter *filter, overact_online_rule rule, overact_online_number factor)
 {
-    if ((rule != OVERACT_ONLINE_FORGET_NOTHING) && (is_factor(factor) == 0)) {
+    const int is_nothing = (rule == OVERACT_ONLINE_FORGET_NOTHING) ? 1 : 0;
+    const int is_known = ((rule == OVERACT_ONLINE_FORGET_EXPONENTIALLY) || (rule == OVERACT_ONLINE_FORGET_DIRECTIONALLY)) ? 1 : 0;
+    if ((is_nothing == 0) && ((is_known == 0) || (is_factor(factor) == 0))) {
         return OVERACT_ONLINE_SETTING;
     }
     filter->rule = rule;

@@ -73,7 +73,8 @@ typedef struct {
 /* A filter that knows nothing. `memory` has OVERACT_ONLINE_MEMORY(parameters) numbers, used while the filter is. */
 overact_online_error overact_online_init(overact_online_filter *filter, int parameters, overact_online_number *memory);
 
-/* Adds a prior estimate (p) with a square root S of its information (p x p, S^T S). Call it before any row. */
+/* Adds a prior estimate (p) with a square root S of its information (p x p, S^T S). Once,
+ * before any row; otherwise OVERACT_ONLINE_SETTING. */
 overact_online_error overact_online_set_prior(
     overact_online_filter *filter,
     const overact_online_number *prior,

@@ -299,7 +299,7 @@ fn no_parameters() -> Failure {
         "no physically consistent parameters: the search did not converge",
     );
     problem
-        .help("narrow or remove the bounds in the table `prior`")
+        .help("widen or remove the bounds of `[prior.bounds]`: they may contradict the data or each other")
         .into()
 }
 

@@ -5,7 +5,7 @@ use super::explain;
 use super::home::{Home, approach};
 use super::mobility::Mobility;
 use super::parasitic::{Parasitic, closed, rated};
-use super::springs::check_lengths;
+use super::springs::check_springs;
 use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
@@ -63,7 +63,9 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     for leg in 0..mechanism.legs.len() {
         check_mobility(description, &mechanism, leg, &mut errors);
     }
-    check_lengths(description, &mechanism, &mut errors);
+    errors.into_result(())?;
+    let mut errors = Diagnostics::new();
+    check_springs(description, &mechanism, &mut errors);
     errors.into_result(())?;
     keep_actuators(description, &mut mechanism)?;
     check_held(description, &mechanism)?;

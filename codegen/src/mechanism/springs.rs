@@ -1,6 +1,7 @@
-//! Lengths of springs between points, which must not vanish at home.
+//! Lengths of springs between points, which must neither vanish at home nor be constant.
 
 use super::numeric::platform_frame;
+use super::states::{State, random_states};
 use super::{Mechanism, PointSpring, SpringBody, SpringEnd};
 use nalgebra::Point3;
 use overact_description::Description;
@@ -8,6 +9,13 @@ use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
 
 /// Length relative to the robot's below which it counts as zero.
 const NOTHING: f64 = 1e-6;
+
+/// Change of a length, relative to the robot's, below which it counts as constant.
+const CONSTANT: f64 = 1e-9;
+
+/// States at which a length has to differ from that of home, and their seed.
+const STATES: usize = 4;
+const SEED: u64 = 1;
 
 impl Mechanism {
     /// Length of a spring in a configuration, m.
@@ -29,24 +37,60 @@ impl Mechanism {
     }
 }
 
-/// Reports springs whose points coincide at home: their forces then have no direction.
-pub(super) fn check_lengths(
+/// Reports springs whose force has no direction or no value at home, and those without effect.
+pub(super) fn check_springs(
     description: &Description,
     mechanism: &Mechanism,
     errors: &mut Diagnostics,
 ) {
-    let least = NOTHING * mechanism.length_scale();
+    if mechanism.springs.is_empty() {
+        return;
+    }
+    let scale = mechanism.length_scale();
+    let states = random_states(mechanism, STATES, SEED);
     let (pose, joints) = (&mechanism.home.pose, &mechanism.home.joints);
     for (given, spring) in description.springs.iter().zip(&mechanism.springs) {
-        if mechanism.spring_length(spring, pose, joints) > least {
+        let length = mechanism.spring_length(spring, pose, joints);
+        let varies = |state: &State| {
+            let there = mechanism.spring_length(spring, &state.pose, &state.joints);
+            (there - length).abs() > CONSTANT * scale
+        };
+        let force = spring.force.as_ref().map(|force| &force.formula);
+        let mut formulas = force.into_iter().chain(&spring.known);
+        let has_value = formulas.all(|formula| formula.value(length).is_finite());
+        let name = &spring.name;
+        let (message, help) = if length <= NOTHING * scale {
+            (
+                format!("the points of the spring `{name}` coincide at the home configuration"),
+                "its force has no direction there: correct `at` of `from` or `to`, or choose another home configuration",
+            )
+        } else if !has_value {
+            (
+                format!(
+                    "the force of the spring `{name}` has no value at its length of home, {} m",
+                    significant(length)
+                ),
+                "a root of a negative number or a division by zero: correct `force` or `known`, or `at` of its points",
+            )
+        } else if !states.iter().any(varies) {
+            (
+                format!(
+                    "the length of the spring `{name}` is constant, {} m: its force has no effect",
+                    significant(length)
+                ),
+                "its points are on bodies that keep their distance, or on the axis between them: correct `body` or `at`, or leave the spring out",
+            )
+        } else {
             continue;
-        }
-        let message = format!(
-            "the points of the spring `{}` coincide at the home configuration",
-            spring.name
-        );
-        let help = "its force has no direction there: correct `at` of `from` or `to`, or choose another home configuration";
+        };
         let error = Diagnostic::new(Code::SPRING, message, given.name.span.clone());
         errors.push(error.help(help));
     }
+}
+
+/// A number with four digits.
+fn significant(value: f64) -> String {
+    let text = format!("{value:.3e}");
+    text.parse::<f64>()
+        .map_or(text, |rounded| rounded.to_string())
 }

@@ -32,7 +32,7 @@ super::codes! {
         cause "Names of robots, legs, joints and motors become names in Rust and C and column headings. This name is invalid there, or already has a meaning."
         cure "Use letters, digits and underscores, start with a letter, and avoid keywords."
     SAME_NAME 111 "a name used twice"
-        cause "Two legs, joints, motors, runs or entries of a list have the same name, so references are ambiguous."
+        cause "Two legs, joints, motors, runs or entries of a list have the same name, so references are ambiguous. Or a function of a frame would have the name of another function or table."
         cure "Rename one of them, or delete the duplicate."
     UNKNOWN_NAME 112 "an unknown name"
         cause "The key refers to a leg, joint, actuator, body, coordinate, run or parameter that the robot does not have."

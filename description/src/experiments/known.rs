@@ -83,7 +83,7 @@ pub(crate) fn gains(item: &Item<'_, '_>, known: &[(String, f64)], robot: &Invent
     }
     let is_known = robot.springs.iter().any(|spring| spring.known.is_some());
     if is_known || robot.legs.iter().any(Leg::has_known_torques) {
-        let help = "leave out `gains`, or the key `known` of the joints";
+        let help = "leave out `gains`, or the key `known` of joints and springs";
         item.context
             .report(item.error(Code::CONTRADICTION, KNOWN_TORQUES).help(help));
         return false;

@@ -7,6 +7,9 @@ use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::{Scope, is_word};
 use overact_core::{FrameQuantity, Function};
 
+/// Tables of the generated code whose names end like those of a frame's functions.
+const TABLES: [&str; 1] = ["home_pose"];
+
 /// Name of the platform as a body.
 const PLATFORM: &str = "platform";
 
@@ -60,16 +63,15 @@ fn check_name(item: &Item<'_, '_>, name: &Spanned<String>) -> bool {
     }
     let names = FrameQuantity::ALL.map(|quantity| format!("{}_{}", name.value, quantity.name()));
     let is_taken = |own: &&String| {
-        Function::ALL
-            .iter()
-            .any(|known| known.name() == own.as_str())
+        let mut functions = Function::ALL.iter();
+        functions.any(|known| known.name() == own.as_str()) || TABLES.contains(&own.as_str())
     };
     let Some(taken) = names.iter().find(is_taken) else {
         return true;
     };
     let message = format!("a frame cannot be named `{}`", name.value);
     let error = Diagnostic::new(Code::SAME_NAME, message, name.span.clone());
-    let error = error.label(format!("every robot has a function `{taken}`"));
+    let error = error.label(format!("the code of every robot already has `{taken}`"));
     let help = format!("choose another name, for instance `{}_frame`", name.value);
     item.context.report(error.help(help));
     false
@@ -119,7 +121,6 @@ impl Bodies<'_> {
         if self.has_platform {
             all.push((PLATFORM.to_owned(), FrameBody::Platform));
         }
-        let is_single = !self.has_platform && self.legs.len() == 1;
         let mut long = Vec::new();
         for (leg, own) in self.legs.iter().enumerate() {
             let joints = own.joints.iter().enumerate();
@@ -132,9 +133,7 @@ impl Bodies<'_> {
                 long.push((name, body));
             }
         }
-        if !is_single {
-            all.append(&mut long);
-        }
+        all.append(&mut long);
         all
     }
 }

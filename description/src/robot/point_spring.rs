@@ -117,6 +117,7 @@ impl Reader<'_> {
             let item = table.require(key, place)?;
             self.end(&item)
         });
+        self.check_constants(table);
         let variables = self.variables();
         let (force, known) = (table.get("force"), table.get("known"));
         if force.is_none() && known.is_none() {
@@ -146,6 +147,19 @@ impl Reader<'_> {
             known,
             span: table.span.clone(),
         })
+    }
+
+    /// Reports constants that have the names of the length and its rate.
+    fn check_constants(&self, table: &Table<'_, '_>) {
+        for (name, of_spring) in [("l", "length"), ("dl", "rate of the length")] {
+            if self.scope.contains(name) {
+                let message =
+                    format!("the constant `{name}` has the name of the {of_spring} of springs");
+                let help = "rename the constant: in `force` and `known`, `l` and `dl` are the spring's length and its rate";
+                let error = Diagnostic::new(Code::BAD_NAME, message, table.span.clone());
+                table.context.report_once(error.help(help));
+            }
+        }
     }
 
     /// The constants, and the length and its rate.

@@ -136,6 +136,6 @@ fn only_joints_that_move_have_friction_and_known_torques() {
 fn gains_are_not_identified_beside_known_torques() {
     let table = "[identification]\ngains = true\nknown = { zz_1 = \"1 kg m^2\" }";
     let text = format!("{}{table}\n", single("", "known = \"1 N m\""));
-    let expected = "12:9 gains are not identified if torques of joints are known: a gain scales measured torques, not known ones; leave out `gains`, or the key `known` of the joints";
+    let expected = "12:9 gains are not identified if torques of joints are known: a gain scales measured torques, not known ones; leave out `gains`, or the key `known` of joints and springs";
     assert_eq!(listed(&text), [expected]);
 }

@@ -28,7 +28,7 @@ pub use prepare::{PreparedSystem, prepare};
 pub use progress::Progress;
 pub use study::{RankedProjection, Study, study};
 
-use consistency::consistent_all;
+use consistency::{consistent_all, contradicted_bounds};
 use cross_validation::{Predictor, cross_validate};
 use estimates::estimate_all;
 use prepare::{check_runs, prepared_warnings};
@@ -121,6 +121,11 @@ pub fn identify_after(
     let (errors_in_regressor, alternatives) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
     let (consistent, inconsistent) = consistent_all(&prepared, &estimates, &settings.prior);
+    warnings.extend(
+        consistent
+            .iter()
+            .filter_map(|(_, own)| contradicted_bounds(own, &settings.prior)),
+    );
     let least_squares = estimates
         .iter()
         .map(|(projection, one)| Predictor::of_estimate(*projection, one));

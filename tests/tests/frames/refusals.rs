@@ -45,11 +45,12 @@ fn names_of_other_functions_are_refused() -> Result<(), Failure> {
         ("inverse", "inverse_jacobian"),
         ("project", "project_torques"),
         ("centre_of_mass", "centre_of_mass_jacobian"),
+        ("home", "home_pose"),
     ] {
         let text = format!("[frame.{name}]\n");
         let parts = [
             &format!("a frame cannot be named `{name}`"),
-            &format!("every robot has a function `{taken}`"),
+            &format!("the code of every robot already has `{taken}`"),
             "choose another name",
         ];
         says("dualv", &text, &parts.map(|part| part as &str))?;

@@ -53,7 +53,15 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
     let directions = noise
         .and_then(Option::as_ref)
         .and_then(|noise| noise.directions(system, &estimate.weights, &columns, &values));
+    let is_basic = !context.settings.checks.has_fault_hypotheses();
     let Some(directions) = directions else {
+        if is_basic && spoiled.is_empty() {
+            let words = "the equations separate all columns; position noise needs `--checks all`";
+            return new(String::from(words));
+        }
+        if is_basic {
+            return refused(estimate, new(description(context, &spoiled)), spoiled);
+        }
         let words = "whether the runs move every coordinate is not tested: the regressor cannot be evaluated with noise in the positions";
         return new(String::from(words)).found();
     };
@@ -76,14 +84,17 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
             significant(100.0 * largest, 2)
         ));
     }
+    refused(estimate, check(description(context, &spoiled)), spoiled)
+}
+
+/// A check that fails for these parameters.
+fn refused(estimate: &Estimate, check: Check, spoiled: Vec<String>) -> Check {
     let grade = if 2 * spoiled.len() > estimate.parameters.len() {
         Grade::DoNotUse
     } else {
         Grade::UseListed
     };
-    check(description(context, &spoiled))
-        .with_grade(grade)
-        .with_unusable_parameters(spoiled)
+    check.with_grade(grade).with_unusable_parameters(spoiled)
 }
 
 impl Directions {
