@@ -120,14 +120,20 @@ fn a_spring_of_constant_length_has_no_effect() {
     // From the base joint's axis to a point of the link that turns about it.
     let between_links = "[[spring]]\nname = \"stiff\"\nfrom = { body = \"left.1\" }\nto = { body = \"left.2\", at = [0, 0, \"0.1 m\"] }\nforce = \"l\"\n";
     let error = refused(between_links);
-    assert!(error.contains("the length of the spring `stiff` is constant"), "{error}");
+    assert!(
+        error.contains("the length of the spring `stiff` is constant"),
+        "{error}"
+    );
 }
 
 #[test]
 fn a_force_without_value_at_home_is_named() {
     let text = "[[spring]]\nname = \"root\"\nfrom = { body = \"ground\", at = [\"0.1 m\", \"1 m\", 0] }\nto = { body = \"left.2\", at = [\"0.1 m\", 0, 0] }\nforce = \"sqrt(l^2 - (100 m)^2)\"\n";
     let error = refused(text);
-    assert!(error.contains("the force of the spring `root` has no value"), "{error}");
+    assert!(
+        error.contains("the force of the spring `root` has no value"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -139,5 +145,8 @@ fn a_constant_does_not_hide_the_length_of_a_spring() {
     let spring = "[[spring]]\nname = \"s\"\nfrom = { body = \"ground\", at = [\"0.3 m\", 0, 0] }\nto = { body = \"3\", at = [\"0.1 m\", 0, 0] }\nforce = \"l\"\n";
     let error = Robot::from_text("rx90.toml", &format!("{text}\n{spring}")).expect_err("an error");
     let error = error.to_string();
-    assert!(error.contains("the constant `l` has the name of the length of springs"), "{error}");
+    assert!(
+        error.contains("the constant `l` has the name of the length of springs"),
+        "{error}"
+    );
 }

@@ -256,6 +256,9 @@ static void discount(overact_online_filter *filter, number factor)
 {
     const int p = filter->parameters;
     const number root = ROOT(factor);
+    if (!(factor < (number)1.0)) {
+        return;
+    }
     for (int i = 0; i < (p * p); i++) {
         filter->factor[i] = scaled(filter->factor[i], root);
     }

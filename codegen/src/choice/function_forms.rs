@@ -29,7 +29,7 @@ impl Missing {
     fn of(sentence: String) -> Self {
         Self {
             sentence,
-            help: "`overact inspect` lists the functions that it has".to_owned(),
+            help: "`overact inspect` lists the functions that it has; those on request, such as `total_mass`, are in docs/functions.md".to_owned(),
         }
     }
 }

@@ -218,12 +218,20 @@ impl<'c, 't> Item<'c, 't> {
 
     /// Reports a wrong type.
     pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
+        self.mismatch_with(expected, None)
+    }
+
+    /// Reports a value of another type than expected, with a remedy.
+    fn mismatch_with<T>(&self, expected: &str, help: Option<String>) -> Option<T> {
         let found = type_name(self.value);
         let message = format!("`{}`: expected {expected}, found {found}", self.key.value);
-        self.context.report_once(
-            self.error(Code::WRONG_TYPE, message)
-                .label(format!("this is {found}")),
-        );
+        let error = self
+            .error(Code::WRONG_TYPE, message)
+            .label(format!("this is {found}"));
+        self.context.report_once(match help {
+            Some(help) => error.help(help),
+            None => error,
+        });
         None
     }
 
@@ -327,13 +335,27 @@ impl<'c, 't> Item<'c, 't> {
     /// The value as a table; `what` is its name in messages.
     pub(crate) fn table(&self, what: impl Into<String>) -> Option<Table<'c, 't>> {
         let DeValue::Table(entries) = self.value else {
-            return self.mismatch("a table");
+            let is_head = match self.value {
+                DeValue::Array(list) => {
+                    let mut all = list.iter().map(|one| one.get_ref());
+                    !list.is_empty() && all.all(|one| matches!(one, DeValue::Table(_)))
+                }
+                _ => false,
+            };
+            let key = &self.key.value;
+            let help = is_head.then(|| format!("write single brackets, [{key}] or [{key}.NAME]"));
+            return self.mismatch_with("a table", help);
         };
         Some(Table::new(self.context, entries, self.span.clone(), what))
     }
 
     /// The elements of an array of tables.
     pub(crate) fn tables(&self, what: &str) -> Vec<Table<'c, 't>> {
+        if matches!(self.value, DeValue::Table(_)) {
+            let help = format!("write double brackets, [[{}]]", self.key.value);
+            self.mismatch_with::<()>("a list of tables", Some(help));
+            return Vec::new();
+        }
         let Some(list) = self.list() else {
             return Vec::new();
         };

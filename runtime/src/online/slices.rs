@@ -247,7 +247,12 @@ impl<'a, T: Float> SliceFilter<'a, T> {
     }
 
     /// Multiplies all information by a factor in (0, 1]. The estimate stays the same.
+    ///
+    /// With a factor of 1 nothing is forgotten, as without a rule.
     pub(super) fn discount(&mut self, factor: T) {
+        if factor >= T::of(1.0) {
+            return;
+        }
         triangle::scale(self.factor, self.side, factor.sqrt());
         self.weigh_residuals(factor);
         self.keep_regular();
