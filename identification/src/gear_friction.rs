@@ -4,48 +4,43 @@
 //! drive moves the load and -1 if the load moves the drive, the drive delivers
 //!
 //! ```text
-//! y = x (1 + μ σ),   μ = μ_d for σ = 1, μ_b for σ = -1.
+//! y = x (1 + μ σ).
 //! ```
 //!
-//! μ_d is the coefficient of driving, with the efficiency 1/(1 + μ_d), and μ_b that of
-//! back-driving, with the efficiency 1 - μ_b. x contains everything else that the model describes:
-//! inertia, gravity, springs, and Coulomb and viscous friction. (P. Hamon, M. Gautier, P. Garrec,
-//! *Dynamic identification of robots with a dry friction model depending on load and velocity*,
-//! IROS 2010, have this friction with a single coefficient.)
+//! The efficiency is 1/(1 + μ) in one direction and 1 - μ in the other. x contains everything else
+//! that the model describes: inertia, gravity, springs, and Coulomb and viscous friction.
+//! (P. Hamon, M. Gautier, P. Garrec, *Dynamic identification of robots with a dry friction model
+//! depending on load and velocity*, IROS 2010.)
+//!
+//! Separate coefficients μ_d and μ_b of both directions differ from their mean like a wrong gain of
+//! the drive: y = x (1 + κ + μ σ) with κ = (μ_d - μ_b)/2. A common factor of all torques and all
+//! parameters changes no equation, so κ needs known masses; it is zero here.
 //!
 //! Measured torques y are converted to x before anything else, so that all later stages have a
 //! model without gear friction.
 
 use serde::{Deserialize, Serialize};
 
-/// Coefficients of one gear.
+/// Friction of one gear.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GearFriction {
-    /// μ_d, if the drive moves the load.
-    pub driving: f64,
-    /// μ_b, if the load moves the drive; below 1.
-    pub back_driving: f64,
+    /// Coefficient μ, below 1.
+    pub coefficient: f64,
 }
 
 impl GearFriction {
     /// Whether the gear is free of losses.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        self.driving == 0.0 && self.back_driving == 0.0
+        self.coefficient == 0.0
     }
 
     /// 1 + μ σ for a torque and the sign of its joint's velocity, which is -1 to 1.
     ///
-    /// x and y have the same sign, since μ_b is below 1.
+    /// x and y have the same sign, since μ is below 1.
     fn factor(&self, torque: f64, sign: f64) -> f64 {
-        let sigma = torque.signum() * sign;
-        let coefficient = if sigma > 0.0 {
-            self.driving
-        } else {
-            self.back_driving
-        };
-        1.0 + coefficient * sigma
+        1.0 + self.coefficient * torque.signum() * sign
     }
 
     /// Transmitted torque x of the torque y of the drive (N m, N).
@@ -55,9 +50,9 @@ impl GearFriction {
     /// ```
     /// use overact_identification::GearFriction;
     ///
-    /// let gear = GearFriction { driving: 0.25, back_driving: 0.2 };
+    /// let gear = GearFriction { coefficient: 0.25 };
     /// assert_eq!(gear.transmitted(10.0, 1.0), 8.0); // lifts a load
-    /// assert_eq!(gear.transmitted(8.0, -1.0), 10.0); // lowers it
+    /// assert_eq!(gear.transmitted(6.0, -1.0), 8.0); // lowers it
     /// ```
     #[must_use]
     pub fn transmitted(&self, torque: f64, sign: f64) -> f64 {
@@ -71,11 +66,9 @@ impl GearFriction {
         torque * self.factor(torque, sign)
     }
 
-    /// Derivatives of x with respect to μ_d and μ_b, at a transmitted torque x.
-    pub(crate) fn derivatives(&self, torque: f64, sign: f64) -> [f64; 2] {
-        let sigma = torque.signum() * sign;
-        let own = -torque * sigma / self.factor(torque, sign);
-        if sigma > 0.0 { [own, 0.0] } else { [0.0, own] }
+    /// Derivative of x with respect to μ, at a transmitted torque x.
+    pub(crate) fn derivative(&self, torque: f64, sign: f64) -> f64 {
+        -torque * torque.signum() * sign / self.factor(torque, sign)
     }
 }
 
@@ -84,10 +77,10 @@ mod tests {
     use super::GearFriction;
 
     #[test]
-    fn conversions_are_inverse_and_have_the_stated_derivatives() {
-        let gear = GearFriction {
-            driving: 0.04,
-            back_driving: 0.1,
+    fn conversions_are_inverse_and_have_the_stated_derivative() {
+        let gear = GearFriction { coefficient: 0.1 };
+        let moved = GearFriction {
+            coefficient: 0.1 + 1e-6,
         };
         for (torque, sign) in [
             (3.0, 1.0),
@@ -98,14 +91,8 @@ mod tests {
         ] {
             let delivered = gear.delivered(torque, sign);
             assert!((gear.transmitted(delivered, sign) - torque).abs() < 1e-15);
-            for (place, more) in [(1e-6, 0.0), (0.0, 1e-6)].into_iter().enumerate() {
-                let moved = GearFriction {
-                    driving: gear.driving + more.0,
-                    back_driving: gear.back_driving + more.1,
-                };
-                let change = (moved.transmitted(delivered, sign) - torque) / 1e-6;
-                assert!((change - gear.derivatives(torque, sign)[place]).abs() < 1e-5);
-            }
+            let change = (moved.transmitted(delivered, sign) - torque) / 1e-6;
+            assert!((change - gear.derivative(torque, sign)).abs() < 1e-5);
         }
     }
 }

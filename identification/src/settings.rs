@@ -366,15 +366,10 @@ impl Settings {
             let help = "give the friction of one gear for each actuator, or none";
             return Some(Problem::new(Code::SETTINGS, message).help(help));
         }
-        let is_possible = |gear: &GearFriction| {
-            gear.driving.is_finite() && gear.driving > -1.0 && gear.back_driving.abs() < 1.0
-        };
+        let is_possible = |gear: &GearFriction| gear.coefficient.abs() < 1.0;
         let bad = gears.iter().find(|gear| !is_possible(gear))?;
-        let message = format!(
-            "a gear has the friction coefficients {} and {}",
-            bad.driving, bad.back_driving
-        );
-        let help = "the coefficient of driving is above -1, that of back-driving between -1 and 1";
+        let message = format!("a gear has the friction coefficient {}", bad.coefficient);
+        let help = "it is a part of the transmitted torque, below 1";
         Some(Problem::new(Code::SETTINGS, message).help(help))
     }
 

@@ -111,16 +111,10 @@ fn add_gains<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
         rows.add("gain", name, "deviation", gain.deviation);
     }
     for drive in &identification.gear_friction {
-        let both = [
-            ("driving", drive.driving),
-            ("back_driving", drive.back_driving),
-        ];
-        for (motion, coefficient) in both {
-            if let Some(own) = coefficient {
-                let name = drive.actuator.as_str();
-                rows.add("gear_friction", name, motion, own.value);
-                rows.add("gear_friction_deviation", name, motion, own.deviation);
-            }
+        if let Some(own) = drive.coefficient {
+            let name = drive.actuator.as_str();
+            rows.add("gear_friction", name, "coefficient", own.value);
+            rows.add("gear_friction", name, "deviation", own.deviation);
         }
     }
     for one in &identification.gain_parameters {

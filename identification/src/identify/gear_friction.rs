@@ -1,9 +1,9 @@
 //! Identification of the friction of gears, together with the parameters.
 //!
 //! With the coefficients μ of an iteration, the torques x of the gears have the model x = W χ. An
-//! error δ of μ_j adds to x the column σ |x_j|, in which x_j is the torque that the estimate
-//! predicts. The predicted torque has none of the noise of the measured one, so it is its own
-//! instrument. The score test of all these columns together gives δ with its covariance, for
+//! error δ of μ_j adds to x_j the column |x_j| sign(q̇_j), in which x_j is the torque that the
+//! estimate predicts. The predicted torque has none of the noise of the measured one, so it is its
+//! own instrument. The score test of all these columns together gives δ with its covariance, for
 //! correlated residuals as well. Corrected coefficients give other torques, and the steps are
 //! repeated until δ is small against its standard deviation.
 //!
@@ -24,7 +24,7 @@ use super::{
 use crate::{
     assessment::{
         RunMonitor,
-        hypotheses::{Group, ScoreTest, Shape, WaldTest, gear_hypotheses},
+        hypotheses::{Group, ScoreTest, WaldTest, gear_hypotheses},
     },
     gear_friction::GearFriction,
     regression::{projection::Projection, torque_uncertainty::TorqueCorrection},
@@ -38,12 +38,12 @@ const MOST_STEPS: usize = 12;
 const SMALL_STEP: f64 = 0.02;
 
 /// Standard deviation above which a coefficient counts as not determined.
-const UNDETERMINED: f64 = 0.1;
+const UNDETERMINED: f64 = 0.05;
 
 /// Probability that an interval misses the true value.
 const MISSES: f64 = 0.05;
 
-/// Largest magnitude of a coefficient during the iteration; that of back-driving is below 1.
+/// Largest magnitude of a coefficient during the iteration.
 const LARGEST: f64 = 0.9;
 
 /// A coefficient of gear friction.
@@ -62,10 +62,8 @@ pub struct GearCoefficient {
 pub struct DriveGearFriction {
     /// Name of the actuator.
     pub actuator: String,
-    /// Coefficient if the drive moves the load; `None` if the data do not determine it.
-    pub driving: Option<GearCoefficient>,
-    /// Coefficient if the load moves the drive; `None` if the data do not determine it.
-    pub back_driving: Option<GearCoefficient>,
+    /// Coefficient μ; `None` if the data do not determine it.
+    pub coefficient: Option<GearCoefficient>,
 }
 
 /// Estimated friction of all gears.
@@ -73,8 +71,8 @@ pub struct DriveGearFriction {
 pub struct GearFrictionEstimate {
     /// Each drive.
     pub drives: Vec<DriveGearFriction>,
-    /// Actuator and shape of each determined coefficient.
-    coefficients: Vec<(usize, Shape)>,
+    /// Actuators with a determined coefficient.
+    determined: Vec<usize>,
     /// Covariance of these coefficients.
     covariance: DMatrix<f64>,
 }
@@ -83,42 +81,31 @@ impl GearFrictionEstimate {
     /// Friction of each gear, for [`Settings::gear_friction`]; undetermined coefficients are zero.
     #[must_use]
     pub fn gears(&self) -> Vec<GearFriction> {
-        let value = |one: Option<GearCoefficient>| one.map_or(0.0, |one| one.value);
-        let drives = self.drives.iter();
-        drives
-            .map(|drive| GearFriction {
-                driving: value(drive.driving),
-                back_driving: value(drive.back_driving),
-            })
-            .collect()
+        let gear = |drive: &DriveGearFriction| GearFriction {
+            coefficient: drive.coefficient.map_or(0.0, |one| one.value),
+        };
+        self.drives.iter().map(gear).collect()
     }
 
     /// Warnings about coefficients that the data do not determine, or that are negative.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let mut all = Vec::new();
-        for drive in &self.drives {
-            let both = [
-                ("driving", drive.driving),
-                ("back-driving", drive.back_driving),
-            ];
-            for (name, coefficient) in both {
-                let actuator = &drive.actuator;
-                match coefficient {
-                    None => all.push(format!(
-                        "the friction coefficient of {name} of the gear of `{actuator}` is not determined and counts as zero: the data do not separate it from Coulomb friction and offset; record runs in which the torque changes at equal speeds"
-                    )),
-                    Some(own) if own.interval_95[1] < 0.0 => all.push(format!(
-                        "the friction coefficient of {name} of the gear of `{actuator}` is {}, with the 95 % interval {} to {}: it cannot be negative, so another effect of the torque is missing in the model",
-                        significant(own.value, 2),
-                        significant(own.interval_95[0], 2),
-                        significant(own.interval_95[1], 2)
-                    )),
-                    Some(_) => {}
-                }
+        let warning = |drive: &DriveGearFriction| {
+            let actuator = &drive.actuator;
+            match drive.coefficient {
+                None => Some(format!(
+                    "the friction coefficient of the gear of `{actuator}` is not determined and counts as zero: the data do not separate it from Coulomb friction; record runs in which the torque changes at equal speeds"
+                )),
+                Some(own) if own.interval_95[1] < 0.0 => Some(format!(
+                    "the friction coefficient of the gear of `{actuator}` is {}, with the 95 % interval {} to {}: it cannot be negative, so another effect of the torque is missing in the model",
+                    significant(own.value, 2),
+                    significant(own.interval_95[0], 2),
+                    significant(own.interval_95[1], 2)
+                )),
+                Some(_) => None,
             }
-        }
-        all
+        };
+        self.drives.iter().filter_map(warning).collect()
     }
 
     /// The system with the uncertainty of the coefficients, by which the torques were corrected.
@@ -129,26 +116,17 @@ impl GearFrictionEstimate {
         runs: &[Log],
         settings: &Settings,
     ) -> Result<PreparedSystem, Error> {
-        if self.coefficients.is_empty() {
+        if self.determined.is_empty() {
             return Ok(prepared);
         }
         let gears = self.gears();
         let derivative = |number: usize, torque: f64, velocity: f64| {
-            let (actuator, shape) = self.coefficients[number];
-            let sign = if velocity == 0.0 {
-                0.0
-            } else {
-                velocity.signum()
-            };
-            let [driving, back_driving] = gears[actuator].derivatives(torque, sign);
-            if shape == Shape::Driving {
-                driving
-            } else {
-                back_driving
-            }
+            let is_moving = velocity != 0.0;
+            let sign = if is_moving { velocity.signum() } else { 0.0 };
+            gears[self.determined[number]].derivative(torque, sign)
         };
         let correction = TorqueCorrection {
-            actuators: self.coefficients.iter().map(|one| one.0).collect(),
+            actuators: self.determined.clone(),
             covariance: self.covariance.clone(),
             derivative: &derivative,
         };
@@ -167,40 +145,30 @@ pub fn gear_friction(
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<GearFrictionEstimate, Error> {
     let names = model.info().actuators;
-    let shapes = [Shape::Driving, Shape::BackDriving];
-    let both = |actuator| shapes.map(|shape| (actuator, shape));
     let mut search = Search {
         model,
         dataset,
         settings,
         gears: vec![GearFriction::default(); names.len()],
-        coefficients: (0..names.len()).flat_map(both).collect(),
+        sought: (0..names.len()).collect(),
     };
-    let mut last = None;
     for _ in 0..MOST_STEPS {
         let Some(step) = search.step(progress)? else {
-            break;
+            search.sought.clear();
+            return Ok(search.estimate(names, None));
         };
         if search.without_undetermined(&step) {
             continue;
         }
-        let is_small = search.correct(&step);
-        last = Some(step);
-        if is_small {
-            return Ok(search.estimate(names, last.as_ref()));
+        if search.correct(&step) {
+            return Ok(search.estimate(names, Some(&step)));
         }
     }
-    if last.is_none() {
-        search.gears.fill(GearFriction::default());
-        return Ok(search.estimate(names, None));
-    }
+    let message = "the friction of the gears is not determined: the iteration does not converge";
     let help = "identify without `gear_friction`; record longer runs with varying loads";
-    Err(Problem::new(
-        Code::NOTHING_DETERMINED,
-        "the friction of the gears is not determined: the iteration does not converge",
-    )
-    .help(help)
-    .into())
+    Err(Problem::new(Code::NOTHING_DETERMINED, message)
+        .help(help)
+        .into())
 }
 
 /// Corrections δ of the coefficients.
@@ -213,20 +181,27 @@ struct Step {
     separable: Vec<bool>,
 }
 
+impl Step {
+    /// Standard deviation of a coefficient.
+    fn deviation(&self, number: usize) -> f64 {
+        self.covariance[(number, number)].sqrt()
+    }
+}
+
 /// State of the iteration.
 struct Search<'a> {
     model: &'a dyn Model,
     dataset: &'a Dataset<'a>,
     settings: &'a Settings,
     gears: Vec<GearFriction>,
-    /// Actuator and shape of each estimated coefficient.
-    coefficients: Vec<(usize, Shape)>,
+    /// Actuators whose coefficients are estimated.
+    sought: Vec<usize>,
 }
 
 impl Search<'_> {
     /// Estimates the corrections; `None` if the data separate no coefficient from the model.
     fn step(&self, progress: &dyn Fn(Progress<'_>)) -> Result<Option<Step>, Error> {
-        if self.coefficients.is_empty() {
+        if self.sought.is_empty() {
             return Ok(None);
         }
         let settings = Settings {
@@ -254,7 +229,7 @@ impl Search<'_> {
             columns: &prepared.columns,
             base: &prepared.base.columns,
             estimate: &estimates.base,
-            hypotheses: gear_hypotheses(info.sizes.actuators, &self.coefficients),
+            hypotheses: gear_hypotheses(info.sizes.actuators, &self.sought),
             position_ranges: &position_ranges(&watched.collect::<Vec<_>>()),
             periodic_motions: &prepared.periodic_motions,
             settings: &settings,
@@ -267,7 +242,7 @@ impl Search<'_> {
 
     /// The result of a test as corrections of all coefficients.
     fn step_of(&self, found: &WaldTest) -> Step {
-        let count = self.coefficients.len();
+        let count = self.sought.len();
         let mut step = Step {
             sizes: vec![0.0; count],
             covariance: DMatrix::zeros(count, count),
@@ -281,59 +256,44 @@ impl Search<'_> {
                 step.covariance[(place, other)] = found.covariance[(row, column)];
             }
         }
-        // x changes by -σ x/(1 + μ σ) with μ.
-        for (number, &(actuator, shape)) in self.coefficients.iter().enumerate() {
-            let factor = match shape {
-                Shape::Driving => 1.0 + self.gears[actuator].driving,
-                _ => 1.0 - self.gears[actuator].back_driving,
-            };
-            step.sizes[number] *= factor;
-            step.covariance.row_mut(number).scale_mut(factor);
-            step.covariance.column_mut(number).scale_mut(factor);
-        }
         step
     }
 
     /// Excludes coefficients that a step does not determine; whether there are any.
     fn without_undetermined(&mut self, step: &Step) -> bool {
-        let is_determined = |number: usize| {
-            let deviation = step.covariance[(number, number)].sqrt();
-            step.separable[number] && deviation < UNDETERMINED
-        };
-        let kept = (0..self.coefficients.len()).filter(|number| is_determined(*number));
-        let kept: Vec<(usize, Shape)> = kept.map(|number| self.coefficients[number]).collect();
-        if kept.len() == self.coefficients.len() {
+        let is_determined =
+            |number: &usize| step.separable[*number] && step.deviation(*number) < UNDETERMINED;
+        let kept = (0..self.sought.len()).filter(is_determined);
+        let kept: Vec<usize> = kept.map(|number| self.sought[number]).collect();
+        if kept.len() == self.sought.len() {
             return false;
         }
-        for &(actuator, shape) in &self.coefficients {
-            if !kept.contains(&(actuator, shape)) {
-                *coefficient(&mut self.gears[actuator], shape) = 0.0;
+        for (actuator, gear) in self.gears.iter_mut().enumerate() {
+            if !kept.contains(&actuator) {
+                *gear = GearFriction::default();
             }
         }
-        self.coefficients = kept;
+        self.sought = kept;
         true
     }
 
     /// Adds the corrections; whether all are small.
     fn correct(&mut self, step: &Step) -> bool {
         let mut is_small = true;
-        for (number, &(actuator, shape)) in self.coefficients.iter().enumerate() {
-            let own = coefficient(&mut self.gears[actuator], shape);
+        for (number, &actuator) in self.sought.iter().enumerate() {
+            let own = &mut self.gears[actuator].coefficient;
             *own = (*own + step.sizes[number]).clamp(-LARGEST, LARGEST);
-            let deviation = step.covariance[(number, number)].sqrt();
-            is_small &= step.sizes[number].abs() <= SMALL_STEP * deviation;
+            is_small &= step.sizes[number].abs() <= SMALL_STEP * step.deviation(number);
         }
         is_small
     }
 
     /// The result, with the covariance of the last step.
     fn estimate(self, names: &[&str], step: Option<&Step>) -> GearFrictionEstimate {
-        let of = |actuator: usize, shape: Shape| -> Option<GearCoefficient> {
+        let of = |actuator: usize| -> Option<GearCoefficient> {
             let step = step?;
-            let mut all = self.coefficients.iter();
-            let number = all.position(|own| *own == (actuator, shape))?;
-            let value = *coefficient(&mut self.gears[actuator].clone(), shape);
-            let deviation = step.covariance[(number, number)].sqrt();
+            let number = self.sought.iter().position(|own| *own == actuator)?;
+            let (value, deviation) = (self.gears[actuator].coefficient, step.deviation(number));
             let half = step.quantile * deviation;
             Some(GearCoefficient {
                 value,
@@ -346,20 +306,11 @@ impl Search<'_> {
             drives: drives
                 .map(|(actuator, name)| DriveGearFriction {
                     actuator: (*name).to_owned(),
-                    driving: of(actuator, Shape::Driving),
-                    back_driving: of(actuator, Shape::BackDriving),
+                    coefficient: of(actuator),
                 })
                 .collect(),
             covariance: step.map_or_else(|| DMatrix::zeros(0, 0), |step| step.covariance.clone()),
-            coefficients: self.coefficients,
+            determined: self.sought,
         }
-    }
-}
-
-/// The coefficient of this shape.
-fn coefficient(gear: &mut GearFriction, shape: Shape) -> &mut f64 {
-    match shape {
-        Shape::Driving => &mut gear.driving,
-        _ => &mut gear.back_driving,
     }
 }

@@ -67,8 +67,6 @@ pub(crate) enum FaultHypothesis {
     AllTorques(Shape),
     /// Crosstalk between all neighbours, each of its own size.
     AllCrosstalk,
-    /// Load-dependent friction of all gears, each of its own size.
-    AllGears,
 }
 
 impl FaultHypothesis {
@@ -94,8 +92,7 @@ impl FaultHypothesis {
     fn is_joined_by(self, all: Self) -> bool {
         match (all, self) {
             (Self::AllTorques(shape), Self::Torque(_, own)) => shape == own,
-            (Self::AllCrosstalk, Self::Crosstalk { .. })
-            | (Self::AllGears, Self::Torque(_, Shape::Driving | Shape::BackDriving)) => true,
+            (Self::AllCrosstalk, Self::Crosstalk { .. }) => true,
             _ => false,
         }
     }
@@ -105,7 +102,7 @@ impl FaultHypothesis {
         match self {
             Self::Torque(_, Shape::Waves | Shape::LoadWaves) => WAVES,
             Self::Potential(joints) => joints.products(),
-            Self::AllTorques(_) | Self::AllCrosstalk | Self::AllGears => 0,
+            Self::AllTorques(_) | Self::AllCrosstalk => 0,
             _ => 1,
         }
     }
@@ -238,19 +235,20 @@ pub(crate) fn fault_hypotheses(
     all
 }
 
-/// The hypotheses that gears have friction: for each coefficient its actuator and shape.
+/// The hypotheses that the gears of some drives have load-dependent friction.
 ///
 /// The last one joins all; constant torques are the columns from which others are made.
-pub(crate) fn gear_hypotheses(
-    actuators: usize,
-    coefficients: &[(usize, Shape)],
-) -> Vec<FaultHypothesis> {
-    let constant = (0..actuators).map(|i| FaultHypothesis::Torque(i, Shape::Constant));
-    let gears = coefficients.iter();
-    let gears = gears.map(|(i, shape)| FaultHypothesis::Torque(*i, *shape));
-    constant
-        .chain(gears)
-        .chain([FaultHypothesis::AllGears])
+pub(crate) fn gear_hypotheses(actuators: usize, gears: &[usize]) -> Vec<FaultHypothesis> {
+    let of_each = (0..actuators).flat_map(|i| {
+        let own = gears.contains(&i).then_some(Shape::Load);
+        let shapes = [Some(Shape::Constant), own];
+        shapes
+            .into_iter()
+            .flatten()
+            .map(move |shape| FaultHypothesis::Torque(i, shape))
+    });
+    of_each
+        .chain([FaultHypothesis::AllTorques(Shape::Load)])
         .collect()
 }
 
@@ -385,8 +383,7 @@ impl Sample<'_> {
             // Their columns follow after decimation, or are those of the faults that they join.
             FaultHypothesis::Potential(_)
             | FaultHypothesis::AllTorques(_)
-            | FaultHypothesis::AllCrosstalk
-            | FaultHypothesis::AllGears => 0.0,
+            | FaultHypothesis::AllCrosstalk => 0.0,
         }
     }
 }

@@ -41,10 +41,6 @@ pub(crate) enum Shape {
     Waves,
     /// The torque times these waves: ripple of the torque constant.
     LoadWaves,
-    /// Load-dependent friction while the drive moves the load.
-    Driving,
-    /// Load-dependent friction while the load moves the drive.
-    BackDriving,
 }
 
 /// Number of cosines over the range of a position, of 1/2, 1, 3/2 … periods.
@@ -151,8 +147,6 @@ impl Shape {
                 "the square of the torque with its sign, as a torque constant that saturates"
             }
             Self::Waves => "the position in waves, as cogging or an error of a gear",
-            Self::Driving => "the torque while it drives, as friction of a gear",
-            Self::BackDriving => "the torque while it brakes, as friction of a gear",
             Self::LoadWaves => {
                 "the torque in waves of the position, as ripple that grows with the load"
             }
@@ -185,10 +179,7 @@ impl Shape {
             (Self::GainTime, _) => "1/s",
             (Self::Saturation, true) => "1/(N m)",
             (Self::Saturation, false) => "1/N",
-            (
-                Self::Load | Self::Magnitude | Self::LoadWaves | Self::Driving | Self::BackDriving,
-                _,
-            ) => "",
+            (Self::Load | Self::Magnitude | Self::LoadWaves, _) => "",
         }
     }
 
@@ -217,9 +208,6 @@ impl Shape {
                 sign * (-velocity.abs() / (STRIBECK * position_range.speed)).exp()
             }
             Self::Load => sign * torque.abs(),
-            Self::Driving if sign * torque > 0.0 => sign * torque.abs(),
-            Self::BackDriving if sign * torque < 0.0 => sign * torque.abs(),
-            Self::Driving | Self::BackDriving => 0.0,
             Self::Magnitude => torque.abs(),
             Self::Acceleration => acceleration,
             Self::Position => position,
