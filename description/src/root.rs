@@ -7,7 +7,7 @@ use crate::experiments::{controller, data, excitation, experiment, payloads, pri
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::{Leg, Platform, Spanned, actuators};
-use crate::robot::shape::Shape;
+use crate::robot::shape::{MOST_JOINTS, Shape};
 use crate::robot::{chain, frame, leg, platform, point_spring, shape};
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
@@ -15,9 +15,6 @@ use overact_core::StandardParameter;
 use overact_exact::{Number, Ratio};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeTable;
-
-/// Largest number of joints of a robot: the check takes seconds, a model takes too long.
-const MOST_JOINTS: usize = 200;
 
 /// Words that cannot name a type.
 const KEYWORDS: [&str; 51] = [

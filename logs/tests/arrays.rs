@@ -129,6 +129,32 @@ fn zip(members: &[(&str, Vec<u8>)]) -> Vec<u8> {
     file
 }
 
+/// Counts of encoders are often integers of 32 bits.
+#[test]
+fn integers_of_matlab_are_numbers() {
+    let integers = |name: &str, values: [i32; 3]| {
+        let values: Vec<u8> = values
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect();
+        element(14, &[start(12, name, (3, 1)), element(5, &values)].concat())
+    };
+    let file = mat(&[
+        integers("q", [-1, 2, 70_000]),
+        matrix("i", (3, 1), &[0.5, 0.25, 0.125]),
+        structure("s", &[("q", integers("", [4, -5, 6]))]),
+    ]);
+    let torques = vec![0.5, 0.25, 0.125];
+    assert_eq!(
+        numbers(log("a.mat", &file, &mapping("q", "i"))),
+        (vec![-1.0, 2.0, 70_000.0], torques.clone())
+    );
+    assert_eq!(
+        numbers(log("a.mat", &file, &mapping("s.q", "i"))),
+        (vec![4.0, -5.0, 6.0], torques)
+    );
+}
+
 #[test]
 fn matrices_and_structures_of_matlab() {
     let q = [1.0, 2.0, 3.0, 10.0, 20.0, 30.0];

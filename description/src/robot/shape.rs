@@ -12,6 +12,9 @@ use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::{Scope, is_word, name_problem};
 use overact_core::StandardParameter;
 
+/// Largest number of joints of a robot: the check takes seconds, a model takes too long.
+pub(crate) const MOST_JOINTS: usize = 200;
+
 /// A leg's shape.
 pub(crate) struct Shape<'c, 't> {
     pub(crate) name: Spanned<String>,
@@ -113,6 +116,16 @@ fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
     if tables.is_empty() && item.value.as_array().is_some_and(|list| list.is_empty()) {
         item.context
             .report(item.error(Code::LEG_EMPTY_OR_LARGE, "a leg needs at least one joint"));
+    }
+    if tables.len() > MOST_JOINTS {
+        let message = format!(
+            "the robot has {} joints, more than {MOST_JOINTS}",
+            tables.len()
+        );
+        let error = item.error(Code::LEG_EMPTY_OR_LARGE, message);
+        let help = "describe it in parts, each as a robot of its own";
+        item.context.report(error.help(help));
+        return Vec::new();
     }
     // Names come first, to distinguish antecedents from wrong names.
     let names: Vec<_> = tables

@@ -75,7 +75,7 @@ pub(crate) struct Network<'m> {
     /// Number of independent motions.
     pub(crate) mobility: usize,
     /// Joints that the loops allow to move only infinitesimally from home.
-    infinitesimal: Vec<usize>,
+    pub(super) infinitesimal: Vec<usize>,
     /// Platform whose displacements are coordinates.
     pub(crate) platform: Option<Platform>,
 }

@@ -40,6 +40,10 @@ pub(super) fn report(files: &Files, network: &Network<'_>, failure: &Failure, wa
         return;
     }
     let count = network.mobility;
+    if count == 0 {
+        report_rigid(files, network, &open);
+        return;
+    }
     let unit = if count == 1 {
         "coordinate"
     } else {
@@ -82,6 +86,20 @@ pub(super) fn report(files: &Files, network: &Network<'_>, failure: &Failure, wa
             "a chain leads from one known body to another through at most six joints, or three and a ball joint, and all choices of coordinates were tried: fix one of these joints in the file, or remove a closure"
         }
     };
+    match open.first().and_then(|&edge| place(network, edge)) {
+        Some(place) => files.report(place, message, help),
+        None => files.refuse(message, help),
+    }
+}
+
+/// Reports loops whose closures leave no motion.
+fn report_rigid(files: &Files, network: &Network<'_>, open: &[usize]) {
+    let names = { open.iter() }.map(|&edge| network.edge_name(&network.edges[edge]));
+    let message = format!(
+        "the closures leave no motion: {} are held by the loops",
+        listed(names)
+    );
+    let help = "check the axes of these joints, remove a closure that repeats another one, or close the loop by points (`connect`) instead of frames; axes and points that rounding moves are aligned within `--closure-tolerance`";
     match open.first().and_then(|&edge| place(network, edge)) {
         Some(place) => files.report(place, message, help),
         None => files.refuse(message, help),

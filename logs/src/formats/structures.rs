@@ -39,6 +39,10 @@ const OBJECT: u8 = 17;
 /// Classes of numeric arrays.
 const NUMBERS: std::ops::RangeInclusive<u8> = 6..=15;
 
+/// Classes of integers with 32 and 64 bits.
+const INT32: u8 = 12;
+const INT64: u8 = 14;
+
 /// Bytes of an array that determine its class and size, and the class of an object.
 const BEGINNING: usize = 160;
 
@@ -99,7 +103,7 @@ pub(crate) fn arrays(
             (ArrayKind::Numbers, true) => {
                 let packed = Decoder::new(element.data).map_err(|_| String::from(BROKEN))?;
                 let mut unpacked = budget.limited(packed);
-                let mut file = header.chain(&mut unpacked);
+                let mut file = header.chain(order.readable(&beginning, &mut unpacked));
                 let taken = take(OneArray {
                     name: None,
                     label: None,
@@ -110,7 +114,7 @@ pub(crate) fn arrays(
                 taken?;
             }
             (ArrayKind::Numbers, _) => {
-                let mut file = header.chain(element.whole);
+                let mut file = header.chain(order.readable(&beginning, element.whole));
                 take(OneArray {
                     name: None,
                     label: None,
@@ -140,7 +144,8 @@ pub(crate) fn arrays(
             // Fields that are not numeric are skipped like other variables.
             let beginning = &field.array[..field.array.len().min(BEGINNING)];
             if matches!(order.kind(beginning), Ok(ArrayKind::Numbers)) {
-                let mut file = header.chain(field.array.as_slice());
+                let array = field.array.as_slice();
+                let mut file = header.chain(order.readable(beginning, array));
                 take(OneArray {
                     name: Some(field.name.as_str()),
                     label: field.label.as_deref(),
@@ -184,6 +189,31 @@ struct Element<'a> {
     data: &'a [u8],
     /// The element with its tag and padding.
     whole: &'a [u8],
+}
+
+/// An array whose class is stated as another one.
+///
+/// `matfile` 0.5 rejects the numbers of the class of 32-bit integers, but reads them in an array of
+/// 64-bit integers.
+struct Restated<R> {
+    array: R,
+    /// Bytes that have been read.
+    read: usize,
+    /// Place of the class and its other value, if it changes.
+    class: Option<(usize, u8)>,
+}
+
+impl<R: Read> Read for Restated<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.array.read(buffer)?;
+        if let Some((place, class)) = self.class
+            && let Some(byte) = place.checked_sub(self.read).filter(|at| *at < count)
+        {
+            buffer[byte] = class;
+        }
+        self.read += count;
+        Ok(count)
+    }
 }
 
 /// Byte order of a number.
@@ -232,6 +262,18 @@ impl Order {
             Ok(ArrayKind::Numbers)
         } else {
             Err(String::from("the size of an array is none"))
+        }
+    }
+
+    /// An array as the reader of arrays accepts it; `beginning` are its first bytes.
+    fn readable<R: Read>(self, beginning: &[u8], array: R) -> Restated<R> {
+        // Tags of the array and of its flags come first, 8 bytes each.
+        let place = if self.is_little { 16 } else { 19 };
+        let is_int32 = beginning.get(place) == Some(&INT32);
+        Restated {
+            array,
+            read: 0,
+            class: is_int32.then_some((place, INT64)),
         }
     }
 
