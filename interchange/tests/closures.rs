@@ -50,7 +50,9 @@ fn four_bar(axis: &str, beside: f64) -> String {
 
 #[test]
 fn a_tilted_axis_of_a_planar_loop_is_made_parallel_and_reported() {
-    for tilt in ["0 1 3e-7", "0 1 1e-6", "1e-3 1 0"] {
+    for tilt in [
+        "0 1 2e-9", "2e-8 1 0", "5e-8 1 0", "0 1 1e-7", "0 1 3e-7", "0 1 1e-6", "1e-3 1 0",
+    ] {
         let (imported, checked) = imported(&four_bar(tilt, 0.0));
         let mechanism = &checked.mechanism;
         assert_eq!((mechanism.dof(), mechanism.actuated().len()), (1, 1));
