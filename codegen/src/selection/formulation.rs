@@ -2,6 +2,7 @@
 //! and counted.
 
 use super::regressor::Regressor;
+use crate::cas::jacobian::Order;
 use crate::derivation::{
     DerivationError, Formulation, Selection, closure_frame_choices, may_use_any_axes,
     observer_frame_choices,
@@ -40,6 +41,7 @@ pub(super) fn cheapest_formulation(
         by_rows: false,
         masses_at_ends: false,
         over_divisors: false,
+        elimination: Order::default(),
     };
     let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
@@ -137,6 +139,8 @@ pub(super) enum Change {
     MassesAtEnds(bool),
     /// See [`Formulation::over_divisors`].
     OverDivisors(bool),
+    /// See [`Formulation::elimination`].
+    Elimination(Order),
 }
 
 impl Change {
@@ -203,6 +207,7 @@ impl Change {
             Self::ByRows(by_rows) => changed.by_rows = *by_rows,
             Self::MassesAtEnds(at_ends) => changed.masses_at_ends = *at_ends,
             Self::OverDivisors(over) => changed.over_divisors = *over,
+            Self::Elimination(order) => changed.elimination = *order,
         }
         (changed != *formulation).then_some(changed)
     }
@@ -377,7 +382,7 @@ pub(super) const fn has_forces(function: Function) -> bool {
             | Function::ForwardDynamics(_)
             | Function::InverseDynamics(_)
             | Function::InverseDynamicsPreloaded
-    )
+    ) || function.is_derivative()
 }
 
 /// The regressor in a formulation.
