@@ -5,34 +5,23 @@ use crate::cas::Expr;
 use std::collections::BTreeSet;
 
 /// The order in which vertices are eliminated.
+///
+/// Which needs the fewest operations depends on the function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Order {
-    /// The smallest Markowitz degree first: the product of the numbers of incoming and outgoing
-    /// edges. Equal degrees in the order of evaluation.
+    /// The order of evaluation: forward mode.
     #[default]
-    Markowitz,
-    /// The smallest Markowitz degree first, equal ones in the opposite order.
-    MarkowitzFromOutputs,
+    Evaluation,
+    /// The smallest Markowitz degree first: the product of the numbers of incoming and outgoing
+    /// edges. Of equal degrees, the vertex that is evaluated last.
+    SmallestDegree,
     /// The smallest growth of the number of edges first.
     LeastFill,
-    /// The fewest multiplications and additions first.
-    FewestOperations,
-    /// The order of evaluation: forward mode.
-    Forward,
-    /// The opposite order: reverse mode.
-    Reverse,
 }
 
 impl Order {
     /// All orders.
-    pub const ALL: [Self; 6] = [
-        Self::Markowitz,
-        Self::MarkowitzFromOutputs,
-        Self::LeastFill,
-        Self::FewestOperations,
-        Self::Forward,
-        Self::Reverse,
-    ];
+    pub const ALL: [Self; 3] = [Self::Evaluation, Self::SmallestDegree, Self::LeastFill];
 }
 
 /// Rank of a vertex in the elimination; the lowest goes first.
@@ -107,28 +96,9 @@ impl<'a> LinearisedGraph<'a> {
         let place = id.0 as i64;
         let degree = inputs * outputs;
         match order {
-            Order::Markowitz => (degree, place, id),
-            Order::MarkowitzFromOutputs => (degree, -place, id),
+            Order::Evaluation => (0, place, id),
+            Order::SmallestDegree => (degree, -place, id),
             Order::LeastFill => (degree - inputs - outputs, place, id),
-            Order::FewestOperations => (self.operations(id), place, id),
-            Order::Forward => (0, place, id),
-            Order::Reverse => (0, -place, id),
         }
-    }
-
-    /// Multiplications and additions of an elimination.
-    fn operations(&self, id: VertexId) -> i64 {
-        let vertex = &self.vertices[id.0];
-        let is_unit = |label: &Expr<'a>| label.as_number().is_some_and(|n| n.value().abs() == 1.0);
-        let mut count = 0;
-        for to in &vertex.outputs {
-            let inputs = &self.vertices[to.0].inputs;
-            let after = inputs.get(&id).is_some_and(is_unit);
-            for (from, before) in &vertex.inputs {
-                count += i64::from(!after && !is_unit(before));
-                count += i64::from(inputs.contains_key(from));
-            }
-        }
-        count
     }
 }

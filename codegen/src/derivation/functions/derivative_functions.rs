@@ -55,7 +55,7 @@ impl<'a> DerivationContext<'a, '_> {
         for &force in own.forces() {
             graph.output(&[(force, one)]);
         }
-        let rows = graph.derivatives(order(self));
+        let rows = graph.derivatives(self.selection.formulation.elimination);
         let (residual, direct) = rows.split_at(forces.len());
         let columns = (0..twist.len()).map(|k| {
             let mut right: Vec<Expr<'a>> = residual.iter().map(|row| row[k]).collect();
@@ -94,7 +94,7 @@ impl<'a> DerivationContext<'a, '_> {
         let jacobian = self.robot.inverse_jacobian();
         let mut graph = self.graph(variable, &twist);
         residual(&mut graph, &forces, &jacobian, &torques);
-        let rows = graph.derivatives(order(self));
+        let rows = graph.derivatives(self.selection.formulation.elimination);
         let replaced = names
             .iter()
             .zip(acceleration)
@@ -141,12 +141,5 @@ fn residual<'a>(
         let loads = jacobian.iter().zip(torques);
         terms.extend(loads.map(|(row, &torque)| (row[k], -torque)));
         graph.output(&terms);
-    }
-}
-
-fn order(c: &DerivationContext<'_, '_>) -> crate::cas::jacobian::Order {
-    match std::env::var("ORDER") {
-        Ok(k) => crate::cas::jacobian::Order::ALL[k.parse::<usize>().unwrap()],
-        _ => c.selection.formulation.elimination,
     }
 }
