@@ -6,8 +6,8 @@ accelerations are held while the residual forces are differentiated, and the res
 the form with the fewest operations after `cse`.
 """
 
-import json
 import os
+import re
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -19,23 +19,19 @@ import numpy as np
 from . import controller, dynamics, ours, report
 from .algebra import Scalar, apply, transpose
 from .casadi_peer import Casadi, count
+from .count import Count
 from .description import load
 from .search import PAIR, forms
 
-ROBOTS = ["rx90", "kuka_lwr", "stanford", "five_bar", "dualv", "delta", "hexapod"]
+ROBOTS = ["rx90", "kuka_lwr", "stanford", "dualv", "delta", "hexapod"]
 FUNCTIONS = [f"{of}_dynamics_by_{by}" for of in ("inverse", "forward") for by in ("displacement", "twist")]
-#: States at which results are compared.
-STATES = 3
+#: Effort of overact's search.
+EFFORT = os.environ.get("EFFORT", "thorough")
 
 
 @dataclass
-class Task:
-    """A function of a robot with its inputs."""
-
-    robot: str
-    name: str
-    inputs: list
-    document: dict
+class Task(ours.Function):
+    """A derivative of standard parameters, and what it differentiates."""
 
     @property
     def base(self):
@@ -204,40 +200,75 @@ def best(robot, task, names, homes, driven):
     return min(candidates(robot, task, names, homes, driven), key=lambda entry: entry[:2])
 
 
-def tasks(robot, document):
-    """The functions of a robot."""
-    sizes = {name: len(document["parameters"]) for name in ("parameters",)}
+def tasks(robot, document, is_tree):
+    """The functions of a robot with their counts."""
     dof, n = document["dof"], document["actuators"]
-    is_tree = not document["pose"] or load(ours.description(robot)).motion is None
-    pose = ("joints", dof) if is_tree else ("pose", len(document["pose"]))
-    twist = ("joint_velocities" if is_tree else "twist", dof)
-    acceleration = ("joint_accelerations" if is_tree else "acceleration", dof)
+    counts = own_counts(robot)
     for name in FUNCTIONS:
-        last = acceleration if name.startswith("inverse") else ("torques", n)
-        yield Task(robot, name, [pose, twist, last, ("parameters", sizes["parameters"])], document)
+        is_inverse = name.startswith("inverse")
+        if is_tree:
+            inputs = [("joints", dof), ("joint_velocities", dof)]
+            inputs.append(("joint_accelerations", dof) if is_inverse else ("torques", n))
+        else:
+            inputs = [("pose", len(document["pose"])), ("twist", dof)]
+            inputs.append(("acceleration", dof) if is_inverse else ("torques", n))
+        inputs.append(("parameters", len(document["parameters"])))
+        yield Task(
+            robot=robot,
+            name=name,
+            source="joints" if is_tree else "pose",
+            kind="standard",
+            inputs=inputs,
+            shape=[n if is_inverse else dof, dof],
+            columns=document["parameters"],
+            count=counts[name],
+            document=document,
+        )
 
 
-def own_counts(robot, effort):
-    """Operations of overact's functions, as the documentation of generated code states them."""
+def own_counts(robot):
+    """overact's counts after the thorough search, from the documentation of the generated code."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.rs"
-        call = [ours.BINARY, "generate", ours.description(robot), "-o", path, "--effort", effort]
-        call += ["--functions", ",".join(FUNCTIONS), "--columns", "standard", "--json"]
-        done = subprocess.run([str(x) for x in call], capture_output=True, text=True, check=True)
-        return json.loads(done.stdout)
+        call = [ours.BINARY, "generate", ours.description(robot), "-o", path, "--effort", EFFORT]
+        call += ["--functions", ",".join(FUNCTIONS)]
+        subprocess.run([str(part) for part in call], capture_output=True, text=True, check=True)
+        text = path.read_text()
+    return {name: documented(text[: text.index(f"pub fn {name}(")]) for name in FUNCTIONS}
+
+
+def documented(text):
+    """The last count in generated code."""
+    line = [line for line in text.splitlines() if re.search(r"/// \d+ operations \(", line)][-1]
+
+    def number(what):
+        found = re.search(rf"(\d+) {what}", line)
+        return int(found.group(1)) if found else 0
+
+    kinds = ["addition", "multiplication", "division", "square root", "sine-cosine pair", "arc tangent"]
+    return Count(*[number(kind) for kind in kinds])
 
 
 def measure(only, samples):
     """The table."""
-    effort = os.environ.get("EFFORT", "quick")
-    lines = []
+    lines, ratios = [], []
     for robot in ROBOTS:
         if only and only not in robot:
             continue
         document, own = ours.inspect(robot), load(ours.description(robot))
-        driven = {"dof": document["dof"], "joints": [] if own.motion is None else controller.actuated(robot)}
-        for task in tasks(robot, document):
-            found = best(own, task, document["parameters"], document["home_joints"], driven)
-            lines.append((robot, task.name, found[3].operations, found[2]))
-            print(*lines[-1], flush=True)
-    return lines
+        is_tree = own.motion is None
+        driven = {"dof": document["dof"], "joints": [] if is_tree else controller.actuated(robot)}
+        for task in tasks(robot, document, is_tree):
+            found = best(own, task, task.columns, document["home_joints"], driven)
+            _, _, form, counted, peer = found
+            given = controller.sample(task, samples)
+            values = np.array([peer(*state.values()).full() for state in given])
+            controller.check(f"{robot}, {task.name}", values, task.evaluate(given))
+            ratio = task.count.operations / counted.operations
+            ratios.append(ratio)
+            line = [f"{document['robot']}, {task.name.replace('_', ' ')}"]
+            line += [report.operations(task.count), report.operations(counted), f"{ratio:.2f}", form]
+            lines.append(line)
+    mean = float(np.exp(np.mean(np.log(ratios))))
+    lines.append(["geometric mean", "", "", f"{mean:.2f}", ""])
+    return report.table(["function", "overact", "CasADi, cse", "ratio", "CasADi's form"], lines)
