@@ -1,7 +1,6 @@
 //! Agreement with differences of the numeric reference.
 
 use super::{Failure, Robot, all_robots, each};
-use overact_codegen::Source;
 use overact_tests::support::agreement::Agreement;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Backend, Evaluated};
@@ -14,7 +13,7 @@ const STATES: [usize; 2] = [2, 10];
 
 all_robots!(agree);
 
-fn agree(robot: &Robot) -> Result<(), Failure> {
+pub(super) fn agree(robot: &Robot) -> Result<(), Failure> {
     let parameters = robot.expected.parameters();
     let mechanism = &robot.expected.mechanism;
     let all = samples(mechanism, &parameters, by_tier(STATES), 37, false)?;
@@ -43,25 +42,4 @@ fn agree(robot: &Robot) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// A robot of `tests/compiled/friction`: all kinds of friction, springs or screws.
-fn with_forces(stem: &str) -> Result<(), Failure> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/compiled/friction");
-    let text = std::fs::read_to_string(format!("{folder}/{stem}.toml"))?;
-    agree(&Robot::of(stem, &Source::new(stem, text))?)
-}
-
-#[test]
-fn all_kinds_of_friction_are_differentiated() -> Result<(), Failure> {
-    ["friction_arm", "friction_bar"]
-        .into_iter()
-        .try_for_each(with_forces)
-}
-
-#[test]
-fn springs_and_screws_are_differentiated() -> Result<(), Failure> {
-    ["spring_bar", "screw_arm"]
-        .into_iter()
-        .try_for_each(with_forces)
 }

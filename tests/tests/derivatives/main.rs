@@ -3,6 +3,8 @@
 mod agreement;
 mod compiled;
 mod differences;
+mod forces;
+mod operation_counts;
 mod refusals;
 
 use overact_codegen::{Effort, Request, RobotModel, Source};
