@@ -2,7 +2,8 @@
 //! script does.
 //!
 //! These are the other robots of `robots/`, robots with all kinds of friction, springs and screws,
-//! the DualV in each of its four partitions, robots with frames, and the RX90 with known parameters.
+//! the DualV in each of its four partitions, robots with frames, derivatives of the dynamics, and the
+//! RX90 with known parameters.
 //!
 //! The search for fewer operations is quick: the modules in `generated/` have a thorough one, which
 //! does not affect these tests. The partitions differ in one line, so the variants are generated
@@ -36,6 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     modules.extend(friction()?);
     write_all(modules)?;
     framed()?;
+    derived()?;
     known_parameters()
 }
 
@@ -173,6 +175,29 @@ fn framed() -> Result<(), Box<dyn Error>> {
                 ..Request::with_effort(Effort::Quick)
             };
             write_as(&format!("framed_{stem}{suffix}"), stem, &text, &request)?;
+        }
+    }
+    Ok(())
+}
+
+/// Derivatives of the dynamics, in 64 and 32 bits.
+fn derived() -> Result<(), Box<dyn Error>> {
+    const FUNCTIONS: [&str; 4] = [
+        "inverse_dynamics_by_displacement",
+        "inverse_dynamics_by_twist",
+        "forward_dynamics_by_displacement",
+        "forward_dynamics_by_twist",
+    ];
+    let choice = Choice::new(FUNCTIONS).map_err(|unknown| format!("{unknown:?}"))?;
+    for stem in ["ankle", "dualv", "rx90"] {
+        let text = fs::read_to_string(format!("../../robots/{stem}.toml"))?;
+        for (suffix, float) in [("", Float::F64), ("_f32", Float::F32)] {
+            let request = Request {
+                functions: Some(&choice),
+                float,
+                ..Request::with_effort(Effort::Quick)
+            };
+            write_as(&format!("derived_{stem}{suffix}"), stem, &text, &request)?;
         }
     }
     Ok(())

@@ -76,6 +76,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "dynamics",
             "regressor",
             "frames",
+            "derivatives",
             "forward",
             "functions",
         ],

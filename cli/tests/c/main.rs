@@ -400,6 +400,27 @@ fn functions_of_frames_agree() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Derivatives of the dynamics of a tree and of a redundant robot.
+#[test]
+fn derivatives_of_the_dynamics_agree() -> Result<(), Failure> {
+    const FUNCTIONS: [&str; 4] = [
+        "inverse_dynamics_by_displacement",
+        "inverse_dynamics_by_twist",
+        "forward_dynamics_by_displacement",
+        "forward_dynamics_by_twist",
+    ];
+    for stem in by_tier([&["dualv"][..], &["dualv", "ankle", "rx90"]]) {
+        let path = repository(&format!("robots/{stem}.toml"));
+        let name = format!("derived_{stem}");
+        let model = model(&path, Effort::None, &FUNCTIONS, Float::F64)?;
+        let seen = compare(&name, model, by_tier([20, 100]), Compiler::all())?;
+        assert!(seen.is_none_or(|seen| seen.values > 0));
+        let path = path.to_string_lossy();
+        single::compare(&name, &FUNCTIONS, &path, by_tier([20, 100]))?;
+    }
+    Ok(())
+}
+
 /// No robot of the library needs Newton's method for its joints.
 #[test]
 fn robots_that_iterate_agree() -> Result<(), Failure> {

@@ -180,6 +180,14 @@ impl<'b> Substitution<'b> {
         self.replace(expr.arena(), expr.handle(), &mut QuickMap::default())
     }
 
+    /// Expressions of one graph with all replacements made; shared nodes are replaced once.
+    #[must_use]
+    pub(crate) fn apply_all(&self, all: &[Expr<'_>]) -> Vec<Expr<'b>> {
+        let mut known = QuickMap::default();
+        let mut replaced = |expr: &Expr<'_>| self.replace(expr.arena(), expr.handle(), &mut known);
+        all.iter().map(&mut replaced).collect()
+    }
+
     fn replace(
         &self,
         from: &Arena,

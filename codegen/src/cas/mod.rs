@@ -20,6 +20,7 @@ pub mod cosine_sine;
 pub mod direction;
 mod divisors;
 pub(crate) mod filter;
+pub(crate) mod jacobian;
 pub mod print;
 mod sample;
 pub mod stream;

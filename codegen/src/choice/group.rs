@@ -127,6 +127,7 @@ pub fn serves_model(mechanism: &Mechanism, function: Function, from: MotionInput
         | Function::KineticEnergy
         | Function::PotentialEnergy
         | Function::Frame(_) => false,
+        _ if function.is_derivative() => false,
         _ => from == plain(mechanism),
     }
 }

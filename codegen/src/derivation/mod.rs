@@ -12,6 +12,7 @@
 //! | `dynamics` | joint forces, mass matrices, the recursion of Newton and Euler |
 //! | `regressor` | one column per standard parameter, on the platform, eq. (30), or on kept actuators, eq. (36) |
 //! | `frames` | frames on bodies: pose, Jacobian, motion |
+//! | `derivatives` | linearised graphs along displacements and with respect to the twist |
 //! | `forward` | forward kinematics and forward dynamics |
 //! | `functions` | the functions of the table, from inputs to outputs |
 //!
@@ -24,6 +25,7 @@ mod bodies;
 mod closure;
 mod context;
 mod derivation_error;
+mod derivatives;
 mod dynamics;
 mod forward;
 mod frames;

@@ -2,6 +2,7 @@
 
 use super::parameter::BodyParameter;
 use crate::cas::Number;
+use crate::cas::jacobian::Order;
 
 /// The choices that the derivation of a function needs in addition to the mechanism.
 #[derive(Debug, Clone, Default)]
@@ -82,6 +83,8 @@ pub struct Formulation {
     /// Whether sums are searched as known expressions over a divisor, such as link directions in
     /// observer's axes.
     pub over_divisors: bool,
+    /// Order in which derivatives of the dynamics eliminate intermediate quantities.
+    pub elimination: Order,
 }
 
 /// A column as a linear combination of other columns.

@@ -17,6 +17,8 @@ pub(crate) struct Forms<'m> {
     function: Function,
     /// Whether the search tries other forms to save operations.
     is_thorough: bool,
+    /// Whether programs are searched at all.
+    is_searched: bool,
     counts: Counts<'m>,
 }
 
@@ -37,6 +39,7 @@ impl<'m> Forms<'m> {
             selection: assembler.selection,
             function,
             is_thorough: assembler.search.is_thorough(),
+            is_searched: assembler.search.is_searched(),
             counts: Counts::new(assembler, function, from),
         }
     }
@@ -122,11 +125,19 @@ impl Forms<'_> {
         if let Some(other) = self.other_form() {
             forms.push(self.form(other)?);
         }
+        if self.is_searched {
+            let orders = formulation::orders(self.function);
+            for form in forms.clone() {
+                let other = orders.iter().filter_map(|order| order.on(&form.selection));
+                let other = other.map(|selection| self.form(selection));
+                forms.extend(other.collect::<Result<Vec<_>, DerivationError>>()?);
+            }
+        }
         let Some(start) = forms.iter_mut().min_by_key(|form| form.operations) else {
             return Ok(forms);
         };
         start.is_worth = true;
-        if !self.is_thorough {
+        if !self.is_thorough || self.function.is_derivative() {
             return Ok(forms);
         }
         let start = start.clone();

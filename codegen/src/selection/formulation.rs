@@ -2,6 +2,7 @@
 //! and counted.
 
 use super::regressor::Regressor;
+use crate::cas::jacobian::Order;
 use crate::derivation::{
     DerivationError, Formulation, Selection, closure_frame_choices, may_use_any_axes,
     observer_frame_choices,
@@ -40,6 +41,7 @@ pub(super) fn cheapest_formulation(
         by_rows: false,
         masses_at_ends: false,
         over_divisors: false,
+        elimination: Order::default(),
     };
     let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
@@ -137,6 +139,8 @@ pub(super) enum Change {
     MassesAtEnds(bool),
     /// See [`Formulation::over_divisors`].
     OverDivisors(bool),
+    /// See [`Formulation::elimination`].
+    Elimination(Order),
 }
 
 impl Change {
@@ -203,6 +207,7 @@ impl Change {
             Self::ByRows(by_rows) => changed.by_rows = *by_rows,
             Self::MassesAtEnds(at_ends) => changed.masses_at_ends = *at_ends,
             Self::OverDivisors(over) => changed.over_divisors = *over,
+            Self::Elimination(order) => changed.elimination = *order,
         }
         (changed != *formulation).then_some(changed)
     }
@@ -271,6 +276,9 @@ fn choices(mechanism: &Mechanism, for_function: bool) -> Vec<Vec<Change>> {
 /// unreachable poses belong to the legs whose joints are needed. For such platforms, only functions
 /// of all joints choose the axes of the legs.
 pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> Vec<Change> {
+    if function.is_derivative() {
+        return orders(function);
+    }
     let has_forces = has_forces(function);
     let may_change_axes = !mechanism.is_parasitic() || has_forces || moves_all_legs(function);
     let has_motion = has_forces || function.columns().is_some();
@@ -293,6 +301,20 @@ pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> 
     all
 }
 
+/// The orders of elimination that are tried for derivatives, also by a quick search.
+///
+/// Derivatives are several times as long as the functions, so that no other changes are tried.
+pub(super) fn orders(function: Function) -> Vec<Change> {
+    let all = if function.is_derivative() {
+        &Order::ALL[..]
+    } else {
+        &[]
+    };
+    all.iter()
+        .map(|&order| Change::Elimination(order))
+        .collect()
+}
+
 /// Whether legs of several shapes are closed, so that their axes are chosen one after the other.
 pub(super) fn has_several_shapes(mechanism: &Mechanism) -> bool {
     let closed = mechanism.legs.iter().filter(|leg| leg.end.is_some());
@@ -302,6 +324,9 @@ pub(super) fn has_several_shapes(mechanism: &Mechanism) -> bool {
 /// The changes that are tried last; only a search shows whether they save operations.
 pub(super) fn last_choices(mechanism: &Mechanism, function: Function) -> Vec<Change> {
     let mut all = Vec::new();
+    if function.is_derivative() {
+        return all;
+    }
     if mechanism.is_parasitic() {
         all.push(Change::ByEnds(true));
     }
@@ -317,7 +342,7 @@ pub(super) fn last_choices(mechanism: &Mechanism, function: Function) -> Vec<Cha
 
 /// The change that is tried after all others: sums over divisors in the legs' closures.
 pub(super) fn closing_choice(mechanism: &Mechanism, function: Function) -> Option<Change> {
-    let divides = !mechanism.is_tree() && has_motion(function);
+    let divides = !mechanism.is_tree() && has_motion(function) && !function.is_derivative();
     divides.then_some(Change::OverDivisors(true))
 }
 
@@ -377,7 +402,7 @@ pub(super) const fn has_forces(function: Function) -> bool {
             | Function::ForwardDynamics(_)
             | Function::InverseDynamics(_)
             | Function::InverseDynamicsPreloaded
-    )
+    ) || function.is_derivative()
 }
 
 /// The regressor in a formulation.

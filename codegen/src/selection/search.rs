@@ -64,6 +64,12 @@ impl Search {
         self.limits.is_thorough()
     }
 
+    /// Whether programs are searched at all.
+    #[must_use]
+    pub(super) const fn is_searched(&self) -> bool {
+        self.limits.replaces
+    }
+
     /// The program of a derived function.
     pub(super) fn lower<'a>(
         &self,
@@ -145,7 +151,7 @@ const fn is_of_control(function: Function) -> bool {
             | Function::Bias(_)
             | Function::ForwardDynamics(_)
             | Function::Frame(_)
-    )
+    ) || function.is_derivative()
 }
 
 /// Whether a program takes fewer operations than another, and no more sines and roots.

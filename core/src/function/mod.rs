@@ -78,7 +78,11 @@ impl Function {
             Self::InverseDynamics(columns)
             | Self::MassMatrix(columns)
             | Self::Bias(columns)
-            | Self::ForwardDynamics(columns) => Some(columns),
+            | Self::ForwardDynamics(columns)
+            | Self::InverseDynamicsByDisplacement(columns)
+            | Self::InverseDynamicsByTwist(columns)
+            | Self::ForwardDynamicsByDisplacement(columns)
+            | Self::ForwardDynamicsByTwist(columns) => Some(columns),
             Self::InverseDynamicsPreloaded
             | Self::TotalMass
             | Self::CentreOfMass

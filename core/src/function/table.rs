@@ -325,6 +325,50 @@ impl Function {
                 columns: None,
                 condition: Condition::Any,
             },
+            Self::InverseDynamicsByDisplacement(columns) => Entry {
+                name: "inverse_dynamics_by_displacement",
+                summary: "∂τ/∂δ: derivative of `inverse_dynamics` with respect to a displacement of the pose, at fixed v and v̇ (N or N m per m or rad). The displacement δ moves the pose along the twist coordinates, as `forward::displace` does, or `forward::displace_quaternion` if the pose has a quaternion: translations (m) and rotations about the base axes (rad). Signs of velocities count as constants.",
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Twist, Acceleration, Parameters],
+                    Columns::Base => &[Pose, Twist, Acceleration, BaseParameters],
+                },
+                rows: Extent::Actuators,
+                columns: Some(Extent::Dof),
+                condition: Condition::Any,
+            },
+            Self::InverseDynamicsByTwist(columns) => Entry {
+                name: "inverse_dynamics_by_twist",
+                summary: "∂τ/∂v: derivative of `inverse_dynamics` with respect to the twist, at fixed pose and v̇ (N s or N m s per m or rad). Signs of velocities count as constants.",
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Twist, Acceleration, Parameters],
+                    Columns::Base => &[Pose, Twist, Acceleration, BaseParameters],
+                },
+                rows: Extent::Actuators,
+                columns: Some(Extent::Dof),
+                condition: Condition::Any,
+            },
+            Self::ForwardDynamicsByDisplacement(columns) => Entry {
+                name: "forward_dynamics_by_displacement",
+                summary: "∂v̇/∂δ: derivative of `forward_dynamics` with respect to a displacement of the pose, at fixed v and τ: -M⁻¹ times that of the forces at the acceleration v̇ (m/s² or rad/s² per m or rad). The displacement δ moves the pose along the twist coordinates, as `forward::displace` does, or `forward::displace_quaternion` if the pose has a quaternion: translations (m) and rotations about the base axes (rad). Signs of velocities count as constants.",
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Twist, Torques, Parameters],
+                    Columns::Base => &[Pose, Twist, Torques, BaseParameters],
+                },
+                rows: Extent::Dof,
+                columns: Some(Extent::Dof),
+                condition: Condition::Any,
+            },
+            Self::ForwardDynamicsByTwist(columns) => Entry {
+                name: "forward_dynamics_by_twist",
+                summary: "∂v̇/∂v: derivative of `forward_dynamics` with respect to the twist, at fixed pose and τ: -M⁻¹ times that of the forces (1/s, or with m or rad for the other). Signs of velocities count as constants.",
+                inputs: match columns {
+                    Columns::Standard => &[Pose, Twist, Torques, Parameters],
+                    Columns::Base => &[Pose, Twist, Torques, BaseParameters],
+                },
+                rows: Extent::Dof,
+                columns: Some(Extent::Dof),
+                condition: Condition::Any,
+            },
             Self::Frame(FrameFunction { quantity, .. }) => of_frame(quantity),
         }
     }

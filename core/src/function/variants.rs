@@ -45,12 +45,16 @@ pub enum Function {
     CentreOfMassJacobian,
     KineticEnergy,
     PotentialEnergy,
+    InverseDynamicsByDisplacement(Columns),
+    InverseDynamicsByTwist(Columns),
+    ForwardDynamicsByDisplacement(Columns),
+    ForwardDynamicsByTwist(Columns),
     Frame(FrameFunction),
 }
 
 impl Function {
     /// All functions of all robots, without those of the frames that a description defines.
-    pub const ALL: [Self; 42] = [
+    pub const ALL: [Self; 50] = [
         Self::PoseInClosedForm,
         Self::Joints,
         Self::ActuatorPositions,
@@ -93,6 +97,14 @@ impl Function {
         Self::CentreOfMassJacobian,
         Self::KineticEnergy,
         Self::PotentialEnergy,
+        Self::InverseDynamicsByDisplacement(Columns::Standard),
+        Self::InverseDynamicsByDisplacement(Columns::Base),
+        Self::InverseDynamicsByTwist(Columns::Standard),
+        Self::InverseDynamicsByTwist(Columns::Base),
+        Self::ForwardDynamicsByDisplacement(Columns::Standard),
+        Self::ForwardDynamicsByDisplacement(Columns::Base),
+        Self::ForwardDynamicsByTwist(Columns::Standard),
+        Self::ForwardDynamicsByTwist(Columns::Base),
     ];
 
     /// A function of a frame, by the frame's index in the description.
@@ -114,6 +126,18 @@ impl Function {
                 | Self::CentreOfMassJacobian
                 | Self::KineticEnergy
                 | Self::PotentialEnergy
+        ) || self.is_derivative()
+    }
+
+    /// Whether the function is a derivative of inverse or forward dynamics.
+    #[must_use]
+    pub const fn is_derivative(self) -> bool {
+        matches!(
+            self,
+            Self::InverseDynamicsByDisplacement(_)
+                | Self::InverseDynamicsByTwist(_)
+                | Self::ForwardDynamicsByDisplacement(_)
+                | Self::ForwardDynamicsByTwist(_)
         )
     }
 }

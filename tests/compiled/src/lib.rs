@@ -45,6 +45,7 @@ robot!(tricept_4: Tricept4);
 robot!(two_motor_axis: TwoMotorAxis);
 robot!(tx40: Tx40);
 
+pub mod derived;
 pub mod framed;
 pub mod friction;
 pub mod known;

@@ -1,5 +1,6 @@
 //! Expected outputs of functions, from the numeric reference.
 
+use super::derivatives;
 use super::frames::{self, Frames};
 use super::sample::fitted_acceleration;
 use super::{Failure, Parameters, Sample};
@@ -246,6 +247,9 @@ impl Truth<'_> {
         let side = if fitted { &self.fitted } else { &self.here };
         let own = frames::output(&self.expected.frames, &side.dynamics, function, self.sample)?;
         if let Some(matrix) = own {
+            return Ok(matrix);
+        }
+        if let Some(matrix) = derivatives::output(&side.dynamics, function, self.sample)? {
             return Ok(matrix);
         }
         match kinematic(&side.dynamics, function, self.sample)? {

@@ -42,7 +42,8 @@ impl Robot {
 
 /// Whether a function is one of a frame or of all bodies.
 fn is_tested(function: Function) -> bool {
-    function.is_on_request() || matches!(function, Function::Frame(_))
+    let is_of_masses = function.is_on_request() && !function.is_derivative();
+    is_of_masses || matches!(function, Function::Frame(_))
 }
 
 /// A description of the library with frames on several bodies.

@@ -1,6 +1,7 @@
 //! Expression handles with operators. Construction simplifies: zeros, ones and double negations
 //! vanish.
 
+use super::super::direction::SymbolId;
 use super::{Arena, Handle, Op, negative_name};
 use overact_exact::Number;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -52,6 +53,15 @@ impl<'a> Expr<'a> {
     #[must_use]
     pub fn as_number(self) -> Option<Number> {
         self.arena.as_constant(self.handle)
+    }
+
+    /// The symbol that the expression is as a number, if it is one.
+    #[must_use]
+    pub fn symbol(self) -> Option<SymbolId> {
+        match self.arena.op(self.handle.index()) {
+            Op::Symbol(symbol) if !self.is_negative() => Some(symbol),
+            _ => None,
+        }
     }
 
     /// The expression, with a name for readers of generated code.

@@ -55,6 +55,11 @@ impl<'a> ActuatedJointForces<'a> {
         }
     }
 
+    /// Force on each actuator; empty if these forces are not separated.
+    pub(crate) fn forces(&self) -> &[Expr<'a>] {
+        &self.forces
+    }
+
     /// Actuator torques: these forces plus those that balance the rest.
     pub(crate) fn with(self, rest: Vec<Expr<'a>>) -> Vec<Expr<'a>> {
         if self.forces.is_empty() {

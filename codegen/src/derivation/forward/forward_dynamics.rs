@@ -17,11 +17,21 @@ impl<'a> DerivationContext<'a, '_> {
     pub(crate) fn forward_dynamics(&mut self, of: Columns, n: usize) -> Vec<Expr<'a>> {
         let twist = self.twist();
         let torques = self.input("torques", n);
+        self.solved_acceleration(of, &twist, &torques).0
+    }
+
+    /// v̇ = M⁻¹ (Γ¹(τ) - h), and the factors of M.
+    pub(crate) fn solved_acceleration(
+        &mut self,
+        of: Columns,
+        twist: &[Expr<'a>],
+        torques: &[Expr<'a>],
+    ) -> (Vec<Expr<'a>>, Factored<'a>) {
         let still = self.zeros();
-        let bias = self.projected_dynamics(of, &twist, &still);
+        let bias = self.projected_dynamics(of, twist, &still);
         let mass = self.mass_matrix(of);
         name_matrix(&mass, "mass");
-        let forces = self.robot.projected_torques(&torques);
+        let forces = self.robot.projected_torques(torques);
         let accelerating: Vec<Expr<'a>> = forces
             .iter()
             .zip(&bias)
@@ -29,7 +39,7 @@ impl<'a> DerivationContext<'a, '_> {
             .collect();
         let factored = Factored::of(mass);
         self.guard_mass(&factored.pivots);
-        factored.solve(&accelerating)
+        (factored.solve(&accelerating), factored)
     }
 
     /// Guards the pivots of the mass matrix, which have to be positive.

@@ -1,6 +1,7 @@
 //! The functions that every robot has, as named inputs and output expressions.
 
 mod actuators;
+mod derivative_functions;
 mod divisors;
 mod dynamic_functions;
 mod frame_functions;
@@ -20,6 +21,7 @@ use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::selection::{JointsBy, Selection};
 use crate::mechanism::Mechanism;
+use derivative_functions::Variable;
 use overact_core::Function;
 
 /// A function as expressions.
@@ -232,6 +234,16 @@ impl<'a> DerivationContext<'a, '_> {
             Function::CentreOfMassJacobian => self.centre_of_mass_jacobian(),
             Function::KineticEnergy => column(vec![self.kinetic_energy()]),
             Function::PotentialEnergy => column(vec![self.potential_energy()]),
+            Function::InverseDynamicsByDisplacement(of) => {
+                self.inverse_dynamics_by(of, Variable::Displacement)
+            }
+            Function::InverseDynamicsByTwist(of) => self.inverse_dynamics_by(of, Variable::Twist),
+            Function::ForwardDynamicsByDisplacement(of) => {
+                self.forward_dynamics_by(of, Variable::Displacement, n)
+            }
+            Function::ForwardDynamicsByTwist(of) => {
+                self.forward_dynamics_by(of, Variable::Twist, n)
+            }
             Function::Frame(of) => self.frame_rows(of)?,
         })
     }

@@ -5,7 +5,7 @@
 //! angles of the leg follow by the addition theorem.
 
 use super::quaternion::half;
-use crate::cas::{Arena, CosineSine, Direction, Expr, Ratio, SymbolId};
+use crate::cas::{Arena, CosineSine, Direction, Expr, Number, Ratio, SymbolId};
 use crate::derivation::motion_input::MotionInput;
 use crate::mechanism::{Home, Mechanism};
 use std::cell::RefCell;
@@ -238,6 +238,36 @@ impl<'a> Configuration<'a> {
         Some(if is_negative { unit.negated() } else { unit })
     }
 
+    /// Symbol of a joint's position.
+    pub(crate) fn joint_symbol(&self, index: usize) -> SymbolId {
+        let (array, at) = self.place(index);
+        self.arena.input_symbol(array, at)
+    }
+
+    /// Quantities that the closure gives, with their derivatives with respect to symbols of
+    /// positions.
+    pub(crate) fn solved(&self) -> Vec<Solved<'a>> {
+        let of_unit = |(angle, unit): &(Direction, CosineSine<'a>)| {
+            let CosineSine { cosine, sine } = *unit;
+            let by = |derivative: Expr<'a>| {
+                let terms = angle.terms().iter();
+                let by = |(symbol, factor): &(SymbolId, Ratio)| {
+                    (*symbol, derivative * Number::ratio(*factor))
+                };
+                terms.map(by).collect()
+            };
+            [(cosine, by(-sine)), (sine, by(cosine))].map(|(value, by)| Solved { value, by })
+        };
+        let of_position = |(index, value): &(usize, Expr<'a>)| Solved {
+            value: *value,
+            by: vec![(self.joint_symbol(*index), self.arena.one())],
+        };
+        let units = self.known.iter().flat_map(of_unit);
+        units
+            .chain(self.positions.iter().map(of_position))
+            .collect()
+    }
+
     /// The joint of q_t whose position a symbol is.
     pub(crate) fn joint(&self, symbol: SymbolId) -> Option<usize> {
         let element = self.arena.input_element(symbol)?;
@@ -336,6 +366,14 @@ impl<'a> Configuration<'a> {
         let _ = cosine.named(&format!("c{label}{suffix}"));
         let _ = sine.named(&format!("s{label}{suffix}"));
     }
+}
+
+/// A sine, cosine or position that the closure gives.
+#[derive(Debug)]
+pub(crate) struct Solved<'a> {
+    pub(crate) value: Expr<'a>,
+    /// Derivatives with respect to symbols of positions.
+    pub(crate) by: Vec<(SymbolId, Expr<'a>)>,
 }
 
 /// An unknown quantity of a leg, with its own symbol in an equation.

@@ -1,0 +1,153 @@
+//! Expected derivatives of the dynamics, by central differences of the reference.
+//!
+//! The formula with eight points has an error of order eight in the step. The step is halved until
+//! no joint rate changes its sign between the points, since dry friction jumps there.
+
+use super::{Failure, Sample};
+use crate::reference::dynamics::Dynamics;
+use crate::reference::parasitic_motion;
+use crate::reference::{Mechanism, Motion, State};
+use nalgebra::{DMatrix, DVector};
+use overact::Function;
+
+/// Weights of the points at 1 to 4 steps; those on the other side are their negatives.
+const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+/// Largest step, m, rad, m/s or rad/s.
+const STEP: f64 = 4e-3;
+/// Smallest step; below it rounding exceeds the tolerances of the tests.
+const SMALLEST: f64 = 3e-5;
+
+/// Output of a function; `None` for those of other kinds.
+///
+/// # Errors
+///
+/// If the reference cannot compute a state, or a rate is too close to zero.
+pub fn output(
+    dynamics: &Dynamics<'_>,
+    function: Function,
+    sample: &Sample,
+) -> Result<Option<DMatrix<f64>>, Failure> {
+    let (mechanism, state) = (dynamics.mechanism, dynamics.state);
+    let chi = &sample.all_parameters;
+    let by_twist = matches!(
+        function,
+        Function::InverseDynamicsByTwist(_) | Function::ForwardDynamicsByTwist(_)
+    );
+    let value = |state: &State| -> Result<DVector<f64>, Failure> {
+        let dynamics = Dynamics::new(mechanism, state)?;
+        if matches!(
+            function,
+            Function::InverseDynamicsByDisplacement(_) | Function::InverseDynamicsByTwist(_)
+        ) {
+            return Ok(dynamics.least_norm_torques(chi)?);
+        }
+        let (mass, bias) = dynamics.mass_matrix_and_bias(chi)?;
+        let torques = DVector::from_column_slice(&sample.torques);
+        let forces = dynamics.jacobians.inverse.transpose() * torques - bias;
+        Ok(mass
+            .lu()
+            .solve(&forces)
+            .ok_or("the mass matrix is singular")?)
+    };
+    if !function.is_derivative() {
+        return Ok(None);
+    }
+    let moved = |direction: &DVector<f64>| {
+        if by_twist {
+            faster(mechanism, state, direction)
+        } else {
+            displaced(mechanism, state, direction)
+        }
+    };
+    differences(mechanism.dof(), state, &moved, &value).map(Some)
+}
+
+/// The state at a displaced pose, with the same twist and acceleration.
+///
+/// # Errors
+///
+/// If the robot can't reach the pose.
+pub fn displaced(
+    mechanism: &Mechanism,
+    state: &State,
+    displacement: &DVector<f64>,
+) -> Result<State, Failure> {
+    let (twist, acceleration) = (&state.twist, &state.acceleration);
+    if matches!(mechanism.motion, Motion::Parasitic(_)) {
+        let (pose, q) =
+            parasitic_motion::displaced(mechanism, &state.pose, &state.q, displacement)?;
+        return Ok(State::with_joints(
+            mechanism,
+            &pose,
+            &q,
+            twist,
+            acceleration,
+        )?);
+    }
+    let pose = mechanism.motion.displace(&state.pose, displacement);
+    Ok(State::solve_near(
+        mechanism,
+        &state.q,
+        &pose,
+        twist,
+        acceleration,
+    )?)
+}
+
+/// The state with a changed twist.
+///
+/// # Errors
+///
+/// If the reference cannot compute the rates.
+pub fn faster(
+    mechanism: &Mechanism,
+    state: &State,
+    change: &DVector<f64>,
+) -> Result<State, Failure> {
+    let twist = &state.twist + change;
+    Ok(State::with_joints(
+        mechanism,
+        &state.pose,
+        &state.q,
+        &twist,
+        &state.acceleration,
+    )?)
+}
+
+/// Derivatives of a quantity along `count` directions, one column for each.
+///
+/// # Errors
+///
+/// If a state or value cannot be computed, or a rate is too close to zero.
+pub fn differences(
+    count: usize,
+    state: &State,
+    moved: &dyn Fn(&DVector<f64>) -> Result<State, Failure>,
+    value: &dyn Fn(&State) -> Result<DVector<f64>, Failure>,
+) -> Result<DMatrix<f64>, Failure> {
+    let column = |k: usize| -> Result<DVector<f64>, Failure> {
+        let mut step = STEP;
+        while step > SMALLEST {
+            let at = |n: i32| {
+                let mut direction = DVector::zeros(count);
+                direction[k] = f64::from(n) * step;
+                moved(&direction)
+            };
+            let all = [-4, -3, -2, -1, 1, 2, 3, 4].map(at);
+            let all = all.into_iter().collect::<Result<Vec<State>, Failure>>()?;
+            let signs = |state: &State| state.qd.map(|rate| rate > 0.0);
+            if all.iter().any(|one| signs(one) != signs(state)) {
+                step *= 0.5;
+                continue;
+            }
+            let mut sum = value(&all[0])? * 0.0;
+            for (n, weight) in WEIGHTS.into_iter().enumerate() {
+                sum += (value(&all[4 + n])? - value(&all[3 - n])?) * (weight / step);
+            }
+            return Ok(sum);
+        }
+        Err("a joint rate is too close to zero".into())
+    };
+    let columns = (0..count).map(column).collect::<Result<Vec<_>, _>>()?;
+    Ok(DMatrix::from_columns(&columns))
+}

@@ -1,0 +1,45 @@
+//! Agreement with differences of the numeric reference.
+
+use super::{Failure, Robot, all_robots, each};
+use overact_tests::support::agreement::Agreement;
+use overact_tests::support::sample::samples;
+use overact_tests::support::{Backend, Evaluated};
+use overact_tier::by_tier;
+
+/// Largest difference, relative to the largest entry of a matrix.
+const TOLERANCE: f64 = 1e-9;
+/// States of each robot in the default tier and in the full one.
+const STATES: [usize; 2] = [2, 10];
+
+all_robots!(agree);
+
+pub(super) fn agree(robot: &Robot) -> Result<(), Failure> {
+    let parameters = robot.expected.parameters();
+    let mechanism = &robot.expected.mechanism;
+    let all = samples(mechanism, &parameters, by_tier(STATES), 37, false)?;
+    let backend = Evaluated(&robot.model);
+    let own = || {
+        robot
+            .model
+            .functions
+            .iter()
+            .filter(|own| own.computes.is_derivative())
+    };
+    assert_eq!(own().count(), 8, "{}", robot.stem);
+    for function in own() {
+        let mut agreement = Agreement::new();
+        for sample in &all {
+            let truth = robot.expected.at(sample)?;
+            // States with a joint rate close to zero have no differences.
+            let Ok(wanted) = truth.output(function.computes, function.from) else {
+                continue;
+            };
+            agreement.compare(&backend.call(&function.name, sample)?, &wanted);
+        }
+        let worst = agreement.matrix();
+        if agreement.is_empty() || worst > TOLERANCE {
+            return Err(format!("`{}`: {agreement}", function.name).into());
+        }
+    }
+    Ok(())
+}

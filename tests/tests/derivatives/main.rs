@@ -1,0 +1,91 @@
+//! Derivatives of inverse and forward dynamics, for all robots of `robots/`.
+
+mod agreement;
+mod compiled;
+mod differences;
+mod forces;
+mod operation_counts;
+mod refusals;
+
+use overact_codegen::{Effort, Request, RobotModel, Source};
+use overact_tests::support::conversion::reference;
+use overact_tests::support::expected::Expected;
+use overact_tests::support::library::{is_of_the_tier, stems, workspace};
+use overact_tests::support::{Failure, description, model_with};
+
+/// A robot and its reference.
+struct Robot {
+    stem: String,
+    model: RobotModel,
+    expected: Expected,
+}
+
+impl Robot {
+    /// A robot of the library.
+    fn new(stem: &str) -> Result<Self, Failure> {
+        Self::of(stem, &description(stem)?)
+    }
+
+    /// A robot of a description.
+    fn of(stem: &str, source: &Source) -> Result<Self, Failure> {
+        let request = Request {
+            wanted: &|_, function, _| function.is_derivative() || function.parameters().is_some(),
+            ..Request::with_effort(Effort::None)
+        };
+        let model = model_with(source, &request)?;
+        let mechanism = reference(&model.mechanism, workspace(&model));
+        Ok(Self {
+            stem: stem.to_owned(),
+            expected: Expected::by_position(&model, mechanism),
+            model,
+        })
+    }
+}
+
+/// Calls `check` with each robot of the tier whose index has this remainder, so that tests share the
+/// work.
+fn each(part: usize, check: fn(&Robot) -> Result<(), Failure>) -> Result<(), Failure> {
+    let mut failures = Vec::new();
+    let stems = stems()?;
+    let own = stems.iter().enumerate();
+    for (_, stem) in own.filter(|(at, _)| at % PARTS == part) {
+        if !is_of_the_tier(stem) {
+            continue;
+        }
+        let done = Robot::new(stem).and_then(|robot| check(&robot));
+        failures.extend(done.err().map(|error| format!("{stem}: {error}")));
+    }
+    if failures.is_empty() {
+        return Ok(());
+    }
+    Err(failures.join("\n").into())
+}
+
+/// Number of tests that share the robots.
+const PARTS: usize = 4;
+
+/// Defines tests of all robots.
+macro_rules! all_robots {
+    ($check:path) => {
+        #[test]
+        fn first_robots() -> Result<(), Failure> {
+            each(0, $check)
+        }
+
+        #[test]
+        fn second_robots() -> Result<(), Failure> {
+            each(1, $check)
+        }
+
+        #[test]
+        fn third_robots() -> Result<(), Failure> {
+            each(2, $check)
+        }
+
+        #[test]
+        fn fourth_robots() -> Result<(), Failure> {
+            each(3, $check)
+        }
+    };
+}
+use all_robots;
