@@ -108,7 +108,13 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     let has_platform = platform_item.is_some();
-    cable::check(table.context, &shapes, has_platform, platform.as_ref(), &legs);
+    cable::check(
+        table.context,
+        &shapes,
+        has_platform,
+        platform.as_ref(),
+        &legs,
+    );
     check_actuators(table, platform.as_ref(), &legs);
     let frames = frame::read(table, platform_item.is_some(), &legs, &scope);
     let is_closed = legs.iter().any(|leg| leg.end.is_some());

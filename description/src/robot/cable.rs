@@ -155,7 +155,8 @@ pub(crate) fn check(
             report(&body.span, message, help);
         }
     }
-    let parasitic = platform.is_some_and(|own| matches!(own.motion.value, Motion::Parasitic { .. }));
+    let parasitic =
+        platform.is_some_and(|own| matches!(own.motion.value, Motion::Parasitic { .. }));
     if let (true, Some(leg)) = (parasitic, legs.iter().find(|leg| leg.cable.is_some())) {
         let message = format!(
             "the cable `{}` cannot pull a platform with parasitic motion",

@@ -81,7 +81,11 @@ impl Item<'_, '_> {
                 Owner::FreeBody => ("a free body", ten),
                 Owner::Joint(_) => ("a fixed joint", ten),
                 Owner::Motor | Owner::Cable => (
-                    if owner == Owner::Cable { "a cable" } else { "a motor" },
+                    if owner == Owner::Cable {
+                        "a cable"
+                    } else {
+                        "a motor"
+                    },
                     "its parameters are \"ia\", \"fv\", \"fs\", \"off\" and those of \"friction by direction\"",
                 ),
             };
