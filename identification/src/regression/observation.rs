@@ -23,7 +23,7 @@ use crate::{
     blocks::{BLOCK, slice},
     filters::Decimator,
     kinematics::{
-        Motion, Motions,
+        Motion, Motions, actuator_forces,
         conditioning::{KeptActuators, home_scales},
     },
     series::RunFigures,
