@@ -220,6 +220,14 @@ pub enum End {
         /// Along which axes of the base frame they coincide.
         along: [bool; 3],
     },
+    /// A cable runs from the leg's base over a pulley to a point of the platform; the leg's only
+    /// variable is its length.
+    Cable {
+        /// The point in the platform frame.
+        attachment: Vector3<f64>,
+        /// Radius of the pulley that swivels about the base's z axis; zero for an eyelet.
+        radius: f64,
+    },
 }
 
 /// A chain or tree of joints between the base and the platform.

@@ -58,7 +58,12 @@ fn motion(motion: mechanism::Motion) -> Motion {
 fn leg(leg: &mechanism::Leg, start: &[f64]) -> Leg {
     let joints: Vec<Joint> = leg.joints.iter().map(joint).collect();
     let last = joints.len().saturating_sub(1);
+    let cable = leg.cable.as_ref().map(|cable| cable.pulley.value());
     let end = match &leg.end {
+        Some(mechanism::End::Point { at, .. }) if cable.is_some() => End::Cable {
+            attachment: vector(*at),
+            radius: cable.unwrap_or(0.0),
+        },
         None => End::Free,
         Some(mechanism::End::Rigid(placement)) => End::Rigid {
             joint: last,
@@ -168,6 +173,7 @@ fn same_shape(a: &Leg, b: &Leg) -> bool {
         (End::Free, End::Free) => true,
         (End::Rigid { joint: a, .. }, End::Rigid { joint: b, .. })
         | (End::Point { joint: a, .. }, End::Point { joint: b, .. }) => a == b,
+        (End::Cable { .. }, End::Cable { .. }) => true,
         _ => false,
     };
     ends && (a.carrier, a.body) == (b.carrier, b.body)
@@ -196,6 +202,10 @@ fn numbers(mechanism: &Mechanism) -> Vec<f64> {
             End::Free => {}
             End::Rigid { attachment, .. } => all.extend(placed(attachment)),
             End::Point { attachment, .. } => all.extend(attachment.iter()),
+            End::Cable { attachment, radius } => {
+                all.extend(attachment.iter());
+                all.push(*radius);
+            }
         }
     }
     all
