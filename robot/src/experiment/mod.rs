@@ -37,12 +37,6 @@ impl Robot {
                 .file(self.file())
                 .help(help)
         };
-        if !self.model().pulls().is_empty() {
-            let message = "virtual experiments of robots with cables are not supported";
-            let help = "identify from measured logs with --data; the simulated controller would have to keep all cables taut";
-            let problem = Problem::new(Code::NO_EXPERIMENT, message);
-            return Err(problem.file(self.file()).help(help).into());
-        }
         let Some(table) = &self.description().experiment else {
             return Err(missing("the description has no virtual experiment").into());
         };

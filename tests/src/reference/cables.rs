@@ -22,7 +22,10 @@ const SECOND: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
 /// Length of a cable for the platform's frame; NaN for other legs.
 #[must_use]
 pub fn length(leg: &Leg, platform: &Frame) -> f64 {
-    let End::Cable { attachment, radius } = leg.end else {
+    let End::Cable {
+        attachment, radius, ..
+    } = leg.end
+    else {
         return f64::NAN;
     };
     let point = platform.position + platform.rotation * attachment;

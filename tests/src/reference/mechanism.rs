@@ -227,6 +227,8 @@ pub enum End {
         attachment: Vector3<f64>,
         /// Radius of the pulley that swivels about the base's z axis; zero for an eyelet.
         radius: f64,
+        /// Least tension, N.
+        minimum: f64,
     },
 }
 
@@ -405,6 +407,17 @@ impl Mechanism {
         free.filter(|(leg, _)| leg.end == End::Free)
             .flat_map(|(_, range)| range)
             .collect()
+    }
+
+    /// Least tension of each actuator that is a cable.
+    #[must_use]
+    pub fn least_tensions(&self) -> Vec<Option<f64>> {
+        let variables = self.variables();
+        let least = |at: usize| match self.legs[variables[at].0].end {
+            End::Cable { minimum, .. } => Some(minimum),
+            _ => None,
+        };
+        self.actuated().into_iter().map(least).collect()
     }
 
     /// Number of actuators, n.

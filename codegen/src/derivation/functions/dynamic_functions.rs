@@ -225,7 +225,9 @@ impl<'a> DerivationContext<'a, '_> {
         let (basis, inverse) = self.basis()?;
         let moving = apply(&transposed(&inverse), &forces);
         let kept = &self.selection.kept_actuators;
+        let cables = self.redundant_cables();
         let internal = preload.iter().enumerate().map(|(k, &wanted)| {
+            let wanted = if cables[k] { -wanted } else { wanted };
             let along = kept.iter().zip(&moving).map(|(&i, &p)| basis[i][k] * p);
             wanted - along.sum::<Expr<'a>>()
         });
@@ -243,8 +245,26 @@ impl<'a> DerivationContext<'a, '_> {
     /// Kept actuators that never determine the platform's motion.
     pub(crate) fn null_space(&mut self) -> Result<Rows<'a>, DerivationError> {
         let columns = transposed(&self.basis()?.0).into_iter();
-        let columns: Rows<'a> = columns.map(|own| self.robot.with_tensions(own)).collect();
+        let signed = columns.zip(self.redundant_cables()).map(|(own, is_cable)| {
+            let own = self.robot.with_tensions(own);
+            // The column stays positive on its own actuator.
+            let sign = |torque: Expr<'a>| if is_cable { -torque } else { torque };
+            own.into_iter().map(sign).collect()
+        });
+        let columns: Rows<'a> = signed.collect();
+        if columns.is_empty() {
+            return Ok(vec![Vec::new(); self.robot.mechanism.actuated().len()]);
+        }
         Ok(transposed(&columns))
+    }
+
+    /// Whether each redundant actuator is a cable, in the order of the columns of N.
+    fn redundant_cables(&self) -> Vec<bool> {
+        let kept = &self.selection.kept_actuators;
+        let all = self.robot.mechanism.pulls().into_iter().enumerate();
+        all.filter(|(at, _)| !kept.contains(at))
+            .map(|(_, pulls)| pulls)
+            .collect()
     }
 
     /// N, and the inverse of the kept actuators' rows of J_p^inv.
