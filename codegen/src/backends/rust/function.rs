@@ -149,9 +149,10 @@ fn value_of(program: &Program, entries: &TokenStream, model: &RobotModel) -> Tok
         }
     });
     let redundancy = program.entries.len() / program.least_torques.len() - 1;
-    let redundancy = proc_macro2::Literal::usize_unsuffixed(redundancy);
+    let [actuators, redundancy] =
+        [program.least_torques.len(), redundancy].map(proc_macro2::Literal::usize_unsuffixed);
     quote! {
-        ::overact::tension::distribute::<#kind, { Self::ACTUATORS }, #redundancy>(
+        ::overact::tension::distribute::<#kind, #actuators, #redundancy>(
             &#entries,
             &[#(#least),*],
         )

@@ -28,8 +28,8 @@ pub(crate) struct Pace {
 
 /// RMS acceleration of an actuator, m/s² or rad/s², below which inertia forces are negligible.
 ///
-/// It is half a thousandth of the acceleration of gravity; angles count with a lever of 1 m.
-const QUASI_STATIC: f64 = 5e-3;
+/// It is two thousandths of the acceleration of gravity; angles count with a lever of 1 m.
+const QUASI_STATIC: f64 = 2e-2;
 
 /// Whether all actuators move so slowly that the forces depend on positions and directions of
 /// motion only.

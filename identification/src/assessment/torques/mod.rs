@@ -3,9 +3,11 @@
 //! Faults of a drive or label are a wrong sign or gain, swapped drives, and a wrong payload label.
 //! Faults of the whole robot are swapped joints, and reversed or absent gravity.
 //!
+//! - `missing_friction`: dry friction of all drives that the description lacks;
 //! - `fault_residual`: the residual after correcting a fault, from one pass over the runs.
 
 mod fault_residual;
+mod missing_friction;
 
 use overact::Model;
 use rayon::prelude::*;
@@ -50,6 +52,27 @@ pub(crate) fn explanation(
     let before = fault_residual.error(None);
     let of_one = of_one(model, runs, &fault_residual, before);
     Ok(of_one.or_else(|| of_all(model, &columns, runs, settings, before)))
+}
+
+/// The check that dry friction is missing, if it explains the torques of whole runs.
+///
+/// # Errors
+/// As [`Motions::next`]; the runs have been read before.
+pub(crate) fn missing_friction(
+    model: &dyn Model,
+    runs: &[Log],
+    settings: &Settings,
+) -> Result<Option<Check>, Error> {
+    let residuals = missing_friction::residuals(model, runs, settings)?;
+    let explained = residuals.filter(|(before, after)| *after < EXPLAINED * before);
+    Ok(explained.map(|(before, after)| {
+        let words = format!(
+            "the drives have dry friction that the model lacks; {}: add \"fs\" to the `parameters` of the actuated joints or cables",
+            so(before, after)
+        );
+        let check = Check::new(CheckKind::MissingParameter, About::Model, words);
+        measured(check.with_grade(Grade::DoNotUse), before, after, EXPLAINED)
+    }))
 }
 
 /// Relative residuals with the positions as they are, and after correcting a position fault.
@@ -113,7 +136,13 @@ fn of_one(
         };
         *after < EXPLAINED * before && taken > WORTHWHILE
     };
-    let best = errors.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
+    let is_redundant = n > info.sizes.dof;
+    let inflates = |(fault, _): &(Fault, f64)| {
+        let is_gain = matches!(fault, Fault::Gain(..));
+        is_redundant && is_gain && fault_residual.error_by_logged_inputs(*fault) > before
+    };
+    let real = errors.iter().copied().filter(|one| !inflates(one));
+    let best = real.min_by(|a, b| a.1.total_cmp(&b.1));
     let (mut fault, after) = best.filter(explains)?;
     if let Fault::Label(_) = fault {
         // If runs differ by a payload, either of them may carry it. The one with a positive payload

@@ -12,6 +12,9 @@ const SUSPICIOUS_PERCENT: f64 = 5.0;
 /// Time from the start of each run that is used, s.
 const BEGINNING_SECONDS: f64 = 5.0;
 
+/// Longest time of each run that is used to look for dry friction, s.
+const LONGEST_SECONDS: f64 = 60.0;
+
 /// Looks for one fault.
 pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let mut base = context.estimates_of(Stage::Base);
@@ -32,5 +35,15 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .map(beginning)
         .collect::<Result<_, _>>()?;
     let found = torques::explanation(context.model, &runs, context.settings)?;
+    if found.is_some() {
+        return Ok(found.into_iter().collect());
+    }
+    let whole = |log: &Log| {
+        let samples = (LONGEST_SECONDS * log.sampling_frequency()) as usize;
+        log.beginning(samples.max(context.settings.samples_needed()))
+    };
+    let all = context.dataset.runs.iter();
+    let runs: Vec<Log> = all.map(whole).collect::<Result<_, _>>()?;
+    let found = torques::missing_friction(context.model, &runs, context.settings)?;
     Ok(found.into_iter().collect())
 }
