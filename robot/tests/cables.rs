@@ -68,15 +68,16 @@ end = {{ at = ["px", "py", "pz"] }}
     for number in 0..8_u32 {
         let sign = |bit: u32| if number >> bit & 1 == 1 { 1.0 } else { -1.0 };
         let (sx, sy, sz) = (sign(0), sign(1), sign(2));
-        // Platform points are turned by a quarter, as is usual: otherwise no moment about z is held.
-        let (px, py) = (-0.2 * sy, 0.15 * sx);
+        // The upper cables cross along x and the lower ones along y: otherwise no moment about z is
+        // held.
+        let (px, py) = (-0.2 * sx * sz, 0.15 * sy * sz);
         text += &format!(
             "\n[[place]]\nname = \"c{}\"\nshape = \"cable\"\nex = {}\ney = {}\nez = {}\npx = {px}\npy = {py}\npz = {}\nup = \"{} deg\"\n",
             number + 1,
             1.5 * sx,
             1.2 * sy,
             1.0 * sz,
-            -0.1 * sz,
+            0.1 * sz,
             if sz > 0.0 { 0 } else { 180 },
         );
     }
@@ -338,8 +339,9 @@ fn a_point_inside_the_pulley_and_an_infeasible_motion_are_errors() {
         let done = robot.model().evaluate(function, inputs, &mut output);
         done.map_err(|error| error.error)
     };
-    // The platform point of the first cable is at the pulley's centre, 25 mm left of its exit.
-    let pose = [0.4, 0.535, 0.0];
+    // The platform point of the first cable is 5 mm from the pulley's centre, which is 25 mm left of
+    // its exit.
+    let pose = [0.4, 0.53, 0.0];
     let pulleys = robot(&planar("25 mm"));
     let found = ask(&pulleys, Function::ActuatorPositions, &[&pose], 4);
     assert_eq!(found, Err(Error::OutOfReach { leg: "c1" }));

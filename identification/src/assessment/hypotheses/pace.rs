@@ -78,7 +78,7 @@ impl Scores {
                 velocity += run.tempo.velocities[actuator];
                 acceleration += run.tempo.accelerations[actuator];
             }
-            let samples: usize = self.runs.iter().map(|run| run.squares.len()).sum();
+            let samples: usize = self.runs.iter().map(|run| run.tempo.samples).sum();
             let rms = (acceleration / samples.max(1) as f64).sqrt();
             let frequency = (acceleration / velocity).sqrt() / std::f64::consts::TAU;
             frequency.is_finite().then_some(Pace {

@@ -3,11 +3,11 @@
 //! Faults of a drive or label are a wrong sign or gain, swapped drives, and a wrong payload label.
 //! Faults of the whole robot are swapped joints, and reversed or absent gravity.
 //!
-//! - `missing_friction`: dry friction of all drives that the description lacks;
+//! - `drive_columns`: dry friction that the description lacks, and drifting load cells;
 //! - `fault_residual`: the residual after correcting a fault, from one pass over the runs.
 
+mod drive_columns;
 mod fault_residual;
-mod missing_friction;
 
 use overact::Model;
 use rayon::prelude::*;
@@ -23,6 +23,10 @@ use overact_logs::{Error, Log};
 
 /// A fault explains the torques if at most this fraction of the error remains.
 const EXPLAINED: f64 = 0.5;
+
+/// Friction or drift explains the torques if at most this fraction of the error remains: half of its
+/// square.
+const PARTLY_EXPLAINED: f64 = 0.7;
 
 /// It must also remove this fraction of the inputs.
 ///
@@ -54,24 +58,51 @@ pub(crate) fn explanation(
     Ok(of_one.or_else(|| of_all(model, &columns, runs, settings, before)))
 }
 
-/// The check that dry friction is missing, if it explains the torques of whole runs.
+/// The check of dry friction that the model lacks, or of a load cell that drifts, if that explains
+/// the torques of whole runs.
 ///
 /// # Errors
 /// As [`Motions::next`]; the runs have been read before.
-pub(crate) fn missing_friction(
+pub(crate) fn missing_torques(
     model: &dyn Model,
     runs: &[Log],
     settings: &Settings,
 ) -> Result<Option<Check>, Error> {
-    let residuals = missing_friction::residuals(model, runs, settings)?;
-    let explained = residuals.filter(|(before, after)| *after < EXPLAINED * before);
-    Ok(explained.map(|(before, after)| {
-        let words = format!(
-            "the drives have dry friction that the model lacks; {}: add \"fs\" to the `parameters` of the actuated joints or cables",
-            so(before, after)
-        );
-        let check = Check::new(CheckKind::MissingParameter, About::Model, words);
-        measured(check.with_grade(Grade::DoNotUse), before, after, EXPLAINED)
+    let info = model.info();
+    let lacks_friction = !info.parameters.iter().any(|one| one.symbol.has_sign());
+    let pulls = model.pulls();
+    if !lacks_friction && pulls.is_empty() {
+        return Ok(None);
+    }
+    let found = drive_columns::residuals(model, runs, settings)?;
+    let cells = found.with_drift.iter().zip(pulls).zip(info.actuators);
+    let cells = cells.filter(|((_, pulls), _)| **pulls);
+    let cells = cells.map(|((after, _), name)| (*after, Some(*name)));
+    let friction = lacks_friction.then_some((found.with_friction, None));
+    let best = cells.chain(friction).min_by(|a, b| a.0.total_cmp(&b.0));
+    let best = best.filter(|(after, _)| *after < PARTLY_EXPLAINED * found.before);
+    Ok(best.map(|(after, cell)| {
+        let so = so(found.before, after);
+        let (kind, words) = match cell {
+            Some(name) => (
+                CheckKind::WrongGain,
+                format!(
+                    "the load cell of the cable `{name}` seems to drift: its tension changes with the time of the run; {so}. Warm the cells up and tare them before each run, or record shorter runs"
+                ),
+            ),
+            None => (
+                CheckKind::MissingParameter,
+                format!(
+                    "the drives have dry friction that the model lacks; {so}. Add \"fs\" to the `parameters` of the actuated joints or cables"
+                ),
+            ),
+        };
+        let check = Check::new(kind, About::Model, words).with_grade(Grade::DoNotUse);
+        let check = match cell {
+            Some(name) => check.of_actuator(name),
+            None => check,
+        };
+        measured(check, found.before, after, PARTLY_EXPLAINED)
     }))
 }
 
@@ -139,7 +170,9 @@ fn of_one(
     let is_redundant = n > info.sizes.dof;
     let inflates = |(fault, _): &(Fault, f64)| {
         let is_gain = matches!(fault, Fault::Gain(..));
-        is_redundant && is_gain && fault_residual.error_by_logged_inputs(*fault) > before
+        is_redundant
+            && is_gain
+            && fault_residual.error_by_logged_inputs(*fault) > EXPLAINED * before
     };
     let real = errors.iter().copied().filter(|one| !inflates(one));
     let best = real.min_by(|a, b| a.1.total_cmp(&b.1));

@@ -1,8 +1,9 @@
-//! Dry friction of the drives that the description lacks.
+//! Effects of the drives that the description or the log lacks: dry friction, drifting load cells.
 //!
-//! Signs of the actuators' velocities are added to the regressor, one column for each drive. If
-//! they explain most of the residual, dry friction is missing. A test of a single drive has little
-//! power in short runs, in which each drive reverses once or twice.
+//! Signs of the actuators' velocities, or the time, are added to the regressor as torques of the
+//! drives. If they explain most of the residual, the model lacks them. A test of a single drive
+//! against its covariance has little power in short runs, in which each drive reverses once or
+//! twice.
 
 use nalgebra::DMatrix;
 use overact::{Function, Model};
@@ -16,9 +17,18 @@ use crate::{
 };
 use overact_logs::{Error, Log};
 
-/// Relative residuals of the model, and with dry friction of all drives.
-///
-/// `None` if the model has dry friction.
+/// Relative residuals of the model, and with further columns.
+#[derive(Debug, Clone)]
+pub(super) struct DriveResiduals {
+    /// Of the model.
+    pub(super) before: f64,
+    /// With dry friction of all drives.
+    pub(super) with_friction: f64,
+    /// With a torque of each drive that grows with the time.
+    pub(super) with_drift: Vec<f64>,
+}
+
+/// Residuals of whole runs.
 ///
 /// # Errors
 /// As [`Motions::next`]; the runs have been read before.
@@ -26,36 +36,39 @@ pub(super) fn residuals(
     model: &dyn Model,
     runs: &[Log],
     settings: &Settings,
-) -> Result<Option<(f64, f64)>, Error> {
+) -> Result<DriveResiduals, Error> {
     let info = model.info();
-    let has_friction = info.parameters.iter().any(|one| one.symbol.has_sign());
-    if has_friction {
-        return Ok(None);
-    }
     let columns = Columns::new(model, settings)?;
     let (p, n) = (columns.len(), info.sizes.actuators);
-    let mut factors = vec![Factor::new(p + n); info.sizes.dof];
+    let width = p + 2 * n;
+    let mut factors = vec![Factor::new(width); info.sizes.dof];
     for log in runs {
         add_run(model, log, settings, &columns, &mut factors)?;
     }
     // All lines share their parameters; each is divided by the norm of its inputs.
-    let mut all = Factor::new(p + n);
+    let mut all = Factor::new(width);
     let mut lines = 0_u32;
     for factor in &factors {
-        let inputs = factor.matrix().column(p + n).norm();
+        let inputs = factor.matrix().column(width).norm();
         if inputs > 0.0 {
             all.push(&(factor.matrix() / inputs));
             lines += 1;
         }
     }
-    let error = |count: usize| {
-        let selected: Vec<usize> = (0..count).collect();
+    let error = |more: std::ops::Range<usize>| {
+        let selected: Vec<usize> = (0..p).chain(more).collect();
         all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
     };
-    Ok(Some((error(p), error(p + n))))
+    let drift = |drive: usize| error(p + n + drive..p + n + drive + 1);
+    Ok(DriveResiduals {
+        before: error(0..0),
+        with_friction: error(p..p + n),
+        with_drift: (0..n).map(drift).collect(),
+    })
 }
 
-/// Adds the equations of a run to the factor of each line: W, signs of the velocities, inputs.
+/// Adds the equations of a run to the factor of each line: W, torques of the signs of velocities,
+/// torques of the time, inputs.
 fn add_run(
     model: &dyn Model,
     log: &Log,
@@ -65,7 +78,7 @@ fn add_run(
 ) -> Result<(), Error> {
     let info = model.info();
     let (n, r, p) = (info.sizes.actuators, info.sizes.dof, columns.len());
-    let width = p + n + 1;
+    let width = p + 2 * n + 1;
     let mut motions = Motions::new(model, log, settings)?.unwatched();
     let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
     let mut streams = (0..r)
@@ -78,7 +91,7 @@ fn add_run(
                 Error::from(motion.outside(first + error.sample, error.error))
             };
             let states = SampledStates::of_motion(&motion, first, count);
-            let mut lines = columns.evaluate(model, &states, n + 1).map_err(at)?;
+            let mut lines = columns.evaluate(model, &states, 2 * n + 1).map_err(at)?;
             let pose = slice(&motion.pose, info.sizes.pose, first, count);
             let mut jacobians = vec![0.0; count * n * r];
             model
@@ -87,6 +100,11 @@ fn add_run(
             let jacobians = DMatrix::from_row_slice(count * n, r, &jacobians);
             let torques = slice(&motion.torques, n, first, count);
             let velocities = slice(&motion.velocities, n, first, count);
+            // From -1 to 1 in the run.
+            let time = |sample: usize| {
+                let number = motion.first_sample + first + sample;
+                2.0 * number as f64 / log.samples() as f64 - 1.0
+            };
             for (line, rows) in lines.iter_mut().enumerate() {
                 for (sample, row) in rows.chunks_exact_mut(width).enumerate() {
                     let mut inputs = 0.0;
@@ -94,15 +112,16 @@ fn add_run(
                         let place = sample * n + drive;
                         let share = jacobians[(place, line)];
                         let velocity = velocities[place];
-                        row[p + drive] = share
-                            * if velocity == 0.0 {
-                                0.0
-                            } else {
-                                velocity.signum()
-                            };
+                        let sign = if velocity == 0.0 {
+                            0.0
+                        } else {
+                            velocity.signum()
+                        };
+                        row[p + drive] = share * sign;
+                        row[p + n + drive] = share * time(sample);
                         inputs += share * torques[place];
                     }
-                    row[p + n] = inputs;
+                    row[p + 2 * n] = inputs;
                 }
             }
             for ((stream, rows), factor) in streams.iter_mut().zip(&lines).zip(factors.iter_mut()) {
