@@ -17,8 +17,6 @@ macro_rules! library {
         $crate::library! { $check;
             ankle: Ankle,
             ankle_offset: AnkleOffset,
-            cable_planar: CablePlanar,
-            cable_spatial: CableSpatial,
             delta: Delta,
             delta_4: Delta4,
             dualv: DualV,
