@@ -49,6 +49,8 @@ pub enum Error {
     ///
     /// There is motion with zero or negative kinetic energy.
     MassMatrix,
+    /// No torques with tensions of at least the minima produce the motion.
+    Tensions,
     /// Kept actuators other than the description's do not determine the platform's motion.
     SingularPartition {
         /// The kept actuators.
@@ -151,6 +153,10 @@ impl fmt::Display for Error {
             Self::MassMatrix => write!(
                 f,
                 "the mass matrix is not positive definite: with these parameters there is a motion without kinetic energy, or with a negative one"
+            ),
+            Self::Tensions => write!(
+                f,
+                "no tensions above the minima of the cables produce this motion"
             ),
             Self::SingularPartition { kept, condition } => write!(
                 f,

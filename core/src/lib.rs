@@ -34,6 +34,7 @@ pub mod limits;
 pub mod parameter;
 pub mod singular;
 pub mod size;
+pub mod tension;
 pub mod text;
 pub mod trigonometry;
 

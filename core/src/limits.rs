@@ -36,6 +36,8 @@ pub struct Limits {
     pub closed: f64,
     /// A partition whose condition number exceeds this counts as singular.
     pub partition: f64,
+    /// A tension below its minimum by this fraction of the largest torque counts as the minimum.
+    pub tension: f64,
     /// Largest magnitudes of inputs.
     pub largest: Largest,
 }
@@ -83,6 +85,7 @@ pub const DOUBLE: Limits = Limits {
     joint_step: 1e-13,
     closed: 1e-10,
     partition: 1e9,
+    tension: 1e-12,
     largest: Largest {
         pose: 1e6,
         position: 1e12,
@@ -107,6 +110,7 @@ pub const SINGLE: Limits = Limits {
     joint_step: 3e-6,
     closed: 3e-5,
     partition: 1e5,
+    tension: 1e-5,
     largest: Largest {
         pose: 1e3,
         position: 1e5,

@@ -7,8 +7,13 @@ use crate::experiments::{controller, data, excitation, experiment, payloads, pri
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::{Leg, Platform, Spanned, actuators};
+<<<<<<< HEAD
 use crate::robot::shape::{MOST_JOINTS, Shape};
 use crate::robot::{chain, frame, leg, platform, point_spring, shape};
+=======
+use crate::robot::shape::Shape;
+use crate::robot::{cable, chain, frame, leg, platform, point_spring, shape};
+>>>>>>> e4ce6fdaa4ab6c3fb1034c64779376ca896325f4
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
@@ -104,6 +109,14 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     check_joint_count(table, name.as_ref(), &legs)?;
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
+    let has_platform = platform_item.is_some();
+    cable::check(
+        table.context,
+        &shapes,
+        has_platform,
+        platform.as_ref(),
+        &legs,
+    );
     check_actuators(table, platform.as_ref(), &legs);
     let frames = frame::read(table, platform_item.is_some(), &legs, &scope);
     let is_closed = legs.iter().any(|leg| leg.end.is_some());

@@ -185,6 +185,14 @@ pub trait Model: Sync {
         &[]
     }
 
+    /// Whether each actuator is a cable, whose torque is its tension, positive if it pulls.
+    ///
+    /// The force on a cable's length, in the direction of growing length, is the negative tension.
+    /// Empty if no actuator is a cable.
+    fn pulls(&self) -> &[bool] {
+        &[]
+    }
+
     /// Evaluates `function` at `output.len() / (rows * columns)` samples.
     ///
     /// `inputs` are those of [`Function::inputs`], each with one row of numbers per sample. An

@@ -16,6 +16,10 @@
 //!
 //! **Derivative.** d_k = a d_{k-1} + (1 - a)(e_k - e_{k-1})/T with a = exp(-2π f_d T).
 //!
+//! **Cables.** The feed-forward contains the internal torques that keep all cables taut, so only
+//! the feedback is projected. A force on a cable's length is the negative tension, and tensions are
+//! not negative.
+//!
 //! **Projection.** (50) is evaluated at the desired pose, which needs no forward kinematics. The
 //! torque limit comes last, as in an amplifier.
 
@@ -49,6 +53,8 @@ pub(crate) struct Controller<'a> {
     smoothing: f64,
     project: bool,
     limit: Option<&'a [f64]>,
+    /// Whether each actuator is a cable; empty if none is.
+    pulls: &'a [bool],
     /// Errors of the previous sample, unused before the first.
     previous: Vec<f64>,
     started: bool,
@@ -73,6 +79,7 @@ impl<'a> Controller<'a> {
             // Without redundancy there are no internal torques.
             project: experiment.project_internal && inertia.len() > dof,
             limit: experiment.torque_limit.as_deref(),
+            pulls: model.pulls(),
             previous: vec![0.0; inertia.len()],
             started: false,
             derivative: vec![0.0; inertia.len()],
@@ -97,9 +104,16 @@ impl Control for Controller<'_> {
             };
             self.previous[i] = error;
             self.derivative[i] += (1.0 - self.smoothing) * (rate - self.derivative[i]);
-            self.command[i] = desired.torques[i]
-                + self.stiffness[i] * error
-                + self.damping[i] * self.derivative[i];
+            let feedback = self.stiffness[i] * error + self.damping[i] * self.derivative[i];
+            self.command[i] = match self.pulls.get(i) {
+                None => {
+                    desired.torques[i]
+                        + self.stiffness[i] * error
+                        + self.damping[i] * self.derivative[i]
+                }
+                Some(true) => -feedback,
+                Some(false) => feedback,
+            };
         }
         self.started = true;
         if self.project {
@@ -110,8 +124,16 @@ impl Control for Controller<'_> {
         } else {
             torques.copy_from_slice(&self.command);
         }
+        if !self.pulls.is_empty() {
+            let all = torques.iter_mut().zip(desired.torques);
+            all.for_each(|(torque, forward)| *torque += forward);
+        }
         for (torque, limit) in torques.iter_mut().zip(self.limit.unwrap_or(&[])) {
             *torque = torque.clamp(-limit, *limit);
+        }
+        let cables = torques.iter_mut().zip(self.pulls);
+        for (tension, _) in cables.filter(|(_, pulls)| **pulls) {
+            *tension = tension.max(0.0);
         }
         Ok(())
     }

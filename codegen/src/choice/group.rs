@@ -109,6 +109,9 @@ pub fn serves_model(mechanism: &Mechanism, function: Function, from: MotionInput
         Function::ClosureError | Function::LegsJacobian | Function::ClosureActuatorJacobian => {
             from == MotionInput::Joints
         }
+        // Inverse dynamics of cables includes their minimum tensions, so known torques follow from
+        // the bias.
+        Function::Bias(Columns::Standard) => mechanism.has_cables() && from == MotionInput::Pose,
         Function::Jacobian
         | Function::LegsPlatformJacobian
         | Function::ClosurePlatformJacobian

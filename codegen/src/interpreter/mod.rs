@@ -17,6 +17,7 @@ mod plan;
 mod rows;
 mod simd;
 mod single;
+mod tensions;
 #[cfg(test)]
 mod tests;
 mod trigonometry;
@@ -27,6 +28,7 @@ use guards::check;
 use plan::Plan;
 use single::Single;
 use std::cell::Cell;
+use tensions::Tensions;
 
 /// Samples per block: live values of a program fit into the first-level cache.
 pub const BLOCK: usize = 64;
@@ -42,7 +44,7 @@ const TOGETHER: usize = 16;
 pub struct Failed {
     /// The sample.
     pub sample: usize,
-    /// Index of the guard.
+    /// Index of the guard; the number of guards if there are no tensions.
     pub guard: usize,
     /// The guarded value.
     pub value: f64,
@@ -86,7 +88,7 @@ impl Program {
         output: &mut [f64],
     ) -> Result<(), Failed> {
         match samples {
-            1 => single::evaluate(self, inputs, output),
+            1 if self.least_torques.is_empty() => single::evaluate(self, inputs, output),
             _ => Evaluator::new(self).evaluate(samples, inputs, output),
         }
     }
@@ -99,6 +101,7 @@ pub struct Evaluator {
     single: Option<Single>,
     rows: Option<Memory>,
     numbers: Option<Memory>,
+    tensions: Tensions,
 }
 
 impl Evaluator {
@@ -110,6 +113,7 @@ impl Evaluator {
             single: None,
             rows: None,
             numbers: None,
+            tensions: Tensions::new(program),
         }
     }
 
@@ -119,6 +123,35 @@ impl Evaluator {
     /// The first sample at which a guard fails. Inputs and outputs of a wrong length are an error
     /// of the caller and give an incomplete output.
     pub fn evaluate(
+        &mut self,
+        samples: usize,
+        inputs: &[Rows<'_>],
+        output: &mut [f64],
+    ) -> Result<(), Failed> {
+        if self.program.least_torques.is_empty() {
+            return self.evaluate_entries(samples, inputs, output);
+        }
+        let mut entries = std::mem::take(&mut self.tensions.entries);
+        entries.resize(samples * self.program.entries.len(), 0.0);
+        let evaluated = self.evaluate_entries(samples, inputs, &mut entries);
+        let complete = evaluated
+            .as_ref()
+            .map_or_else(|failed| failed.sample, |()| samples);
+        if complete < samples {
+            // Samples before the failed one may have no tensions and then fail first. Entries of
+            // its block are not written, so these samples are evaluated again.
+            let again = self.evaluate_entries(complete, inputs, &mut entries);
+            debug_assert!(again.is_ok(), "the first failed sample comes later");
+        }
+        let distributed = self
+            .tensions
+            .distribute(&self.program, complete, &entries, output);
+        self.tensions.entries = entries;
+        distributed.and(evaluated)
+    }
+
+    /// Evaluates the entries of the program.
+    fn evaluate_entries(
         &mut self,
         samples: usize,
         inputs: &[Rows<'_>],

@@ -72,6 +72,7 @@ fn program() -> Program {
         })
         .collect();
     Program {
+        least_torques: Vec::new(),
         inputs: vec![array("state", 2), array("parameters", 1)],
         output: array("all", entries.len()),
         entries,

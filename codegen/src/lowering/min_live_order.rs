@@ -202,6 +202,7 @@ fn renumbered(program: &Program, order: &[usize]) -> Program {
         places[at] = place;
     }
     let mut ordered = Program {
+        least_torques: program.least_torques.clone(),
         steps: order.iter().map(|&at| program.steps[at].clone()).collect(),
         ..program.clone()
     };

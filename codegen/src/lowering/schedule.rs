@@ -33,6 +33,7 @@ pub(crate) fn schedule(
     }
     let guards = schedule.guards()?;
     Ok(Program {
+        least_torques: Vec::new(),
         inputs: inputs.to_vec(),
         output: output.clone(),
         entries,

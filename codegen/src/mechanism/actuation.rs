@@ -148,7 +148,11 @@ impl Mechanism {
                     .copy_from(&self.coordinate_rates(index));
                 continue;
             };
-            let rates = rates_per_velocity(leg, &joints[range.clone()])? * velocities;
+            let rates = if leg.cable.is_some() {
+                self.cable_row(index, pose, joints)? * velocities
+            } else {
+                rates_per_velocity(leg, &joints[range.clone()])? * velocities
+            };
             all.rows_mut(range.start, range.len()).copy_from(&rates);
         }
         Some(all)

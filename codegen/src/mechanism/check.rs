@@ -128,6 +128,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         shape: l.shape,
         base: l.base.clone(),
         joints: l.joints.iter().map(joint).collect(),
+        cable: l.cable.clone(),
         end: l.end.as_ref().map(|e| e.value.clone()),
         base_body: l.base_body,
         end_body: l.end_body,
@@ -299,6 +300,10 @@ fn check_structure(
 ) {
     let Home { pose, joints, .. } = home;
     for (index, place) in description.legs.iter().enumerate() {
+        // A cable follows every motion of its platform point.
+        if place.cable.is_some() {
+            continue;
+        }
         let Some(velocities) = shared_velocities(mechanism, index, pose, joints) else {
             continue;
         };
@@ -376,6 +381,9 @@ fn check_mobility(
     errors: &mut Diagnostics,
 ) {
     let leg = &mechanism.legs[index];
+    if leg.cable.is_some() {
+        return;
+    }
     let Home { pose, joints, .. } = &mechanism.home;
     let Some(wanted) = shared_velocities(mechanism, index, pose, joints) else {
         return;

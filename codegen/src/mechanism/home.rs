@@ -1,5 +1,6 @@
 //! The home configuration: refines rough joint positions until every leg closes.
 
+use super::cable::{CableProblem, wrap};
 use super::singular_values::SingularValues;
 use super::{Leg, Mechanism};
 use crate::cas::{Arena, Expr, InputElement};
@@ -65,6 +66,13 @@ pub(crate) enum HomeError {
         /// Remaining distance.
         gap: f64,
     },
+    /// A cable does not reach its platform point.
+    Cable {
+        /// Index of the leg.
+        leg: usize,
+        /// The reason.
+        problem: CableProblem,
+    },
     /// The platform's motion does not determine the leg's joint rates.
     Singular {
         /// Index of the leg.
@@ -108,6 +116,16 @@ impl Home {
                 continue;
             };
             let range = mechanism.leg_range(index);
+            if let Some(cable) = &leg.cable {
+                match wrap(leg, cable, &target) {
+                    Ok(found) => joints[range].fill(found.length),
+                    Err(problem) => errors.push(HomeError::Cable {
+                        leg: index,
+                        problem,
+                    }),
+                }
+                continue;
+            }
             match close(leg, &rough.joints[range.clone()], &target) {
                 Ok(q) => joints[range].copy_from_slice(&q),
                 Err(Failure::Open(gap)) => errors.push(HomeError::Open { leg: index, gap }),

@@ -57,6 +57,11 @@ impl Mobility {
         for (index, leg) in mechanism.legs.iter().enumerate() {
             let end = leg.end.as_ref()?;
             let arms = end_velocities(platform.motion, pose, end, size);
+            if leg.cable.is_some() {
+                // A cable blocks nothing, since it may pay out.
+                felt = stacked(&felt, &arms);
+                continue;
+            }
             let jacobian = scaled_jacobian(leg, &joints[mechanism.leg_range(index)], size);
             // The left null space is the null space of the transpose.
             let free = SingularValues::new(&jacobian.transpose())?;
@@ -112,10 +117,14 @@ impl Mobility {
         let size = mechanism.length_scale();
         let rates = |(index, leg): (usize, &Leg)| -> Option<DMatrix<f64>> {
             let range = mechanism.leg_range(index);
-            let jacobian = scaled_jacobian(leg, &home.joints[range], size);
-            let found = SingularValues::new(&jacobian)?;
             let platform = mechanism.platform.as_ref()?;
             let arms = end_velocities(platform.motion, &home.pose, leg.end.as_ref()?, size);
+            if leg.cable.is_some() {
+                let row = mechanism.cable_row(index, &home.pose, &home.joints)?;
+                return Some(row * arms * &self.allowed);
+            }
+            let jacobian = scaled_jacobian(leg, &home.joints[range], size);
+            let found = SingularValues::new(&jacobian)?;
             Some(found.pseudo_inverse(ROUNDING * found.largest()) * arms * &self.allowed)
         };
         let mut all = DMatrix::zeros(0, self.allowed.ncols());

@@ -9,6 +9,7 @@
 //! branches, which are legs without an end.
 
 mod actuation;
+mod cable;
 mod check;
 mod explain;
 mod home;
@@ -31,8 +32,8 @@ pub use overact_description::TwistCoordinate;
 
 pub use crate::cas::{Angle, Number, Ratio};
 pub use overact_description::{
-    ActuatorNames, BaseColumns, BodyIndex, End, Formula, FrameBody, JointKind, Motion, Placement,
-    Spring, SpringBody, SpringEnd, StandardParameter,
+    ActuatorNames, BaseColumns, BodyIndex, Cable, End, Formula, FrameBody, JointKind, Motion,
+    Placement, Spring, SpringBody, SpringEnd, StandardParameter,
 };
 
 /// A joint and the body that it moves.
@@ -105,8 +106,10 @@ pub struct Leg {
     pub shape: usize,
     /// The leg's base frame in the robot's base frame.
     pub base: Placement,
-    /// The joints; antecedents come first.
+    /// The joints; antecedents come first. A cable has one, its length.
     pub joints: Vec<Joint>,
+    /// The cable, of a leg that is one.
+    pub cable: Option<Cable>,
     /// End of the leg on the platform or on a body; `None` for a tree.
     pub end: Option<End>,
     /// The body of the skeleton, or of an earlier chain, that the leg starts from; `None` for the
@@ -235,6 +238,30 @@ impl Mechanism {
             .enumerate()
             .filter(|(_, j)| self.joint(**j).actuated);
         actuated.map(|(i, _)| i).collect()
+    }
+
+    /// Whether the robot has cables.
+    #[must_use]
+    pub fn has_cables(&self) -> bool {
+        self.legs.iter().any(|leg| leg.cable.is_some())
+    }
+
+    /// Whether each actuator is a cable, whose torque is its tension.
+    #[must_use]
+    pub fn pulls(&self) -> Vec<bool> {
+        let joints = self.joints();
+        let is_cable = |&at: &usize| self.legs[joints[at].leg].cable.is_some();
+        self.actuated().iter().map(is_cable).collect()
+    }
+
+    /// Least torque of each actuator: the minimum tension of a cable, N; `None` for other
+    /// actuators.
+    #[must_use]
+    pub fn minimum_tensions(&self) -> Vec<Option<f64>> {
+        let joints = self.joints();
+        let cable = |&at: &usize| self.legs[joints[at].leg].cable.as_ref();
+        let least = |at: &usize| cable(at).map(|cable| cable.minimum.value());
+        self.actuated().iter().map(least).collect()
     }
 
     /// Whether the robot has no loop: neither a platform nor chains.

@@ -320,6 +320,9 @@ impl Mechanism {
     #[must_use]
     pub fn length_scale(&self) -> f64 {
         let reach = |(index, leg): (usize, &Leg)| {
+            if leg.cable.is_some() {
+                return self.home.joints[self.leg_range(index).start];
+            }
             let frames = leg.frames(&self.home.joints[self.leg_range(index)]);
             let last = frames
                 .last()

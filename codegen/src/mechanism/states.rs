@@ -1,6 +1,7 @@
 //! Random regular states of a mechanism: poses around home, with joints that close every leg in the
 //! working mode of the home configuration.
 
+use super::cable::wrap_within;
 use super::home::{REGULAR, close_finely, close_within, condition, lenient_limit};
 use super::parasitic::closed;
 use super::{JointKind, Mechanism, Motion};
@@ -199,7 +200,7 @@ fn follow(mechanism: &Mechanism, pose: &[f64], is_lenient: bool) -> Option<Vec<f
     let home = &mechanism.home;
     let legs = mechanism.legs.iter().enumerate();
     let limits = legs.map(|(index, leg)| {
-        if is_lenient {
+        if is_lenient && leg.cable.is_none() {
             lenient_limit(leg, &home.joints[mechanism.leg_range(index)])
         } else {
             REGULAR
@@ -225,6 +226,10 @@ fn follow(mechanism: &Mechanism, pose: &[f64], is_lenient: bool) -> Option<Vec<f
                 joints[range].copy_from_slice(&at[mechanism.coordinate_range(index)]);
                 continue;
             };
+            if let Some(cable) = &leg.cable {
+                joints[range].fill(wrap_within(leg, cable, &target)?.length);
+                continue;
+            }
             let mut closed = close_within(leg, &joints[range.clone()], &target, limits[index])?;
             if step == STEPS {
                 closed = close_finely(leg, &closed, &target);

@@ -30,9 +30,16 @@ impl Assembler<'_> {
     ) -> Result<Program, DerivationError> {
         let arena = Arena::new();
         let derived = derive(&arena, self.mechanism, self.selection, function, from)?;
-        let program = self
+        let mut program = self
             .search
             .lower(&arena, self.mechanism, function, &derived)?;
+        if matches!(function, Function::InverseDynamics(_)) && self.mechanism.has_cables() {
+            let least = self.mechanism.minimum_tensions().into_iter();
+            program.least_torques = least
+                .map(|least| least.unwrap_or(f64::NEG_INFINITY))
+                .collect();
+            program.output.shape = vec![program.least_torques.len()];
+        }
         Ok(program)
     }
 }

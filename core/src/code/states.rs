@@ -43,4 +43,7 @@ super::codes! {
     NOT_CLOSED 514 "a pose that the legs do not allow"
         cause "The platform has parasitic motion: only its independent coordinates can be chosen, and the closures of the legs determine the others."
         cure "Use a pose of the forward kinematics, or project the pose onto the closures. The message gives its distance from them."
+    TENSIONS 515 "tensions that the cables can't have"
+        cause "Cables only pull. At this state some cable would need a tension below its `minimum` in the description."
+        cure "Stay within the wrench-feasible workspace, lower `minimum`, or change the motion or the load."
 }

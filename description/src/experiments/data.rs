@@ -95,6 +95,7 @@ pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         choice.value.then_some(item)
     });
     let transmission = motors.map_or(Some(Vec::new()), |item| transmission::matrix(item, robot));
+    check_drums(&table, robot, torque_gain.as_deref().unwrap_or_default());
     if motors.is_none() {
         of_joints
             .into_iter()
@@ -243,6 +244,25 @@ fn gains_of_joints(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Diagnost
         })
     };
     list.iter().zip(&kinds).filter_map(other).collect()
+}
+
+/// Reports gains that are variables of the log for cables with a drum, whose radius divides a number.
+fn check_drums(table: &Table<'_, '_>, robot: &Inventory<'_>, gains: &[Factor]) {
+    let drums = actuators(robot.legs).into_iter().map(|(leg, _)| {
+        let cable = robot.legs.get(leg).and_then(|leg| leg.cable.as_ref());
+        cable.is_some_and(|cable| cable.drum.is_some())
+    });
+    let is_wrong =
+        |(gain, has_drum): (&Factor, bool)| has_drum && matches!(gain, Factor::Variable(_));
+    if let (true, Some(item)) = (
+        gains.iter().zip(drums).any(is_wrong),
+        table.get("torque_gain"),
+    ) {
+        let message = "`torque_gain` of a cable with a `drum` must be a number";
+        let help = "the drum's torque is divided by its radius: leave out `drum`, and let the variable be the factor to the tension";
+        let error = item.error(Code::CONTRADICTION, message).help(help);
+        table.context.report(error);
+    }
 }
 
 /// Reads a factor: a bare identifier that is no constant is the name of a variable in the log.

@@ -1,6 +1,7 @@
 //! The tables `[[place]]`: a shape evaluated with the values of a placement.
 
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
+use crate::robot::cable;
 use crate::robot::geometry::placement;
 use crate::robot::joint;
 use crate::robot::model::{End, Leg, Spanned};
@@ -57,6 +58,7 @@ fn place(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], constants: &Scope) -> 
             .and_then(|item| item.evaluate(constants));
         scope.add(variable.value.clone(), value);
     }
+    let home = home.filter(|item| shape.cable.is_none() || cable::refuse_home(item));
     let homes = home.and_then(|item| item.table("the `home` of a leg"));
     table.finish();
     let joints = joint::read(shape, &scope, homes.as_ref());
@@ -78,6 +80,7 @@ fn place(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], constants: &Scope) -> 
         shape_name: shape.name.value.clone(),
         base: placement(shape.base_at.as_ref(), shape.base_rotation.as_ref(), &scope),
         joints,
+        cable: shape.cable.as_ref().map(|cable| cable.evaluate(&scope)),
         end,
         // Names of bodies are resolved when the skeleton is known.
         base_body: None,

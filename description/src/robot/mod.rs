@@ -1,6 +1,7 @@
 //! The robot of a description: joints, legs, platform, motors, springs and their parameters.
 
 pub(crate) mod actuator_names;
+pub(crate) mod cable;
 pub(crate) mod chain;
 pub(crate) mod compound;
 pub(crate) mod compound_joint_kind;

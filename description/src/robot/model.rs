@@ -176,8 +176,10 @@ pub struct Leg {
     pub shape_name: String,
     /// The leg's base frame in the robot's base frame.
     pub base: Placement,
-    /// The joints; antecedents come first.
+    /// The joints; antecedents come first. A cable has one, the slide of its length.
     pub joints: Vec<Joint>,
+    /// The cable, of a leg that is one.
+    pub cable: Option<Cable>,
     /// End of the leg on the platform or on a body; `None` for a tree.
     pub end: Option<Spanned<End>>,
     /// The body of the skeleton, or of an earlier chain, that the leg starts from; `None` for the
@@ -188,6 +190,17 @@ pub struct Leg {
     pub end_body: Option<BodyIndex>,
     /// Location of its `[[place]]`.
     pub span: Span,
+}
+
+/// A cable between an exit point, the origin of the leg's base frame, and a platform point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cable {
+    /// Radius of the pulley that swivels about the base frame's z axis, m; zero for an eyelet.
+    pub pulley: Number,
+    /// Least tension, N.
+    pub minimum: Number,
+    /// Radius of the drum, m, if logs contain the drum's torque instead of the tension.
+    pub drum: Option<Number>,
 }
 
 /// End of a leg on the platform.

@@ -13,6 +13,8 @@ pub(crate) enum Owner {
     Joint(JointKind),
     /// A motor that drives joints.
     Motor,
+    /// A cable, whose drive acts on its length.
+    Cable,
     /// The platform or the payload.
     FreeBody,
 }
@@ -22,7 +24,7 @@ impl Owner {
     fn all(self) -> &'static [P] {
         match self {
             Self::FreeBody | Self::Joint(JointKind::Fixed) => &P::INERTIA,
-            Self::Motor => &P::DRIVE,
+            Self::Motor | Self::Cable => &P::DRIVE,
             Self::Joint(_) => &P::ALL,
         }
     }
@@ -78,8 +80,12 @@ impl Item<'_, '_> {
             let (body, help) = match owner {
                 Owner::FreeBody => ("a free body", ten),
                 Owner::Joint(_) => ("a fixed joint", ten),
-                Owner::Motor => (
-                    "a motor",
+                Owner::Motor | Owner::Cable => (
+                    if owner == Owner::Cable {
+                        "a cable"
+                    } else {
+                        "a motor"
+                    },
                     "its parameters are \"ia\", \"fv\", \"fs\", \"off\" and those of \"friction by direction\"",
                 ),
             };

@@ -1,6 +1,7 @@
 //! The tables `[leg.NAME]`: shapes of legs with unevaluated expressions.
 
 use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
+use crate::robot::cable::{self, CableShape};
 use crate::robot::compound::split;
 use crate::robot::compound_joint_kind::{CompoundJointKind, WORDS};
 use crate::robot::joint_shape::{JointShape, STEPS};
@@ -26,6 +27,8 @@ pub(crate) struct Shape<'c, 't> {
     pub(crate) base_body: Option<Spanned<String>>,
     pub(crate) joints: Vec<JointShape<'c, 't>>,
     pub(crate) motors: Vec<MotorShape<'c, 't>>,
+    /// The cable, of a leg that is one; its only joint is its length.
+    pub(crate) cable: Option<CableShape<'c, 't>>,
     pub(crate) end: Option<EndShape<'c, 't>>,
     pub(crate) span: Span,
 }
@@ -60,13 +63,27 @@ pub(crate) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
     if let Some(base) = base {
         base.finish();
     }
-    let help = "write its joints as [[leg.NAME.joint]], from the base on";
-    let joints = table
-        .require("joint", help)
-        .map_or_else(Vec::new, |item| joints(&item));
+    let kind = table.get("type");
+    let is_cable = kind.and_then(|item| item.choice(&[("joints", false), ("cable", true)]));
+    let is_cable = is_cable.is_some_and(|kind| kind.value);
+    let (cable, joints) = if is_cable {
+        let (cable, length) = cable::shape(&table);
+        (Some(cable), vec![length])
+    } else {
+        let help = "write its joints as [[leg.NAME.joint]], from the base on; a cable has type = \"cable\" instead";
+        let joints = table.require("joint", help);
+        (None, joints.map_or_else(Vec::new, |item| joints_of(&item)))
+    };
     let names: Vec<Spanned<String>> = joints.iter().map(|joint| joint.name.clone()).collect();
-    let motors = table.get("motor").map(|item| motor::shapes(&item, &names));
-    let end = table.get("end").and_then(|item| end(&item));
+    let motors = if is_cable { None } else { table.get("motor") };
+    let motors = motors.map(|item| motor::shapes(&item, &names));
+    let end = table.get("end").and_then(|item| {
+        if is_cable {
+            cable::end(&item)
+        } else {
+            end(&item)
+        }
+    });
     table.finish();
     Some(Shape {
         name,
@@ -76,6 +93,7 @@ pub(crate) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
         base_body,
         joints,
         motors: motors.unwrap_or_default(),
+        cable,
         end,
         span: table.span.clone(),
     })
@@ -111,7 +129,7 @@ fn valid_variables(
     valid
 }
 
-fn joints<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
+fn joints_of<'c, 't>(item: &Item<'c, 't>) -> Vec<JointShape<'c, 't>> {
     let tables = item.tables("a joint");
     if tables.is_empty() && item.value.as_array().is_some_and(|list| list.is_empty()) {
         item.context

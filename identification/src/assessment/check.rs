@@ -164,6 +164,8 @@ pub enum CheckKind {
     DroppedSamples,
     /// The robot hardly moves.
     Standstill,
+    /// The tension of a cable falls to zero.
+    SlackCable,
     /// Positions look like degrees instead of radians, or like motor-side angles.
     Degrees,
     /// Samples of one run are also in another one.
@@ -231,6 +233,7 @@ impl CheckKind {
             Self::StuckEncoder => "stuck encoder",
             Self::DroppedSamples => "dropped samples",
             Self::Standstill => "standstill",
+            Self::SlackCable => "slack cable",
             Self::Degrees => "degrees",
             Self::RepeatedSamples => "repeated samples",
             Self::DuplicateColumns => "duplicate columns",

@@ -7,6 +7,7 @@
 
 use overact::{Columns, Function, Model};
 
+use super::distribution::least_torques;
 use super::motion::Motion;
 use overact_logs::Error;
 
@@ -57,6 +58,9 @@ impl<'a> KnownTorques<'a> {
         let sizes = self.model.info().sizes;
         let still = vec![0.0; samples * sizes.dof];
         let parameters = vec![0.0; sizes.parameters + sizes.payload_parameters];
+        if !self.model.pulls().is_empty() {
+            return self.of_bias(poses, twists, &parameters, samples);
+        }
         let mut torques = vec![0.0; samples * sizes.actuators];
         let inputs: [&[f64]; 4] = [poses, twists, &still, &parameters];
         self.model.evaluate(
@@ -64,6 +68,31 @@ impl<'a> KnownTorques<'a> {
             &inputs,
             &mut torques,
         )?;
+        Ok(torques)
+    }
+
+    /// Torques of a robot with cables, whose inverse dynamics includes the minimum tensions: the
+    /// forces of least norm for the bias.
+    fn of_bias(
+        &self,
+        poses: &[f64],
+        twists: &[f64],
+        parameters: &[f64],
+        samples: usize,
+    ) -> Result<Vec<f64>, overact::SampleError> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let mut bias = vec![0.0; samples * r];
+        let function = Function::Bias(Columns::Standard);
+        self.model
+            .evaluate(function, &[poses, twists, parameters], &mut bias)?;
+        if bias.iter().all(|force| *force == 0.0) {
+            return Ok(vec![0.0; samples * n]);
+        }
+        let mut jacobians = vec![0.0; samples * n * r];
+        self.model
+            .evaluate(Function::InverseJacobian, &[poses], &mut jacobians)?;
+        let [torques] = least_torques(&jacobians, n, r, [&bias]);
         Ok(torques)
     }
 

@@ -202,13 +202,27 @@ impl<'a> Motions<'a> {
             twist,
             acceleration,
             velocities,
-            torques: keep(&block.torques, n),
+            torques: actuator_forces(self.model, keep(&block.torques, n)),
             ..self.empty()
         };
         self.gears.take_losses(&mut motion, &accelerations);
         self.known.subtract(&mut motion)?;
         Ok(motion)
     }
+}
+
+/// Forces on the actuators' coordinates for logged torques, and the reverse: the tension of a cable
+/// acts against its length.
+pub(crate) fn actuator_forces(model: &dyn Model, mut torques: Vec<f64>) -> Vec<f64> {
+    let pulls = model.pulls();
+    if pulls.is_empty() {
+        return torques;
+    }
+    for sample in torques.chunks_exact_mut(pulls.len()) {
+        let cables = sample.iter_mut().zip(pulls).filter(|(_, pulls)| **pulls);
+        cables.for_each(|(torque, _)| *torque = -*torque);
+    }
+    torques
 }
 
 /// Checks a run against the model and the settings.

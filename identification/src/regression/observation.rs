@@ -23,7 +23,7 @@ use crate::{
     blocks::{BLOCK, slice},
     filters::Decimator,
     kinematics::{
-        Motion, Motions,
+        Motion, Motions, actuator_forces,
         conditioning::{KeptActuators, home_scales},
     },
     series::RunFigures,
@@ -296,7 +296,8 @@ impl Observer<'_> {
             Error::from(motion.outside(first + error.sample, error.error))
         };
         let states = SampledStates::of_motion(motion, first, count);
-        let torques = slice(&motion.torques, n, first, count);
+        let torques = slice(&motion.torques, n, first, count).to_vec();
+        let torques = actuator_forces(self.model, torques);
         let mut platform = self
             .columns
             .evaluate(self.model, &states, self.base, 1)
@@ -304,7 +305,7 @@ impl Observer<'_> {
         let width = self.base.len() + 1;
         let mut y = vec![0.0; count * r];
         self.model
-            .evaluate(Function::ProjectPlatform, &[states.pose, torques], &mut y)
+            .evaluate(Function::ProjectPlatform, &[states.pose, &torques], &mut y)
             .map_err(at)?;
         for (line, rows) in platform.iter_mut().enumerate() {
             let measured = y[line..].iter().step_by(r);

@@ -45,6 +45,8 @@ pub(super) struct Rest {
     /// Motion of each actuator.
     pub(super) moved: Vec<f64>,
     pub(super) speed_before: f64,
+    /// Size of the step that ends it; zero at the end of the run.
+    pub(super) step_after: f64,
 }
 
 impl Position {
@@ -81,7 +83,7 @@ impl Position {
             self.speed = self.speed.max((position - back(known)).abs());
         }
         if step != 0.0 {
-            self.end_rest(sample);
+            self.end_rest(sample, step.abs());
             self.since = sample;
             return;
         }
@@ -116,8 +118,8 @@ impl Position {
         }
     }
 
-    /// Ends a rest before sample `end`.
-    pub(super) fn end_rest(&mut self, end: usize) {
+    /// Ends a rest before sample `end` by a step of this size.
+    pub(super) fn end_rest(&mut self, end: usize, step_after: f64) {
         let samples = end - self.since;
         if samples < REST_SAMPLES {
             return;
@@ -128,6 +130,7 @@ impl Position {
             first: self.since,
             samples,
             speed_before: self.speed_before,
+            step_after,
             moved,
         };
         let is_worse = self.rest.as_ref().is_none_or(|known| {

@@ -143,7 +143,7 @@ impl Monitor {
     /// Ends the rests that last until the end.
     fn finish(&mut self) {
         for position in &mut self.positions {
-            position.end_rest(self.samples);
+            position.end_rest(self.samples, 0.0);
         }
         for rests in &mut self.torque_rests {
             rests.end(self.samples);
@@ -229,6 +229,12 @@ impl Monitor {
         torques
             .map(|[low, high]| low.value.max(high.value))
             .collect()
+    }
+
+    /// Smallest torque of each actuator (N, N m): the least tension of a cable.
+    #[must_use]
+    pub fn least_torques(&self) -> Vec<f64> {
+        self.torques.iter().map(|[low, _]| -low.value).collect()
     }
 
     /// Torques that are always zero.
@@ -406,7 +412,10 @@ impl Monitor {
                 });
         // A joint needs time to stop; a signal does not.
         let stops_dead = rest.speed_before > 4.0 * CLEAR_MOTION * own.speed && own.speed > 0.0;
-        ((coupled && others_move) || stops_dead).then(|| {
+        // A drive with dry friction may rest where its motion reverses, while others move. It stops
+        // gently and goes on from the same place; a reading that was stuck jumps to the true one.
+        let pauses = !stops_dead && rest.step_after <= own.sizes.quantile(OF_STEPS);
+        ((coupled && others_move && !pauses) || stops_dead).then(|| {
             let seconds = rest.samples as f64 / self.frequency;
             let message = format!(
                 "the position does not change from t = {:.3} s on for {:.3} s, {}; the encoder or its reading is stuck: repair it, or leave the run out",

@@ -41,10 +41,13 @@ pub(crate) struct MechanismGeometry<'a> {
 }
 
 impl<'a> MechanismGeometry<'a> {
-    /// Geometry of a robot; `None` if it has no platform.
+    /// Geometry of a robot; `None` if it has no platform, or cables, which have no joints.
     pub(crate) fn new(model: &'a InterpretedRobot) -> Option<Self> {
         let mechanism = &model.model().mechanism;
         let motion = mechanism.platform.as_ref()?.motion;
+        if mechanism.has_cables() {
+            return None;
+        }
         let (lengths, parameters) = lengths(mechanism);
         let legs = 0..mechanism.legs.len();
         Some(Self {

@@ -19,8 +19,7 @@ use closure::MechanismGeometry;
 use overact_identification::{Calibration, CalibrationScope, DescribedGeometry, Log, calibrate};
 
 /// Remark for robots whose lengths cannot be calibrated.
-const OFFSETS_ONLY: &str =
-    "calibration of lengths requires a platform: here only encoder offsets are estimated";
+const OFFSETS_ONLY: &str = "calibration of lengths requires a platform with legs of joints: here only encoder offsets are estimated";
 
 impl Robot {
     /// Estimates encoder offsets and lengths from the loop closures in runs.

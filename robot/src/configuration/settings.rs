@@ -21,7 +21,12 @@ impl Robot {
     #[must_use]
     pub fn mapping(&self) -> Mapping {
         let Some(data) = &self.description().data else {
-            return Mapping::for_robot(&self.model().info());
+            let mapping = Mapping::for_robot(&self.model().info());
+            let torque_gain = self.of_drums(mapping.torque_gain);
+            return Mapping {
+                torque_gain,
+                ..mapping
+            };
         };
         let gain = |factor: &Factor| match factor {
             Factor::Value(value) => Gain::Value(*value),
@@ -37,11 +42,31 @@ impl Robot {
             velocities: data.velocities.clone(),
             position_scale: data.position_scale.clone(),
             position_offset: data.position_offset.clone(),
-            torque_gain: data.torque_gain.iter().map(gain).collect(),
+            torque_gain: self.of_drums(data.torque_gain.iter().map(gain).collect()),
             resample: data.resample,
             transmission: data.transmission.clone(),
             rotating: rotating(&data.transmission, self.model().info().actuator_is_revolute),
         }
+    }
+}
+
+impl Robot {
+    /// Factors to the tensions of cables whose logs contain torques of drums.
+    ///
+    /// A gain that is a variable of the log is that of a tension; the description refuses a drum
+    /// with it.
+    fn of_drums(&self, mut gains: Vec<Gain>) -> Vec<Gain> {
+        let legs = self.description().legs.iter();
+        let actuated = legs.flat_map(|leg| {
+            let own = leg.joints.iter().filter(|joint| joint.actuated);
+            own.map(|_| leg.cable.as_ref().and_then(|cable| cable.drum))
+        });
+        for (gain, drum) in gains.iter_mut().zip(actuated) {
+            if let (Gain::Value(value), Some(drum)) = (gain, drum) {
+                *value /= drum.value();
+            }
+        }
+        gains
     }
 }
 

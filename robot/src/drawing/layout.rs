@@ -3,7 +3,9 @@
 use super::scene::{DrawnPart, NOTHING, Point, Scene};
 use super::{sphere, walk};
 use nalgebra::Vector3;
-use overact_codegen::mechanism::{BodyIndex, End, Mechanism, numeric::platform_frame};
+use overact_codegen::mechanism::{
+    BodyIndex, End, Mechanism, numeric::platform_frame, placement_isometry,
+};
 
 /// Scene of a mechanism; `pixel` is the length of one pixel in m, if known.
 pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
@@ -26,6 +28,10 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
         let positions = &mechanism.home.joints[mechanism.leg_range(index)];
         // Chains start from the body that carries them.
         let ground = mechanism.ground_of(index, pose, &mechanism.home.joints);
+        if leg.cable.is_some() {
+            cable(&mut scene, mechanism, index);
+            continue;
+        }
         let (mut parts, mut base) = walk::parts(leg, positions, pixel, mechanism.is_tree());
         if leg.base_body.is_some() {
             parts.iter_mut().for_each(|part| part.carry(&ground));
@@ -51,6 +57,23 @@ pub(super) fn scene(mechanism: &Mechanism, pixel: f64) -> Scene {
     }
     part_sliders(&mut scene, pixel);
     scene
+}
+
+/// Adds a cable: a line from its exit point to its platform point.
+fn cable(scene: &mut Scene, mechanism: &Mechanism, leg: usize) {
+    let home = &mechanism.home;
+    let base = placement_isometry(&mechanism.legs[leg].base)
+        .translation
+        .vector;
+    scene.bases.push(base);
+    let Some(target) = mechanism.target(leg, &home.pose, &home.joints) else {
+        return;
+    };
+    let at = target.translation.vector;
+    let path = vec![base, at];
+    scene.parts.push((leg, DrawnPart::Link { body: 0, path }));
+    scene.parts.push((leg, DrawnPart::Ball { at }));
+    scene.attachments.push(at);
 }
 
 /// Segment of a body between its joint and the base of a chain, with the number of its leg.

@@ -132,6 +132,12 @@ impl Robot {
         progress: &dyn Fn(f64, &str),
     ) -> Result<Excitation, Error> {
         let start = Instant::now();
+        if !self.model().pulls().is_empty() {
+            let message = "exciting runs of robots with cables are not supported";
+            let help = "the search does not bound tensions: choose motions in the wrench-feasible workspace, such as slow circles in both directions";
+            let problem = Problem::new(Code::EXCITATION, message);
+            return Err(problem.file(self.file()).help(help).into());
+        }
         // Reject a description that cannot take the runs before the search.
         text::description(self, "")?;
         let task = Task::new(self, effort, start)?;

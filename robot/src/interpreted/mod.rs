@@ -173,7 +173,7 @@ impl InterpretedRobot {
         let (rows, columns) = function.shape(&self.names.sizes);
         // Omit a program that does not match the table.
         let inputs = inputs
-            .filter(|i| i.len() <= MAX_INPUTS && wanted.program.entries.len() == rows * columns)?;
+            .filter(|i| i.len() <= MAX_INPUTS && wanted.program.output.len() == rows * columns)?;
         let evaluators = Pool::default();
         Some(ServedFunction {
             function,
@@ -225,6 +225,7 @@ impl InterpretedRobot {
                 condition: times(*home),
             },
             Some(Condition::Mass) => Error::MassMatrix,
+            None if !program.least_torques.is_empty() && !failed.value.is_nan() => Error::Tensions,
             Some(Condition::Size { .. }) | None => Error::Overflow,
         };
         SampleError {
@@ -361,6 +362,10 @@ impl Model for InterpretedRobot {
 
     fn frames(&self) -> &[&'static str] {
         &self.names.frames
+    }
+
+    fn pulls(&self) -> &[bool] {
+        &self.names.pulls
     }
 
     fn evaluate(

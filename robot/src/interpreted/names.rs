@@ -13,6 +13,8 @@ pub(super) struct Names {
     actuators: Vec<&'static str>,
     actuated_joints: Vec<usize>,
     pub(super) actuator_is_revolute: Vec<bool>,
+    /// Whether each actuator is a cable; empty if none is.
+    pub(super) pulls: Vec<bool>,
     coordinates: Vec<&'static str>,
     parameters: Vec<Parameter>,
     payload_parameters: Vec<Parameter>,
@@ -47,6 +49,11 @@ impl Names {
             actuators: mechanism.actuator_names().into_iter().map(leaked).collect(),
             actuator_is_revolute: actuated_joints.iter().map(is_revolute).collect(),
             actuated_joints,
+            pulls: if mechanism.has_cables() {
+                mechanism.pulls()
+            } else {
+                Vec::new()
+            },
             coordinates,
             parameters: parameters(model, &model.selection.standard),
             payload_parameters: parameters(model, &model.selection.payload),

@@ -9,6 +9,7 @@
 //! J_k q̈ = J_tk v̇ + J̇_tk v - J̇_k q̇.
 
 use super::Error;
+use super::cables;
 use super::chains;
 use super::jacobians::{Jacobians, end_jacobian, follow};
 use super::kinematics::{
@@ -16,7 +17,7 @@ use super::kinematics::{
     platform_motion,
 };
 use super::linear::pseudo_inverse;
-use super::mechanism::{Leg, Mechanism};
+use super::mechanism::{End, Leg, Mechanism};
 use super::motion::Motion;
 use super::parasitic_motion;
 use super::placement::logarithm;
@@ -171,6 +172,10 @@ pub fn joint_positions(mechanism: &Mechanism, pose: &[f64]) -> Result<DVector<f6
     let path = mechanism.motion.displacement(&mechanism.home, pose);
     let mut all = Vec::new();
     for (k, leg) in mechanism.legs.iter().enumerate() {
+        if matches!(leg.end, End::Cable { .. }) {
+            all.push(cables::length_at(mechanism, leg, pose));
+            continue;
+        }
         let mut q = leg.start.clone();
         for step in 0..STEPS {
             let part = &path * (step as f64 / STEPS as f64);
@@ -193,7 +198,11 @@ pub fn close(
     pose: &[f64],
     start: &[f64],
 ) -> Result<Vec<f64>, Error> {
-    let (q, residual) = newton(mechanism, &mechanism.legs[k], pose, start, EXACT);
+    let leg = &mechanism.legs[k];
+    if matches!(leg.end, End::Cable { .. }) {
+        return Ok(vec![cables::length_at(mechanism, leg, pose)]);
+    }
+    let (q, residual) = newton(mechanism, leg, pose, start, EXACT);
     if residual < CLOSED {
         Ok(q)
     } else {
@@ -279,6 +288,17 @@ fn joint_accelerations(mechanism: &Mechanism, state: &State) -> Result<DVector<f
         .zip(mechanism.leg_ranges())
         .enumerate()
     {
+        if matches!(leg.end, End::Cable { .. }) {
+            let (twist, acceleration) = (&state.twist, &state.acceleration);
+            all.push(cables::acceleration(
+                mechanism,
+                leg,
+                &state.pose,
+                twist,
+                acceleration,
+            ));
+            continue;
+        }
         let (q, qd) = (
             &state.q.as_slice()[range.clone()],
             &state.qd.as_slice()[range.clone()],

@@ -14,12 +14,13 @@
 //! For the DualV this gives the corrected (59) and (60).
 
 use super::Error;
+use super::cables;
 use super::chains;
 use super::kinematics::{
     end_components, end_equations, end_from_leg, end_from_platform, leg_motion, platform_motion,
 };
 use super::linear::{adjugate, condition, determinant, independent_rows, pseudo_inverse};
-use super::mechanism::{Leg, Mechanism};
+use super::mechanism::{End, Leg, Mechanism};
 use super::motion::Motion;
 use super::parasitic_motion;
 use nalgebra::{DMatrix, DVector};
@@ -87,10 +88,15 @@ impl Jacobians {
             .zip(mechanism.leg_ranges())
             .enumerate()
         {
-            let end = end_jacobian(leg, &q.as_slice()[range.clone()]);
-            let attachment = attachment_jacobian(mechanism, leg, pose);
+            let is_cable = matches!(leg.end, End::Cable { .. });
+            let (end, attachment) = if is_cable {
+                (DMatrix::identity(1, 1), cables::row(mechanism, leg, pose))
+            } else {
+                let end = end_jacobian(leg, &q.as_slice()[range.clone()]);
+                (end, attachment_jacobian(mechanism, leg, pose))
+            };
             let joints = follow(k, &end, &attachment)?;
-            let rows = end_rows(k, leg)?;
+            let rows = if is_cable { vec![0] } else { end_rows(k, leg)? };
             let square = end.select_rows(&rows);
             all.ends
                 .view_mut((first, range.start), end.shape())

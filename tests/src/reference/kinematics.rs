@@ -133,7 +133,7 @@ pub fn platform_motion(
 #[must_use]
 pub fn end_from_leg(leg: &Leg, bodies: &[BodyMotion]) -> BodyMotion {
     match leg.end {
-        End::Free => BodyMotion::at_rest(leg.base),
+        End::Free | End::Cable { .. } => BodyMotion::at_rest(leg.base),
         End::Rigid { joint, .. } | End::Point { joint, .. } => bodies[joint],
     }
 }
@@ -144,7 +144,7 @@ pub fn end_from_platform(leg: &Leg, platform: &BodyMotion) -> BodyMotion {
     match leg.end {
         End::Free => BodyMotion::at_rest(leg.base),
         End::Rigid { attachment, .. } => platform.carried(attachment),
-        End::Point { attachment, .. } => {
+        End::Point { attachment, .. } | End::Cable { attachment, .. } => {
             platform.carried(Frame::at(attachment.x, attachment.y, attachment.z))
         }
     }
@@ -156,6 +156,8 @@ pub fn end_from_platform(leg: &Leg, platform: &BodyMotion) -> BodyMotion {
 pub fn end_components(leg: &Leg) -> Vec<usize> {
     match leg.end {
         End::Free => Vec::new(),
+        // The length.
+        End::Cable { .. } => vec![0],
         End::Rigid { .. } => (0..6).collect(),
         End::Point { along, .. } => (0..3).filter(|&axis| along[axis]).collect(),
     }

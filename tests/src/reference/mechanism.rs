@@ -220,6 +220,16 @@ pub enum End {
         /// Along which axes of the base frame they coincide.
         along: [bool; 3],
     },
+    /// A cable runs from the leg's base over a pulley to a point of the platform; the leg's only
+    /// variable is its length.
+    Cable {
+        /// The point in the platform frame.
+        attachment: Vector3<f64>,
+        /// Radius of the pulley that swivels about the base's z axis; zero for an eyelet.
+        radius: f64,
+        /// Least tension, N.
+        minimum: f64,
+    },
 }
 
 /// A chain or tree of joints between the base and the platform.
@@ -397,6 +407,17 @@ impl Mechanism {
         free.filter(|(leg, _)| leg.end == End::Free)
             .flat_map(|(_, range)| range)
             .collect()
+    }
+
+    /// Least tension of each actuator that is a cable.
+    #[must_use]
+    pub fn least_tensions(&self) -> Vec<Option<f64>> {
+        let variables = self.variables();
+        let least = |at: usize| match self.legs[variables[at].0].end {
+            End::Cable { minimum, .. } => Some(minimum),
+            _ => None,
+        };
+        self.actuated().into_iter().map(least).collect()
     }
 
     /// Number of actuators, n.

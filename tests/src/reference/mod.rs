@@ -17,6 +17,7 @@
 //! Equation numbers are those of Briot, Krut and Gautier, "Dynamic Parameter Identification of
 //! Overactuated Parallel Robots" (2015), in their corrected form.
 
+pub mod cables;
 pub mod chains;
 pub mod closure;
 pub mod dynamics;

@@ -44,6 +44,61 @@ impl Dynamics<'_> {
         self.torques_of(&(pseudo_inverse(&self.multiplier_matrix()) * loads))
     }
 
+    /// Torques with tensions of cables instead of the forces on their lengths, or the reverse.
+    #[must_use]
+    pub fn with_tensions(&self, torques: &DVector<f64>) -> DVector<f64> {
+        let least = self.mechanism.least_tensions();
+        DVector::from_fn(torques.len(), |i, _| {
+            if least[i].is_some() {
+                -torques[i]
+            } else {
+                torques[i]
+            }
+        })
+    }
+
+    /// Tensions t ≥ t_min with least |t - t_min| by trying every set of cables at their minimum.
+    ///
+    /// Actuators that are no cables have any torque, compared with zero.
+    ///
+    /// # Errors
+    ///
+    /// If no tensions produce the motion.
+    pub fn tensions(&self, parameters: &DVector<f64>) -> Result<DVector<f64>, Error> {
+        let least = self.mechanism.least_tensions();
+        let n = least.len();
+        let reference = DVector::from_fn(n, |i, _| least[i].unwrap_or(0.0));
+        let mut columns = self.jacobians.inverse.transpose();
+        for (i, _) in least.iter().enumerate().filter(|(_, own)| own.is_some()) {
+            columns.column_mut(i).neg_mut();
+        }
+        let rest = self.platform_inputs(parameters)? - &columns * &reference;
+        let scale = 1.0 + rest.amax();
+        let mut best: Option<DVector<f64>> = None;
+        for set in 0_u32..1 << n {
+            let free: Vec<usize> = (0..n).filter(|i| set >> i & 1 == 0).collect();
+            if (0..n).any(|i| set >> i & 1 == 1 && least[i].is_none()) || free.is_empty() {
+                continue;
+            }
+            let part = columns.select_columns(&free);
+            let own = pseudo_inverse(&part) * &rest;
+            let mut deviation = DVector::zeros(n);
+            for (&i, value) in free.iter().zip(own.iter()) {
+                deviation[i] = *value;
+            }
+            let is_exact = (&columns * &deviation - &rest).amax() < 1e-8 * scale;
+            let is_taut = (0..n).all(|i| least[i].is_none() || deviation[i] > -1e-9 * scale);
+            let is_better = best
+                .as_ref()
+                .is_none_or(|best| deviation.norm() < best.norm());
+            if is_exact && is_taut && is_better {
+                best = Some(deviation);
+            }
+        }
+        let best = best.ok_or(Error::Singular("the distribution of tensions"))?;
+        Ok(reference + best)
+    }
+
     /// Orthonormal basis of the torques that don't move the robot, n x (n - r).
     #[must_use]
     pub fn internal_loads(&self) -> DMatrix<f64> {

@@ -58,7 +58,14 @@ fn motion(motion: mechanism::Motion) -> Motion {
 fn leg(leg: &mechanism::Leg, start: &[f64]) -> Leg {
     let joints: Vec<Joint> = leg.joints.iter().map(joint).collect();
     let last = joints.len().saturating_sub(1);
+    let cable = leg.cable.as_ref();
+    let cable = cable.map(|cable| [cable.pulley, cable.minimum].map(Number::value));
     let end = match &leg.end {
+        Some(mechanism::End::Point { at, .. }) if cable.is_some() => End::Cable {
+            attachment: vector(*at),
+            radius: cable.map_or(0.0, |[radius, _]| radius),
+            minimum: cable.map_or(0.0, |[_, minimum]| minimum),
+        },
         None => End::Free,
         Some(mechanism::End::Rigid(placement)) => End::Rigid {
             joint: last,
@@ -168,6 +175,7 @@ fn same_shape(a: &Leg, b: &Leg) -> bool {
         (End::Free, End::Free) => true,
         (End::Rigid { joint: a, .. }, End::Rigid { joint: b, .. })
         | (End::Point { joint: a, .. }, End::Point { joint: b, .. }) => a == b,
+        (End::Cable { .. }, End::Cable { .. }) => true,
         _ => false,
     };
     ends && (a.carrier, a.body) == (b.carrier, b.body)
@@ -196,6 +204,14 @@ fn numbers(mechanism: &Mechanism) -> Vec<f64> {
             End::Free => {}
             End::Rigid { attachment, .. } => all.extend(placed(attachment)),
             End::Point { attachment, .. } => all.extend(attachment.iter()),
+            End::Cable {
+                attachment,
+                radius,
+                minimum,
+            } => {
+                all.extend(attachment.iter());
+                all.extend([radius, minimum]);
+            }
         }
     }
     all

@@ -159,7 +159,11 @@ impl Expected {
     /// It orthonormalises the unit torques of the projected actuators in order, without components
     /// that move the platform.
     fn null_space(&self, dynamics: &Dynamics<'_>) -> DMatrix<f64> {
-        let any = dynamics.internal_loads();
+        let mut any = dynamics.internal_loads();
+        for mut column in any.column_iter_mut() {
+            let signed = dynamics.with_tensions(&column.clone_owned());
+            column.copy_from(&signed);
+        }
         let mut basis = DMatrix::zeros(any.nrows(), 0);
         for projected in (0..any.nrows()).filter(|at| !self.kept.contains(at)) {
             let mut inside = &any * any.row(projected).transpose();
@@ -266,7 +270,13 @@ impl Truth<'_> {
         let (expected, dynamics) = (self.expected, &side.dynamics);
         let chi = &self.sample.all_parameters;
         let torques = DVector::from_column_slice(&self.sample.torques);
+        let torques = dynamics.with_tensions(&torques);
         let least_norm = || dynamics.least_norm_torques(chi);
+        let has_cables = dynamics
+            .mechanism
+            .least_tensions()
+            .iter()
+            .any(Option::is_some);
         Ok(match function {
             Function::IdmRedPlatform(columns) => {
                 side.platform()?.select_columns(expected.chosen(columns))
@@ -287,10 +297,12 @@ impl Truth<'_> {
             }
             // Base parameters contain all others by regrouping: the torques and the motion are the
             // same.
+            Function::InverseDynamics(_) if has_cables => vector(&dynamics.tensions(chi)?),
             Function::InverseDynamics(_) => vector(&least_norm()?),
             Function::InverseDynamicsPreloaded => {
                 let preload = DVector::from_column_slice(&self.sample.preload);
-                vector(&(least_norm()? + expected.null_space(dynamics) * preload))
+                let torques = dynamics.with_tensions(&least_norm()?);
+                vector(&(torques + expected.null_space(dynamics) * preload))
             }
             Function::MassMatrix(_) => dynamics.mass_matrix_and_bias(chi)?.0,
             Function::Bias(_) => vector(&dynamics.mass_matrix_and_bias(chi)?.1),
@@ -300,7 +312,9 @@ impl Truth<'_> {
                 let solved = mass.lu().solve(&forces);
                 vector(&solved.ok_or("the mass matrix is singular")?)
             }
-            Function::ProjectTorques => vector(&dynamics.project_torques(&torques)),
+            Function::ProjectTorques => {
+                vector(&dynamics.with_tensions(&dynamics.project_torques(&torques)))
+            }
             Function::NullSpace => expected.null_space(dynamics),
             other => return Err(format!("the reference has no {other:?}").into()),
         })
@@ -370,7 +384,7 @@ fn kinematic(
         }
         Function::ProjectPlatform => {
             let torques = DVector::from_column_slice(&sample.torques);
-            vector(&dynamics.project_on_platform(&torques))
+            vector(&dynamics.project_on_platform(&dynamics.with_tensions(&torques)))
         }
         _ => return Ok(None),
     }))

@@ -131,7 +131,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         None => GivenParameters::default(),
     };
     let values = evaluate(&robot, &program, from, given, &states)?;
-    let width = program.entries.len();
+    let width = program.output.len();
     let rows = (0..states.len()).map(|at| &values[at * width..(at + 1) * width]);
     let shape = program.output.shape.clone();
     let label = robot.model().function_name(function);

@@ -91,6 +91,12 @@ fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
                 }),
         );
     }
+    if model.mechanism.has_cables() {
+        kinds.push(kind(
+            "TENSIONS",
+            "no tensions above the minima of the cables produce this motion",
+        ));
+    }
     kinds.push(kind("OVERFLOW", "a value is too large for a number"));
     kinds.extend(INPUTS.iter().map(|input| ErrorEntry {
         name: out_of_range(input),

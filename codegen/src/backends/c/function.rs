@@ -175,6 +175,15 @@ fn rest(
         angles: 0,
     };
     let statements = writer.write(&body, &program.output);
+    if !program.least_torques.is_empty() {
+        let statements = statements.replace(" output[", " system[");
+        let count = program.entries.len();
+        let distribute = naming.name("distribute_tensions");
+        let text = format!(
+            "    double system[{count}];\n{statements}    return {distribute}(system, output);\n"
+        );
+        return (text, body.names);
+    }
     let ok = naming.constant("OK");
     (format!("{statements}    return {ok};\n"), body.names)
 }

@@ -150,6 +150,7 @@ fn source(model: &RobotModel, label: &str, naming: &Naming, written: &[FunctionT
         out += &naming.apply(helper);
         out.push('\n');
     }
+    out += &runtime::tensions(model, naming);
     out + &functions
 }
 

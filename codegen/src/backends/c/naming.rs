@@ -52,7 +52,7 @@ const MACRO_FAMILIES: [&str; 7] = ["FLT_", "FP_", "HUGE", "MATH_", "M_", "DBL_",
 
 /// Names that the generated code uses itself.
 const OWN: &str = "\
-    error found_joints_error found_pose_error found_joints found_pose output unit_pose";
+    error found_joints_error found_pose_error found_joints found_pose output system unit_pose";
 
 impl Naming {
     /// The names of a robot called `name`.
@@ -106,6 +106,7 @@ impl Naming {
             ("LIMIT_QUATERNION", limits.quaternion),
             ("LIMIT_SINGULAR", limits.singular),
             ("LIMIT_STEP", limits.step),
+            ("LIMIT_TENSION", limits.tension),
         ] {
             text = text.replace(name, &format!("{limit:e}"));
         }

@@ -109,7 +109,7 @@ fn straight(
     };
     let written = expression::write(&writer, &body, output);
     let (statements, value) = (written.statements, written.value);
-    let value = quote!(::core::result::Result::Ok(#value));
+    let value = value_of(program, &value, model);
     let (run, copies) = if outline.is_placed() {
         (quote!(::overact::with_avx512), copies(program))
     } else {
@@ -132,6 +132,30 @@ fn straight(
         },
         names: body.names,
         is_placed: outline.is_placed(),
+    }
+}
+
+/// The result of a function from its entries: these, or the torques that they determine.
+fn value_of(program: &Program, entries: &TokenStream, model: &RobotModel) -> TokenStream {
+    if program.least_torques.is_empty() {
+        return quote!(::core::result::Result::Ok(#entries));
+    }
+    let kind = expression::kind(model.float);
+    let least = program.least_torques.iter().map(|&least| {
+        if least.is_finite() {
+            expression::number(least, model.float)
+        } else {
+            quote!(#kind::NEG_INFINITY)
+        }
+    });
+    let redundancy = program.entries.len() / program.least_torques.len() - 1;
+    let [actuators, redundancy] =
+        [program.least_torques.len(), redundancy].map(proc_macro2::Literal::usize_unsuffixed);
+    quote! {
+        ::overact::tension::distribute::<#kind, #actuators, #redundancy>(
+            &#entries,
+            &[#(#least),*],
+        )
     }
 }
 

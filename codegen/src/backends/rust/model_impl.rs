@@ -37,6 +37,14 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
             }
         }
     });
+    let pulls = mechanism.has_cables().then(|| {
+        let pulls = mechanism.pulls();
+        quote! {
+            fn pulls(&self) -> &[::core::primitive::bool] {
+                &[#(#pulls),*]
+            }
+        }
+    });
     quote! {
         impl #name {
             const SIZES: ::overact::Sizes = ::overact::Sizes {
@@ -99,6 +107,8 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
             #displace
 
             #frames
+
+            #pulls
         }
     }
 }

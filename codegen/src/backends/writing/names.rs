@@ -284,6 +284,7 @@ mod tests {
             scope: "leg".to_owned(),
         };
         let program = Program {
+            least_torques: Vec::new(),
             inputs: vec![Array {
                 name: "x".to_owned(),
                 shape: vec![3],

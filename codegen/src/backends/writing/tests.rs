@@ -46,6 +46,7 @@ fn evaluated(program: &Program, state: &State) -> Vec<f64> {
 fn steps(program: &Program, state: &State) -> Vec<f64> {
     let entries = (0..program.steps.len()).map(|at| Entry::positive(Operand::Step(at)));
     let probe = Program {
+        least_torques: Vec::new(),
         output: Array {
             name: "steps".to_owned(),
             shape: vec![program.steps.len()],

@@ -1,6 +1,7 @@
 //! State of a leg in a derivation: frames, rates, closure.
 
 use super::bias::{BiasTerm, end_bias};
+use super::cable::CableCourse;
 use super::leg_closure::LegClosure;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::derivation::kinematics::centres::Centre;
@@ -46,6 +47,8 @@ pub struct LegState<'a> {
     pub platform: Option<PlatformPose<'a>>,
     /// The closure; `None` for a tree.
     pub closure: Option<LegClosure<'a>>,
+    /// The course of the cable, of a leg that is one.
+    pub(crate) cable: Option<CableCourse<'a>>,
     /// Gravity, for a leg on the ground.
     pub(crate) gravity: LegGravity<'a>,
     /// ∂u/∂v, r numbers per u.

@@ -14,6 +14,7 @@
 //! No matrix of the size of the robot is formed, and the only divisors are the leg determinants.
 
 use super::bias::BiasTerm;
+use super::cable::CableCourse;
 use crate::cas::{Arena, Expr, Matrix3, Number, Vector3};
 use crate::derivation::kinematics::frames::{LegFrames, joint_columns};
 use crate::derivation::kinematics::platform::{Directions, PlatformMotion, PlatformPose};
@@ -152,6 +153,50 @@ impl<'a> LegClosure<'a> {
             axes: frames.axes,
             directions: platform.directions().clone(),
         })
+    }
+
+    /// Closure of a cable, whose length is its only u: the wrench is the unit vector of the
+    /// straight part, written as factor × force.
+    pub(crate) fn of_cable(
+        arena: &'a Arena,
+        course: &CableCourse<'a>,
+        at: [Number; 3],
+        platform: &PlatformPose<'a>,
+    ) -> Self {
+        let zero = Vector3::zero(arena);
+        let wrench = Wrench {
+            force: course.along,
+            moment: zero,
+        };
+        Self {
+            forces: vec![course.along.scaled(course.factor)],
+            moments: vec![zero],
+            wrenches: vec![FactoredWrench {
+                factor: course.factor,
+                wrench,
+            }],
+            determinants: vec![course.divisor],
+            determinant: course.divisor,
+            at,
+            arm: platform.arm(at),
+            axes: Matrix3::identity(arena),
+            blocked: Vec::new(),
+            directions: platform.directions().clone(),
+        }
+    }
+
+    /// Second derivative of a cable's length: e · P̈ plus the change of direction.
+    pub(crate) fn cable_acceleration(
+        &self,
+        course: &CableCourse<'a>,
+        motion: &PlatformMotion<'a>,
+        rate: Expr<'a>,
+        name: &str,
+    ) -> Expr<'a> {
+        let along = self.apply(&self.end_acceleration(motion));
+        let along = along.into_iter().fold(rate.arena().zero(), |a, b| a + b);
+        let along = along.named(name);
+        along + course.turning(motion.point_velocity(self.arm), rate)
     }
 
     /// ∂u_i/∂v for all u, r numbers each.

@@ -2,6 +2,7 @@
 //! motion.
 
 pub(crate) mod bias;
+pub(crate) mod cable;
 pub(crate) mod leg;
 pub(crate) mod leg_closure;
 pub(crate) mod parasitic_motion;

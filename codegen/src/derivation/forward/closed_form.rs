@@ -59,6 +59,9 @@ pub(crate) fn closed_form<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
 ) -> Option<ClosedForm<'a>> {
+    if mechanism.has_cables() {
+        return None;
+    }
     let motion = mechanism.platform.as_ref()?.motion;
     let mut free = [false; 3];
     for coordinate in motion.twist() {

@@ -96,12 +96,13 @@ impl<'a> DerivationContext<'a, '_> {
         }
         let system = self.actuator_system();
         let inner = self.robot.projected_torques(&torques);
-        system.torques(&inner)
+        self.robot.with_tensions(system.torques(&inner))
     }
 
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, with the kept actuators a and the others b.
     pub(crate) fn project_actuators(&mut self, n: usize) -> Result<Rows<'a>, DerivationError> {
         let torques = self.input("torques", n);
+        let torques = self.robot.with_tensions(torques);
         let projection = self.kept_projection()?;
         let kept = &self.selection.kept_actuators;
         let jacobian = self.robot.inverse_jacobian();
@@ -188,7 +189,27 @@ impl<'a> DerivationContext<'a, '_> {
         let mut own = ActuatedJointForces::of(&self.robot);
         let forces = self.dynamics_of(of, &twist, &acceleration, &mut own);
         let torques = self.actuator_system().torques(&forces);
-        own.with(torques)
+        self.robot.with_tensions(own.with(torques))
+    }
+
+    /// Torques p of the kept actuators that produce Γ¹, and a basis N of the internal torques, row
+    /// by row: all torques are p + N z.
+    ///
+    /// # Errors
+    /// See [`DerivationContext::null_space`].
+    pub(crate) fn tension_system(&mut self, of: Columns) -> Result<Rows<'a>, DerivationError> {
+        let (twist, acceleration) = (self.twist(), self.acceleration());
+        let forces = self.projected_dynamics(of, &twist, &acceleration);
+        let inverse = self.basis()?.1;
+        let basis = self.null_space()?;
+        let moving = apply(&transposed(&inverse), &forces);
+        let mut torques = vec![self.robot.arena.zero(); basis.len()];
+        for (&at, &torque) in self.selection.kept_actuators.iter().zip(&moving) {
+            torques[at] = torque;
+        }
+        let mut entries = self.robot.with_tensions(torques);
+        entries.extend(basis.into_iter().flatten());
+        Ok(column(entries))
     }
 
     /// τ = J (JᵀJ)⁻¹ Γ¹ + N c, with a basis N of the internal torques.
@@ -204,7 +225,9 @@ impl<'a> DerivationContext<'a, '_> {
         let (basis, inverse) = self.basis()?;
         let moving = apply(&transposed(&inverse), &forces);
         let kept = &self.selection.kept_actuators;
+        let cables = self.redundant_cables();
         let internal = preload.iter().enumerate().map(|(k, &wanted)| {
+            let wanted = if cables[k] { -wanted } else { wanted };
             let along = kept.iter().zip(&moving).map(|(&i, &p)| basis[i][k] * p);
             wanted - along.sum::<Expr<'a>>()
         });
@@ -213,7 +236,7 @@ impl<'a> DerivationContext<'a, '_> {
         for (&i, &p) in kept.iter().zip(&moving) {
             torques[i] = torques[i] + p;
         }
-        Ok(column(torques))
+        Ok(column(self.robot.with_tensions(torques)))
     }
 
     /// A basis of the internal torques, one column for each redundant actuator.
@@ -221,7 +244,27 @@ impl<'a> DerivationContext<'a, '_> {
     /// # Errors
     /// Kept actuators that never determine the platform's motion.
     pub(crate) fn null_space(&mut self) -> Result<Rows<'a>, DerivationError> {
-        Ok(self.basis()?.0)
+        let columns = transposed(&self.basis()?.0).into_iter();
+        let signed = columns.zip(self.redundant_cables()).map(|(own, is_cable)| {
+            let own = self.robot.with_tensions(own);
+            // The column stays positive on its own actuator.
+            let sign = |torque: Expr<'a>| if is_cable { -torque } else { torque };
+            own.into_iter().map(sign).collect()
+        });
+        let columns: Rows<'a> = signed.collect();
+        if columns.is_empty() {
+            return Ok(vec![Vec::new(); self.robot.mechanism.actuated().len()]);
+        }
+        Ok(transposed(&columns))
+    }
+
+    /// Whether each redundant actuator is a cable, in the order of the columns of N.
+    fn redundant_cables(&self) -> Vec<bool> {
+        let kept = &self.selection.kept_actuators;
+        let all = self.robot.mechanism.pulls().into_iter().enumerate();
+        all.filter(|(at, _)| !kept.contains(at))
+            .map(|(_, pulls)| pulls)
+            .collect()
     }
 
     /// N, and the inverse of the kept actuators' rows of J_p^inv.

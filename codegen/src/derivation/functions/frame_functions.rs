@@ -54,7 +54,8 @@ impl<'a> DerivationContext<'a, '_> {
                     moment: -part(3),
                 };
                 let forces = self.robot.frame_forces(&motion, wrench);
-                column(self.actuator_system().torques(&forces))
+                let torques = self.actuator_system().torques(&forces);
+                column(self.robot.with_tensions(torques))
             }
         })
     }

@@ -62,6 +62,10 @@ impl<'a> DerivationContext<'a, '_> {
                 }));
                 continue;
             };
+            if let Some(course) = &state.cable {
+                errors.push(course.length - arena.input("joints", state.first_joint));
+                continue;
+            }
             let frames = self.robot.base_frames(index);
             let arm = platform.arm(closure.at);
             let error = frames.and_then(|frames| placement_error(&platform, arm, leg, &frames));
@@ -100,9 +104,12 @@ impl<'a> DerivationContext<'a, '_> {
         let total = mechanism.joints().len();
         let (mut legs, mut platform) = (Vec::new(), Vec::new());
         for (index, (leg, state)) in mechanism.legs.iter().zip(&self.robot.legs).enumerate() {
+            let is_solved = state.closure.is_some() && state.cable.is_none();
             let ends = state.closure.as_ref().zip(self.robot.end_of(index));
+            let ends = ends.filter(|_| is_solved);
             let (Some((closure, end)), Some(frames)) = (ends, self.robot.base_frames(index)) else {
-                // The joint rates of legs without an end are independent coordinates.
+                // The joint rates of legs without an end are independent coordinates, and the
+                // length of a cable follows from the pose.
                 let own = mechanism.leg_range(index).len();
                 for (i, row) in state.rows[..own].iter().enumerate() {
                     let mut entries = vec![arena.zero(); total];

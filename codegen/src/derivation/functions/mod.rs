@@ -219,6 +219,9 @@ impl<'a> DerivationContext<'a, '_> {
                 column(self.robot.projected_torques(&torques))
             }
             Function::ProjectActuators => self.project_actuators(n)?,
+            Function::InverseDynamics(of) if self.robot.mechanism.has_cables() => {
+                self.tension_system(of)?
+            }
             Function::InverseDynamics(of) => column(self.least_norm_torques(of)),
             Function::InverseDynamicsPreloaded => self.preloaded_torques(n)?,
             Function::MassMatrix(of) => self.mass_matrix(of),

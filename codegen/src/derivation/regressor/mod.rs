@@ -267,12 +267,13 @@ impl<'a> Robot<'a> {
         (0..width).map(entry).collect()
     }
 
-    /// Γ¹ = (J_p^inv)ᵀ τ, eq. (30).
+    /// Γ¹ = (J_p^inv)ᵀ τ, eq. (30), with -τ for the tension τ of a cable.
     #[must_use]
     pub fn projected_torques(&self, torques: &[Expr<'a>]) -> Vec<Expr<'a>> {
+        let forces = self.with_tensions(torques.to_vec());
         transposed(&self.inverse_jacobian())
             .iter()
-            .map(|row| dot(row, torques))
+            .map(|row| dot(row, &forces))
             .collect()
     }
 }

@@ -3,6 +3,7 @@
 
 use super::{Robot, name_rows};
 use crate::cas::{Expr, Vector3};
+use crate::derivation::closure::cable::cable_course;
 use crate::derivation::closure::leg::{GroundAcceleration, LegGravity, LegState};
 use crate::derivation::closure::leg_closure::{ClosureRows, LegClosure, split_rows};
 use crate::derivation::derivation_error::DerivationError;
@@ -16,7 +17,7 @@ use crate::derivation::kinematics::platform::PlatformPose;
 use crate::derivation::kinematics::rates::Rates;
 use crate::derivation::motion_input::MotionInput;
 use crate::derivation::selection::Formulation;
-use crate::mechanism::Leg;
+use crate::mechanism::{Cable, Leg};
 
 impl<'a> Robot<'a> {
     /// Derives a leg and its relation to the robot; earlier legs are already derived.
@@ -34,6 +35,9 @@ impl<'a> Robot<'a> {
         arena.enter(&leg.name);
         let first_joint = mechanism.leg_range(index).start;
         let platform = self.end_of(index);
+        if let Some((cable, platform)) = leg.cable.as_ref().zip(platform.as_ref()) {
+            return self.derive_cable(index, cable, platform);
+        }
         if let Some(platform) = &platform {
             self.solve_joints(index, platform)?;
         }
@@ -75,7 +79,51 @@ impl<'a> Robot<'a> {
             centres,
             platform,
             closure,
+            cable: None,
             gravity,
+            rows,
+        });
+        arena.enter("");
+        Ok(())
+    }
+
+    /// Derives a cable from the pose of the platform; its length is not computed from joints.
+    fn derive_cable(
+        &mut self,
+        index: usize,
+        cable: &Cable,
+        platform: &PlatformPose<'a>,
+    ) -> Result<(), DerivationError> {
+        let (arena, mechanism) = (self.arena, self.mechanism);
+        let leg = &mechanism.legs[index];
+        let first_joint = mechanism.leg_range(index).start;
+        let unsolved = || DerivationError::SingularLeg {
+            leg: leg.name.clone(),
+        };
+        let at = leg.end.as_ref().ok_or_else(unsolved)?.point();
+        let point = platform.origin + platform.arm(at);
+        let home = |value: Expr<'a>| mechanism.home.value(arena, value);
+        let (course, guards) = cable_course(arena, leg, cable, point, &home);
+        let guards = guards
+            .into_iter()
+            .filter(|guard| guard.value.as_number().is_none());
+        self.guards.extend(guards);
+        self.configuration
+            .learn_position(first_joint, course.length);
+        let closure = LegClosure::of_cable(arena, &course, at, platform);
+        self.guard_leg(&closure, &leg.name);
+        let rows = closure.reduced_jacobian();
+        name_rows(&rows, leg, &self.twist);
+        let frames = LegFrames::new(arena, leg, first_joint, &self.configuration, 0, None);
+        self.legs.push(LegState {
+            first_joint,
+            frames: frames.ok_or_else(unsolved)?,
+            rates: Rates::new(leg, true),
+            centres: Vec::new(),
+            platform: Some(platform.clone()),
+            closure: Some(closure),
+            cable: Some(course),
+            gravity: LegGravity::default(),
             rows,
         });
         arena.enter("");

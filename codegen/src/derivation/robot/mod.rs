@@ -207,9 +207,13 @@ impl<'a> Robot<'a> {
                 (Some(closure), Some(platform)) => {
                     let u = self.rates_of_leg(state, closure, twist, platform);
                     name_rates(leg, &u, "rate");
-                    let bias = state.bias(self.arena, leg, &u);
                     let labels = accelerations.labels(leg, "a_on_f");
-                    let u_dot = closure.accelerations(self.arena, platform, &bias, &labels);
+                    let u_dot = if let Some(course) = &state.cable {
+                        vec![closure.cable_acceleration(course, platform, u[0], &labels[0])]
+                    } else {
+                        let bias = state.bias(self.arena, leg, &u);
+                        closure.accelerations(self.arena, platform, &bias, &labels)
+                    };
                     name_rates(leg, &u_dot, &accelerations.name("rate_dot"));
                     LegRates { u, u_dot }
                 }
@@ -270,6 +274,16 @@ impl<'a> Robot<'a> {
             .actuated()
             .iter()
             .map(|&i| all[i].clone())
+            .collect()
+    }
+
+    /// Generalised forces on the actuated joints for their torques, and the reverse: a tension
+    /// shortens its cable.
+    #[must_use]
+    pub(crate) fn with_tensions(&self, torques: Vec<Expr<'a>>) -> Vec<Expr<'a>> {
+        let signed = torques.into_iter().zip(self.mechanism.pulls());
+        signed
+            .map(|(torque, pulls)| if pulls { -torque } else { torque })
             .collect()
     }
 

@@ -13,6 +13,7 @@ fn program(operations: &[Operation], guards: Vec<Guard>) -> Program {
         scope: String::new(),
     };
     Program {
+        least_torques: Vec::new(),
         inputs: vec![array("pose", 2)],
         output: array("result", 1),
         entries: vec![Entry::positive(Operand::Step(operations.len() - 1))],

@@ -234,6 +234,12 @@ pub struct Program {
     pub steps: Vec<Step>,
     /// Guards, each on an existing step.
     pub guards: Vec<Guard>,
+    /// Least torques of a program whose entries are torques p and a basis N of the internal
+    /// torques, row by row; -∞ for an actuator that is no cable.
+    ///
+    /// Its output are the torques p + N z nearest to the least ones
+    /// ([`overact_core::tension`]). Empty for all other programs, whose output are the entries.
+    pub least_torques: Vec<f64>,
     /// Number of pieces in which operations were searched, if the function was too large for a
     /// search as a whole.
     pub pieces: usize,

@@ -45,7 +45,12 @@ impl Program {
                 return Err(format!("`{name}` has {axes} axes"));
             }
         }
-        let (has, wants) = (self.entries.len(), self.output.len());
+        let mut wants = self.output.len();
+        if !self.least_torques.is_empty() {
+            let redundancy = self.entries.len() / wants.max(1);
+            wants *= redundancy.max(1);
+        }
+        let has = self.entries.len();
         if has != wants {
             return Err(format!("there are {has} entries for {wants} numbers"));
         }

@@ -21,6 +21,7 @@ fn program(shape: [usize; 2], steps: &[Operation], entries: &[usize]) -> Program
     });
     let entries = entries.iter().map(|&at| Entry::positive(Operand::Step(at)));
     Program {
+        least_torques: Vec::new(),
         inputs: vec![array("x", &[4])],
         output: array("output", &shape),
         entries: entries.collect(),

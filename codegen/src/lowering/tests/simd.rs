@@ -21,6 +21,7 @@ fn program(operations: &[Operation], entries: &[Operand]) -> Program {
         scope: String::new(),
     };
     Program {
+        least_torques: Vec::new(),
         inputs: vec![array("state", 1), array("of_leg", 2)],
         output: array("output", entries.len()),
         entries: entries.iter().map(|&o| Entry::positive(o)).collect(),

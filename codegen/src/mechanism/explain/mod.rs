@@ -7,6 +7,7 @@ mod motions;
 
 pub(super) use actuators::{independent, not_held, too_few_actuators, underactuated};
 
+use super::cable::CableProblem;
 use super::home::HomeError;
 use super::reach::{Reach, look, wrapped};
 use super::structure::Defect;
@@ -138,6 +139,7 @@ pub(super) fn home_error(
     error: &HomeError,
 ) -> Diagnostic {
     match error {
+        HomeError::Cable { leg, problem } => cable(&description.legs[*leg], problem),
         HomeError::Open { leg, .. } => open(description, mechanism, rough, *leg),
         HomeError::Singular { leg, condition } => {
             let leg = &description.legs[*leg];
@@ -153,6 +155,26 @@ pub(super) fn home_error(
             })
             .help(format!("choose a home pose where the {kind} is neither stretched nor folded, and joints whose motions are independent"))
         }
+    }
+}
+
+/// A cable that does not reach its platform point at the home pose.
+fn cable(leg: &overact_description::Leg, problem: &CableProblem) -> Diagnostic {
+    let name = format!("cable `{}`", leg.name.value);
+    let error = |message: String| Diagnostic::new(Code::DOES_NOT_CLOSE, message, leg.span.clone());
+    match problem {
+        CableProblem::NoLength => error(format!("{name} has no length at the home configuration"))
+            .label("its platform point coincides with its exit point")
+            .help("correct `at` of `base` or `end`, or choose another home pose"),
+        CableProblem::InsidePulley { distance, radius } => error(format!("{name} cannot wrap its pulley at the home configuration"))
+            .label(format!("its platform point is {} from the pulley's centre, closer than the radius, {}", length(*distance), length(*radius)))
+            .help("correct `pulley`, or `at` of `base` or `end`: the exit point is where the cable reaches the pulley, whose centre is one radius from it"),
+        CableProblem::OnSwivelAxis => error(format!("{name} has no direction of its pulley at the home configuration"))
+            .label("its platform point is on the swivel axis, z of `base`")
+            .help("correct `rotation` or `at` of `base`: the cable reaches the pulley along z, and its platform point is to the side"),
+        CableProblem::Behind => error(format!("{name} cannot wrap its pulley at the home configuration"))
+            .label("its platform point is between the swivel axis and the pulley, where the cable would have to leave the pulley before it reaches it")
+            .help("correct `rotation` of `base`: the cable reaches the pulley in the direction of z and bends towards its platform point"),
     }
 }
 

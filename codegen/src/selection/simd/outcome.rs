@@ -264,6 +264,7 @@ pub(super) fn value_of(
     given: &InputValues<'_>,
 ) -> Option<Vec<f64>> {
     let program = Program {
+        least_torques: Vec::new(),
         entries: operands.iter().map(|&o| Entry::positive(o)).collect(),
         output: Array {
             name: program.output.name.clone(),

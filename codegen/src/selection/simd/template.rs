@@ -29,7 +29,11 @@ impl Template {
         let is_one =
             |joint: &Joint| joint.spring.is_some() || joint.known.is_some() || joint.load.is_some();
         let has_formula = |leg: &Leg| leg.joints.iter().any(is_one);
-        if !mechanism.springs.is_empty() || mechanism.legs.iter().any(has_formula) {
+        // Cables have short programs, and those of pulleys may differ in their signs at home.
+        if mechanism.has_cables()
+            || !mechanism.springs.is_empty()
+            || mechanism.legs.iter().any(has_formula)
+        {
             return None;
         }
         if others.is_empty() || !others.iter().all(|leg| shape(leg) == shape(first)) {

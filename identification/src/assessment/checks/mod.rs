@@ -117,8 +117,9 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks, in the order of the report.
-const CHECKS: [Function; 23] = [
+const CHECKS: [Function; 24] = [
     samples::raw_samples::check,
+    samples::cables::check,
     units::check,
     samples::repeated::check,
     motion::excitation::check,

@@ -68,7 +68,7 @@ pub(crate) use columns::{FaultHypothesis, fault_hypotheses, gear_hypotheses};
 pub(crate) use correlations::Correlation;
 pub(crate) use group::Group;
 pub(crate) use misreading::Misreading;
-pub(crate) use pace::Pace;
+pub(crate) use pace::{Pace, is_quasi_static};
 pub(crate) use scores::{ScoreTest, Scores};
 pub(crate) use shapes::{PositionRange, Shape};
 pub(crate) use wald_test::WaldTest;

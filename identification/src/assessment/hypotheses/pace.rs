@@ -22,6 +22,20 @@ pub(crate) struct Pace {
     pub(crate) frequency: f64,
     /// Number of such periods in all runs.
     pub(crate) periods: f64,
+    /// RMS acceleration (m/s², rad/s²).
+    pub(crate) acceleration: f64,
+}
+
+/// RMS acceleration of an actuator, m/s² or rad/s², below which inertia forces are negligible.
+///
+/// It is two thousandths of the acceleration of gravity; angles count with a lever of 1 m.
+const QUASI_STATIC: f64 = 2e-2;
+
+/// Whether all actuators move so slowly that the forces depend on positions and directions of
+/// motion only.
+pub(crate) fn is_quasi_static(paces: &[Option<Pace>]) -> bool {
+    let mut moving = paces.iter().flatten().peekable();
+    moving.peek().is_some() && moving.all(|pace| pace.acceleration < QUASI_STATIC)
 }
 
 impl Scores {
@@ -64,10 +78,13 @@ impl Scores {
                 velocity += run.tempo.velocities[actuator];
                 acceleration += run.tempo.accelerations[actuator];
             }
+            let samples: usize = self.runs.iter().map(|run| run.tempo.samples).sum();
+            let rms = (acceleration / samples.max(1) as f64).sqrt();
             let frequency = (acceleration / velocity).sqrt() / std::f64::consts::TAU;
             frequency.is_finite().then_some(Pace {
                 frequency,
                 periods: frequency * duration,
+                acceleration: rms,
             })
         };
         (0..count).map(pace).collect()

@@ -42,6 +42,7 @@ impl Pass<'_> {
             interval: self.decimation as f64 / frequency,
             velocities: vec![0.0; actuators],
             accelerations: vec![0.0; actuators],
+            samples: 0,
         };
         let (choice, size) = (self.choice(), actuators * lines);
         let mut rows = vec![Vec::new(); lines];

@@ -74,12 +74,15 @@ pub(super) struct Tempo {
     /// Σ q̇² and Σ q̈² of each actuator over the samples.
     pub(super) velocities: Vec<f64>,
     pub(super) accelerations: Vec<f64>,
+    /// Number of these samples.
+    pub(super) samples: usize,
 }
 
 impl Tempo {
     /// Adds velocities and accelerations of all actuators, sample by sample.
     pub(super) fn take(&mut self, actuators: &[ActuatorState]) {
         let n = self.velocities.len().max(1);
+        self.samples += actuators.len() / n;
         for row in actuators.chunks_exact(n) {
             let sums = self.velocities.iter_mut().zip(&mut self.accelerations);
             for ((velocities, accelerations), own) in sums.zip(row) {

@@ -68,6 +68,22 @@ impl Columns {
         })
     }
 
+    /// Number of base columns.
+    pub(super) fn len(&self) -> usize {
+        self.base.columns.len()
+    }
+
+    /// Rows of the base columns of each line, followed by `more` numbers.
+    pub(super) fn evaluate(
+        &self,
+        model: &dyn Model,
+        states: &SampledStates<'_>,
+        more: usize,
+    ) -> Result<Vec<Vec<f64>>, overact::SampleError> {
+        self.columns
+            .evaluate(model, states, &self.base.columns, more)
+    }
+
     /// Reads runs and factorises their equations.
     pub(super) fn fault_residual(
         &self,
@@ -124,7 +140,17 @@ impl FaultResidual<'_> {
 
     /// Relative residual after correcting a fault, each line being divided by its norm.
     pub(super) fn error(&self, fault: Option<Fault>) -> f64 {
-        let (all, lines) = self.stacked(fault);
+        let (all, lines) = self.stacked(fault, fault);
+        let selected: Vec<usize> = (0..self.columns.base.columns.len()).collect();
+        all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
+    }
+
+    /// The same with each line divided by its norm before the correction.
+    ///
+    /// A gain of a redundant drive adds internal torques to the inputs, which makes any residual
+    /// relatively small.
+    pub(super) fn error_by_logged_inputs(&self, fault: Fault) -> f64 {
+        let (all, lines) = self.stacked(Some(fault), None);
         let selected: Vec<usize> = (0..self.columns.base.columns.len()).collect();
         all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
     }
@@ -138,20 +164,23 @@ impl FaultResidual<'_> {
         };
         let place = *self.columns.payload.iter().find(is_mass)?;
         let selected: Vec<usize> = (0..base.columns.len()).collect();
-        let ReducedFactor { triangle, rhs, .. } = self.stacked(Some(fault)).0.reduced(&selected);
+        let ReducedFactor { triangle, rhs, .. } =
+            self.stacked(Some(fault), Some(fault)).0.reduced(&selected);
         let solved = triangle.solve_upper_triangular(&rhs)?;
         solved.get(place).copied().filter(|mass| mass.is_finite())
     }
 
-    /// Factor of all lines, each divided by its norm, after correcting a fault; number of lines.
-    fn stacked(&self, fault: Option<Fault>) -> (Factor, u32) {
+    /// Factor of all lines after correcting a fault, each divided by its norm after correcting
+    /// `scaled_by`; number of lines.
+    fn stacked(&self, fault: Option<Fault>, scaled_by: Option<Fault>) -> (Factor, u32) {
         let p = self.columns.base.columns.len();
-        let share = self.share(fault);
+        let (share, scales) = (self.share(fault), self.share(scaled_by));
         let lines = self.factors.first().map_or(0, Vec::len);
         let mut stacked: Vec<DMatrix<f64>> = Vec::new();
         let mut count = 0;
         for line in 0..lines {
             let mut of_line = Vec::new();
+            let mut squares = 0.0;
             for (run, factors) in self.factors.iter().enumerate() {
                 let r = factors[line].matrix();
                 let sum = r.columns(p, share.len()) * &share;
@@ -161,6 +190,7 @@ impl FaultResidual<'_> {
                     .copy_from(&r.view((0, 0), (p, p)));
                 rows.view_mut((0, p), (p, 1)).copy_from(&sum.rows(0, p));
                 rows[(p, p)] = sum.rows_range(p..).norm();
+                squares += (r.columns(p, scales.len()) * &scales).norm_squared();
                 let relabelled = fault == Some(Fault::Label(run));
                 if self.labels[run] == relabelled {
                     for &column in &self.columns.payload {
@@ -169,10 +199,6 @@ impl FaultResidual<'_> {
                 }
                 of_line.push(rows);
             }
-            let squares: f64 = of_line
-                .iter()
-                .map(|rows| rows.column(p).norm_squared())
-                .sum();
             if squares > 0.0 {
                 count += 1;
                 let scale = 1.0 / squares.sqrt();

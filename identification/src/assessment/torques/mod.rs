@@ -3,8 +3,10 @@
 //! Faults of a drive or label are a wrong sign or gain, swapped drives, and a wrong payload label.
 //! Faults of the whole robot are swapped joints, and reversed or absent gravity.
 //!
+//! - `drive_columns`: dry friction that the description lacks, and drifting load cells;
 //! - `fault_residual`: the residual after correcting a fault, from one pass over the runs.
 
+mod drive_columns;
 mod fault_residual;
 
 use overact::Model;
@@ -21,6 +23,10 @@ use overact_logs::{Error, Log};
 
 /// A fault explains the torques if at most this fraction of the error remains.
 const EXPLAINED: f64 = 0.5;
+
+/// Friction or drift explains the torques if at most this fraction of the error remains: half of its
+/// square.
+const PARTLY_EXPLAINED: f64 = 0.7;
 
 /// It must also remove this fraction of the inputs.
 ///
@@ -50,6 +56,54 @@ pub(crate) fn explanation(
     let before = fault_residual.error(None);
     let of_one = of_one(model, runs, &fault_residual, before);
     Ok(of_one.or_else(|| of_all(model, &columns, runs, settings, before)))
+}
+
+/// The check of dry friction that the model lacks, or of a load cell that drifts, if that explains
+/// the torques of whole runs.
+///
+/// # Errors
+/// As [`Motions::next`]; the runs have been read before.
+pub(crate) fn missing_torques(
+    model: &dyn Model,
+    runs: &[Log],
+    settings: &Settings,
+) -> Result<Option<Check>, Error> {
+    let info = model.info();
+    let lacks_friction = !info.parameters.iter().any(|one| one.symbol.has_sign());
+    let pulls = model.pulls();
+    if !lacks_friction && pulls.is_empty() {
+        return Ok(None);
+    }
+    let found = drive_columns::residuals(model, runs, settings)?;
+    let cells = found.with_drift.iter().zip(pulls).zip(info.actuators);
+    let cells = cells.filter(|((_, pulls), _)| **pulls);
+    let cells = cells.map(|((after, _), name)| (*after, Some(*name)));
+    let friction = lacks_friction.then_some((found.with_friction, None));
+    let best = cells.chain(friction).min_by(|a, b| a.0.total_cmp(&b.0));
+    let best = best.filter(|(after, _)| *after < PARTLY_EXPLAINED * found.before);
+    Ok(best.map(|(after, cell)| {
+        let so = so(found.before, after);
+        let (kind, words) = match cell {
+            Some(name) => (
+                CheckKind::WrongGain,
+                format!(
+                    "the load cell of the cable `{name}` seems to drift: its tension changes with the time of the run; {so}. Warm the cells up and tare them before each run, or record shorter runs"
+                ),
+            ),
+            None => (
+                CheckKind::MissingParameter,
+                format!(
+                    "the drives have dry friction that the model lacks; {so}. Add \"fs\" to the `parameters` of the actuated joints or cables"
+                ),
+            ),
+        };
+        let check = Check::new(kind, About::Model, words).with_grade(Grade::DoNotUse);
+        let check = match cell {
+            Some(name) => check.of_actuator(name),
+            None => check,
+        };
+        measured(check, found.before, after, PARTLY_EXPLAINED)
+    }))
 }
 
 /// Relative residuals with the positions as they are, and after correcting a position fault.
@@ -113,7 +167,15 @@ fn of_one(
         };
         *after < EXPLAINED * before && taken > WORTHWHILE
     };
-    let best = errors.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
+    let is_redundant = n > info.sizes.dof;
+    let inflates = |(fault, _): &(Fault, f64)| {
+        let is_gain = matches!(fault, Fault::Gain(..));
+        is_redundant
+            && is_gain
+            && fault_residual.error_by_logged_inputs(*fault) > EXPLAINED * before
+    };
+    let real = errors.iter().copied().filter(|one| !inflates(one));
+    let best = real.min_by(|a, b| a.1.total_cmp(&b.1));
     let (mut fault, after) = best.filter(explains)?;
     if let Fault::Label(_) = fault {
         // If runs differ by a payload, either of them may carry it. The one with a positive payload

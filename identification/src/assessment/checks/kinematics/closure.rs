@@ -16,6 +16,7 @@ use crate::{
             level::{FALSE_ALARMS, level},
         },
         evidence::{Axis, Curve, Evidence},
+        hypotheses::is_quasi_static,
         positions,
     },
     estimation::intervals::distributions::student_quantile,
@@ -27,7 +28,7 @@ use overact_logs::{Error, significant};
 /// Factor for the ringing of the position filter at steps.
 const RINGING: f64 = 1.5;
 
-/// Harmless residual, by range and smallest relative standard deviation of a parameter.
+/// Harmless residual, by range (or distances, in quasi-static runs) and smallest relative standard deviation of a parameter.
 const HARMLESS: f64 = 0.3;
 
 /// Checks all runs of a robot with more actuators than degrees of freedom.
@@ -41,6 +42,13 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         let (limit, noise) = limit(watched, log.samples());
         let ranges = watched.monitor.ranges();
         let range = ranges.into_iter().fold(0.0, f64::max);
+        // In a quasi-static run positions only determine the directions of forces, which depend on
+        // distances of the robot and not on the range of the motion.
+        let is_slow = context
+            .scores
+            .is_some_and(|scores| is_quasi_static(&context.paces(scores)));
+        let distances = watched.monitor.magnitudes().into_iter();
+        let scale = distances.fold(range, if is_slow { f64::max } else { |range, _| range });
         let closing = ClosureResidual {
             filtered: watched.closure_residual,
             as_logged: if watched.closure_residual > limit {
@@ -49,7 +57,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 None
             },
             limit,
-            harmless: HARMLESS * range * smallest_relative_deviation(context),
+            harmless: HARMLESS * scale * smallest_relative_deviation(context),
             range,
         };
         let tolerance = limit.max(closing.harmless);

@@ -7,6 +7,7 @@ use crate::{
     assessment::{
         check::{About, Check, CheckKind, Grade},
         checks::Context,
+        hypotheses::is_quasi_static,
     },
     estimation::column_noise::Directions,
     regression::{
@@ -16,6 +17,7 @@ use crate::{
     },
     result::{Estimate, ParameterEstimate, Stage},
 };
+use overact::StandardParameter;
 use overact_logs::{Error, significant};
 
 /// Directions of the columns with a larger noise fraction have too little motion.
@@ -47,6 +49,10 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
         return new(String::from("there are no equations"));
     };
     let mut spoiled = dependent(system, estimate);
+    let inertias = unaccelerated(context, estimate);
+    let others = inertias.iter().filter(|name| !spoiled.contains(name));
+    let others: Vec<String> = others.cloned().collect();
+    spoiled.extend(others);
     let noise = context.column_noise.get(projection);
     let columns = estimate.columns();
     let values: Vec<f64> = estimate.parameters.iter().map(|one| one.value).collect();
@@ -60,7 +66,8 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
             return new(String::from(words));
         }
         if is_basic {
-            return refused(estimate, new(description(context, &spoiled)), spoiled);
+            let check = new(description(context, &spoiled, &inertias));
+            return refused(estimate, check, spoiled, &inertias);
         }
         let words = "whether the runs move every coordinate is not tested: the regressor cannot be evaluated with noise in the positions";
         return new(String::from(words)).found();
@@ -84,12 +91,25 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
             significant(100.0 * largest, 2)
         ));
     }
-    refused(estimate, check(description(context, &spoiled)), spoiled)
+    refused(
+        estimate,
+        check(description(context, &spoiled, &inertias)),
+        spoiled,
+        &inertias,
+    )
 }
 
-/// A check that fails for these parameters.
-fn refused(estimate: &Estimate, check: Check, spoiled: Vec<String>) -> Check {
-    let grade = if 2 * spoiled.len() > estimate.parameters.len() {
+/// A check that fails for these parameters; `inertias` are those that a quasi-static run loses.
+fn refused(
+    estimate: &Estimate,
+    check: Check,
+    spoiled: Vec<String>,
+    inertias: &[String],
+) -> Check {
+    let grade = if spoiled == inertias {
+        // Nothing else is lost, and such runs are a way to determine weights and friction.
+        Grade::UseListed
+    } else if 2 * spoiled.len() > estimate.parameters.len() {
         Grade::DoNotUse
     } else {
         Grade::UseListed
@@ -136,10 +156,51 @@ fn dependent(system: &System, estimate: &Estimate) -> Vec<String> {
         .collect()
 }
 
+/// Parameters that act by accelerations alone, in quasi-static runs: second moments and rotor
+/// inertias.
+fn unaccelerated(context: &Context<'_>, estimate: &Estimate) -> Vec<String> {
+    let is_slow = context
+        .scores
+        .is_some_and(|scores| is_quasi_static(&context.paces(scores)));
+    if !is_slow {
+        return Vec::new();
+    }
+    let symbol = |column: usize| {
+        let column = *context.base.columns.get(column)?;
+        Some(context.columns.as_slice().get(column)?.symbol)
+    };
+    let own = estimate.parameters.iter();
+    own.filter(|one| symbol(one.column).is_some_and(is_of_acceleration))
+        .map(|one| one.name.clone())
+        .collect()
+}
+
+/// Whether a parameter's column has no other factors than accelerations and squares of velocities.
+const fn is_of_acceleration(symbol: StandardParameter) -> bool {
+    use StandardParameter as P;
+    matches!(
+        symbol,
+        P::Xx | P::Xy | P::Xz | P::Yy | P::Yz | P::Zz | P::Ia
+    )
+}
+
 /// Describes parameters that the runs do not separate.
-fn description(context: &Context<'_>, spoiled: &[String]) -> String {
-    let names: Vec<String> = spoiled.iter().map(|name| format!("`{name}`")).collect();
-    let names = names.join(", ");
+fn description(context: &Context<'_>, spoiled: &[String], inertias: &[String]) -> String {
+    let listed = |names: &[String]| {
+        let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+        names.join(", ")
+    };
+    if spoiled == inertias {
+        return format!(
+            "the motion is quasi-static, so inertia forces are negligible and {} not identifiable; weights and friction are. Record faster runs, or hold the values from CAD by `known` of [identification]",
+            if inertias.len() == 1 {
+                format!("{} is", listed(inertias))
+            } else {
+                format!("{} are", listed(inertias))
+            }
+        );
+    }
+    let names = listed(spoiled);
     let still: Vec<String> = still(context)
         .iter()
         .map(|name| format!("`{name}`"))

@@ -3,7 +3,7 @@
 use crate::assessment::{
     check::{About, Check, CheckKind, Grade},
     checks::{Context, residuals::relative_error::times_the_noise},
-    hypotheses::Pace,
+    hypotheses::{Pace, is_quasi_static},
 };
 use overact_logs::{Error, significant};
 
@@ -22,6 +22,12 @@ const FEWEST_INSTANTS: usize = 300;
 
 /// Fewest periods of motion of the slowest actuator.
 const FEWEST_PERIODS: f64 = 2.0;
+
+/// Fewest periods of a quasi-static motion, in which forces depend on positions and directions.
+///
+/// Each actuator then moves back and forth over most of its range, and the residual is not a
+/// function of time.
+const FEWEST_QUASI_STATIC_PERIODS: f64 = 0.75;
 
 /// Runs these checks.
 pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
@@ -79,6 +85,15 @@ fn length(context: &Context<'_>, paces: &[Option<Pace>]) -> Option<Check> {
         return Some(check(format!(
             "the motion is long enough: each actuator moves back and forth at least {periods} times"
         )));
+    }
+    if pace.periods >= FEWEST_QUASI_STATIC_PERIODS && is_quasi_static(paces) {
+        return Some(
+            check(format!(
+                "the motion is quasi-static and short: `{name}` completes {periods} periods. Weights and friction depend on positions and directions only, but effects that repeat with the motion are not separated from noise; a second period would show them"
+            ))
+            .of_actuator(name)
+            .found(),
+        );
     }
     Some(
         check(format!(

@@ -1,5 +1,6 @@
 //! Checks of raw samples, times and repeated logs.
 
+pub(crate) mod cables;
 pub(crate) mod clock;
 pub(crate) mod raw_samples;
 pub(crate) mod repeated;

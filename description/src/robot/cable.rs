@@ -1,0 +1,168 @@
+//! Legs that are cables: `type = "cable"` of `[leg.NAME]`.
+//!
+//! A cable runs from an exit point over a pulley, which may swivel, straight to a platform point.
+//! Its coordinate is its length, an actuated slide without a body.
+
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::expressions::dimension::Dimension;
+use crate::robot::compound_joint_kind::CompoundJointKind;
+use crate::robot::joint_shape::JointShape;
+use crate::robot::model::{Cable, JointKind, Leg, Motion, Platform, Spanned};
+use crate::robot::parameters::Owner;
+use crate::robot::shape::{EndShape, Shape};
+use crate::toml_text::reader::{Context, Item, Table};
+use crate::toml_text::scope::Scope;
+use overact_core::StandardParameter;
+use overact_exact::Number;
+
+/// Name of the coordinate of a cable.
+const LENGTH: &str = "length";
+/// Parameters of a cable's drive unless others are listed.
+const DEFAULT: [StandardParameter; 3] = [
+    StandardParameter::Ia,
+    StandardParameter::Fv,
+    StandardParameter::Fs,
+];
+
+/// A cable with unevaluated expressions.
+pub(crate) struct CableShape<'c, 't> {
+    pulley: Option<Item<'c, 't>>,
+    minimum: Option<Item<'c, 't>>,
+    drum: Option<Item<'c, 't>>,
+}
+
+/// Reads the keys of a cable, and its length as an actuated slide.
+pub(crate) fn shape<'c, 't>(table: &Table<'c, 't>) -> (CableShape<'c, 't>, JointShape<'c, 't>) {
+    for key in ["joint", "motor"] {
+        if let Some(item) = table.get(key) {
+            let message = format!("a cable has no `{key}`");
+            let help = "its coordinate is its length: write `base`, `end`, `pulley` and `parameters`, or leave out type = \"cable\"";
+            let error = item.error(Code::CONTRADICTION, message);
+            table.context.report(error.help(help));
+        }
+    }
+    let cable = CableShape {
+        pulley: table.get("pulley"),
+        minimum: table.get("minimum"),
+        drum: table.get("drum"),
+    };
+    let parameters = table.get("parameters");
+    let parameters = parameters.and_then(|item| item.parameters(Owner::Cable));
+    let length = JointShape {
+        name: Spanned::new(LENGTH.to_owned(), table.span.clone()),
+        kind: Spanned::new(JointKind::Prismatic, table.span.clone()),
+        antecedent: None,
+        steps: [const { None }; 6],
+        turned: false,
+        actuated: true,
+        parameters: parameters.unwrap_or_else(|| DEFAULT.to_vec()),
+        spring: None,
+        known: None,
+        stribeck: None,
+        load: None,
+        pitch: None,
+        word: CompoundJointKind::Simple(JointKind::Prismatic),
+        called: LENGTH.to_owned(),
+        span: table.span.clone(),
+    };
+    (cable, length)
+}
+
+/// Reads the platform point of a cable.
+pub(crate) fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
+    let table = item.table("the cable's `end`")?;
+    let at = table.get("at");
+    table.finish();
+    Some(EndShape {
+        rigid: false,
+        at,
+        rotation: None,
+        along: [true; 3],
+        body: None,
+        span: table.span.clone(),
+    })
+}
+
+/// Reports a home position of a cable; always false.
+pub(crate) fn refuse_home(item: &Item<'_, '_>) -> bool {
+    let error = item.error(Code::CONTRADICTION, "a cable has no `home`");
+    let help = "its length at home follows from the platform's `home`: leave it out";
+    item.context.report(error.help(help));
+    false
+}
+
+impl CableShape<'_, '_> {
+    /// The cable with the values of a placement.
+    pub(crate) fn evaluate(&self, scope: &Scope) -> Cable {
+        let length = |item: &Option<Item<'_, '_>>, is_zero_allowed: bool| {
+            quantity(item.as_ref()?, Dimension::LENGTH, is_zero_allowed, scope)
+        };
+        let minimum = self.minimum.as_ref();
+        let minimum = minimum.and_then(|item| quantity(item, Dimension::FORCE, true, scope));
+        Cable {
+            pulley: length(&self.pulley, true).unwrap_or(Number::ZERO),
+            minimum: minimum.unwrap_or(Number::ZERO),
+            drum: length(&self.drum, false),
+        }
+    }
+}
+
+/// A quantity that is positive, or zero if that is allowed; others are reported.
+fn quantity(
+    item: &Item<'_, '_>,
+    dimension: Dimension,
+    is_zero_allowed: bool,
+    scope: &Scope,
+) -> Option<Number> {
+    let number = item.number(dimension, scope)?;
+    let value = number.value.value();
+    if value > 0.0 || is_zero_allowed && value == 0.0 {
+        return Some(number.value);
+    }
+    let help = if is_zero_allowed {
+        "write a positive value, or leave it out"
+    } else {
+        "write a positive radius; leave it out if the log contains tensions"
+    };
+    let message = format!("`{}` of a cable must be positive", item.key.value);
+    let error = item.error(Code::OUT_OF_RANGE, message).help(help);
+    item.context.report_once(error);
+    None
+}
+
+/// Reports cables of robots that cannot have any.
+pub(crate) fn check(
+    context: &Context<'_>,
+    shapes: &[Shape<'_, '_>],
+    has_platform: bool,
+    platform: Option<&Platform>,
+    legs: &[Leg],
+) {
+    let report = |span: &Span, message: String, help: &str| {
+        let error = Diagnostic::new(Code::STRUCTURE, message, span.clone());
+        context.report_once(error.help(help));
+    };
+    for shape in shapes.iter().filter(|shape| shape.cable.is_some()) {
+        let (name, span) = (&shape.name.value, &shape.span);
+        if !has_platform {
+            let help = "describe the platform in a table [platform]";
+            let message = format!("the cable `{name}` ends on a platform, but there is none");
+            report(span, message, help);
+        }
+        if let Some(body) = &shape.base_body {
+            let message = format!("the cable `{name}` cannot start from a body");
+            let help = "its exit point is fixed on the ground: leave `body` out";
+            report(&body.span, message, help);
+        }
+    }
+    let parasitic =
+        platform.is_some_and(|own| matches!(own.motion.value, Motion::Parasitic { .. }));
+    if let (true, Some(leg)) = (parasitic, legs.iter().find(|leg| leg.cable.is_some())) {
+        let message = format!(
+            "the cable `{}` cannot pull a platform with parasitic motion",
+            leg.name.value
+        );
+        let help = "cables are supported for platforms whose coordinates are all independent: leave out `independent`";
+        report(&leg.span, message, help);
+    }
+}

@@ -1,0 +1,112 @@
+//! Lengths of cables, and their derivatives by finite differences.
+//!
+//! A cable reaches its pulley at the exit point E in the direction z, about which the pulley
+//! swivels. The pulley's rim is the circle of radius ρ that touches the z axis at E and lies in the
+//! plane of that axis and the platform point. The angle at which the cable leaves the rim is found
+//! by bisection: there the platform point is on the tangent. No derivative of the length is derived;
+//! seven-point differences of the length give its rate and acceleration.
+
+use super::mechanism::{End, Leg, Mechanism};
+use super::placement::Frame;
+use nalgebra::{DMatrix, DVector, Vector2};
+use std::f64::consts::PI;
+
+/// Step of first differences, m and rad.
+const STEP: f64 = 1e-3;
+/// Step of second differences, s.
+const TIME: f64 = 3e-3;
+/// Weights of seven-point differences, of odd and of even order.
+const FIRST: [f64; 3] = [0.75, -0.15, 1.0 / 60.0];
+const SECOND: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
+
+/// Length of a cable for the platform's frame; NaN for other legs.
+#[must_use]
+pub fn length(leg: &Leg, platform: &Frame) -> f64 {
+    let End::Cable {
+        attachment, radius, ..
+    } = leg.end
+    else {
+        return f64::NAN;
+    };
+    let point = platform.position + platform.rotation * attachment;
+    let local = leg.base.rotation.transpose() * (point - leg.base.position);
+    if radius == 0.0 {
+        return local.norm();
+    }
+    let point = Vector2::new(local.x.hypot(local.y), local.z);
+    let rim = |angle: f64| radius * Vector2::new(1.0 - angle.cos(), angle.sin());
+    let outside = |angle: f64| {
+        let normal = Vector2::new(-angle.cos(), angle.sin());
+        normal.dot(&(point - rim(angle)))
+    };
+    // The point is outside of the tangent at the exit point's side, and inside on the far side.
+    let centre = Vector2::new(radius, 0.0);
+    let towards = point - centre;
+    // The tangent point is at most a right angle before the direction to the point.
+    let far = (PI - towards.y.atan2(towards.x)).rem_euclid(2.0 * PI);
+    let (mut low, mut high) = (far - PI / 2.0, far);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if outside(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let angle = 0.5 * (low + high);
+    radius * angle + (point - rim(angle)).norm()
+}
+
+/// Length at a pose.
+#[must_use]
+pub fn length_at(mechanism: &Mechanism, leg: &Leg, pose: &[f64]) -> f64 {
+    length(leg, &mechanism.motion.placement(pose))
+}
+
+/// Derivatives of the length per twist coordinate, 1 × r.
+#[must_use]
+pub fn row(mechanism: &Mechanism, leg: &Leg, pose: &[f64]) -> DMatrix<f64> {
+    let dof = mechanism.dof();
+    let derivative = |at: usize| -> f64 {
+        let moved = |steps: f64| {
+            let mut displacement = DVector::zeros(dof);
+            displacement[at] = steps * STEP;
+            length_at(
+                mechanism,
+                leg,
+                &mechanism.motion.displace(pose, &displacement),
+            )
+        };
+        let parts = FIRST.iter().enumerate().map(|(k, weight)| {
+            let steps = (k + 1) as f64;
+            weight * (moved(steps) - moved(-steps))
+        });
+        parts.sum::<f64>() / STEP
+    };
+    DMatrix::from_fn(1, dof, |_, at| derivative(at))
+}
+
+/// Second derivative of the length along the platform's motion.
+#[must_use]
+pub fn acceleration(
+    mechanism: &Mechanism,
+    leg: &Leg,
+    pose: &[f64],
+    twist: &DVector<f64>,
+    acceleration: &DVector<f64>,
+) -> f64 {
+    let at = |t: f64| {
+        let displacement = twist * t + acceleration * (0.5 * t * t);
+        length_at(
+            mechanism,
+            leg,
+            &mechanism.motion.displace(pose, &displacement),
+        )
+    };
+    let mut sum = SECOND[0] * at(0.0);
+    for (k, weight) in SECOND.iter().enumerate().skip(1) {
+        let t = k as f64 * TIME;
+        sum += weight * (at(t) + at(-t));
+    }
+    sum / (TIME * TIME)
+}
