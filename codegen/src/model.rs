@@ -257,6 +257,10 @@ impl RobotModel {
                 let force = self.mechanism.springs[index].force.as_ref();
                 force.map_or("", |force| &force.unit)
             }
+            BodyParameter::Motor { motor, symbol } => {
+                let kind = self.mechanism.motors[motor].kind;
+                symbol.unit(kind == JointKind::Prismatic)
+            }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => symbol.unit(false),
         }
     }

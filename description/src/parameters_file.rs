@@ -28,6 +28,7 @@ pub fn parse_parameters(
     let robot = Inventory {
         platform: description.platform.as_ref(),
         legs: &description.legs,
+        motors: &description.motors,
         springs: &description.springs,
         scope: &scope,
         payloads: &description.payloads,

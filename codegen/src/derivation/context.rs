@@ -53,7 +53,7 @@ impl<'a, 's> DerivationContext<'a, 's> {
     /// Derives the robot; `still` are pose coordinates that are known to be zero.
     ///
     /// # Errors
-    /// See [`Robot::new`] and [`Robot::check_formulas`].
+    /// See [`Robot::new`], [`Robot::check_formulas`] and [`Robot::check_motors`].
     pub(super) fn new(
         arena: &'a Arena,
         mechanism: &'a Mechanism,
@@ -73,6 +73,7 @@ impl<'a, 's> DerivationContext<'a, 's> {
             still,
         )?;
         robot.check_formulas()?;
+        robot.check_motors()?;
         Ok(Self {
             inputs: configuration_inputs(&robot, configuration),
             robot,

@@ -24,6 +24,13 @@ pub enum DerivationError {
         /// Name of the leg; empty for the platform.
         leg: String,
     },
+    /// The position of a joint that a motor turns does not follow from the pose.
+    UndeterminedMotor {
+        /// Name of the motor.
+        motor: String,
+        /// Name of the joint.
+        joint: String,
+    },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
     /// Requested functions that the robot does not have.
@@ -93,6 +100,16 @@ impl DerivationError {
                 let span = span.unwrap_or_else(|| description.name.span.clone());
                 Diagnostic::new(Code::SINGULAR_HOME, format!("{what} is singular at the home configuration"), span)
                     .help("choose a home pose where no leg is stretched or folded and the actuators determine its motion")
+            }
+            Self::UndeterminedMotor { motor, joint } => {
+                let mut motors = description.motors.iter();
+                let own = motors.find(|own| own.name.value == *motor);
+                let span = own.map_or(&description.name.span, |own| &own.span);
+                let message = format!(
+                    "the motor `{motor}` turns the joint `{joint}`, whose position does not follow from the pose"
+                );
+                Diagnostic::new(Code::NO_CLOSED_SOLUTION, message, span.clone())
+                    .help("let the motor turn joints that the closures determine")
             }
             Self::SingularPartition => Diagnostic::new(
                 Code::ALWAYS_SINGULAR,

@@ -20,11 +20,18 @@ pub enum BodyParameter {
     Payload(StandardParameter),
     /// The coefficient of the spring between two points of this index.
     Spring(usize),
+    /// Of a motor that drives a combination of joints.
+    Motor {
+        /// The motor.
+        motor: usize,
+        /// Which parameter.
+        symbol: StandardParameter,
+    },
 }
 
 impl BodyParameter {
     /// All parameters that are not absent, in column order: leg by leg, body by body, then the
-    /// platform's and those of springs between two points.
+    /// platform's, those of springs between two points, and those of motors.
     #[must_use]
     pub fn all(mechanism: &Mechanism) -> Vec<Self> {
         let mut parameters = Vec::new();
@@ -39,6 +46,10 @@ impl BodyParameter {
         let springs = mechanism.springs.iter().enumerate();
         let springs = springs.filter(|(_, spring)| spring.force.is_some());
         parameters.extend(springs.map(|(index, _)| Self::Spring(index)));
+        for (motor, own) in mechanism.motors.iter().enumerate() {
+            let symbols = own.parameters.iter();
+            parameters.extend(symbols.map(|&symbol| Self::Motor { motor, symbol }));
+        }
         parameters
     }
 
@@ -53,6 +64,7 @@ impl BodyParameter {
                 let name = &mechanism.springs[index].name;
                 format!("{}_{name}", self.symbol().name())
             }
+            Self::Motor { motor, symbol } => mechanism.motor_parameter_name(symbol, motor),
         }
     }
 
@@ -60,7 +72,10 @@ impl BodyParameter {
     #[must_use]
     pub const fn symbol(self) -> StandardParameter {
         match self {
-            Self::Leg { symbol, .. } | Self::Platform(symbol) | Self::Payload(symbol) => symbol,
+            Self::Leg { symbol, .. }
+            | Self::Platform(symbol)
+            | Self::Payload(symbol)
+            | Self::Motor { symbol, .. } => symbol,
             Self::Spring(_) => StandardParameter::K,
         }
     }
@@ -88,7 +103,7 @@ impl BodyParameter {
     pub(super) const fn of_platform(self) -> Option<StandardParameter> {
         match self {
             Self::Platform(symbol) | Self::Payload(symbol) => Some(symbol),
-            Self::Leg { .. } | Self::Spring(_) => None,
+            Self::Leg { .. } | Self::Spring(_) | Self::Motor { .. } => None,
         }
     }
 }

@@ -4,6 +4,7 @@ pub(crate) mod actuator_names;
 pub(crate) mod chain;
 pub(crate) mod compound;
 pub(crate) mod compound_joint_kind;
+pub(crate) mod coupled_motor;
 pub(crate) mod frame;
 pub(crate) mod friction;
 pub(crate) mod geometry;

@@ -302,7 +302,37 @@ impl Joint {
     }
 }
 
-/// All actuators, as leg and joint, leg by leg.
+/// A motor that drives a combination of joints of a robot with loops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motor {
+    /// Name, unique in its leg, or in the robot without one.
+    pub name: Spanned<String>,
+    /// The leg with whose shape it is described.
+    pub leg: Option<usize>,
+    /// Whether the combination is an angle or a length.
+    pub kind: JointKind,
+    /// The independent joints that it drives, with their factors.
+    pub terms: Vec<MotorTerm>,
+    /// Gear ratio, rotor turns per unit of the combination.
+    pub ratio: Number,
+    /// Parameters of rotor and friction, of the combination's rate.
+    pub parameters: Vec<StandardParameter>,
+    /// Stribeck velocity of the friction, rad/s or m/s.
+    pub stribeck: Option<Number>,
+    /// Location of its table.
+    pub span: Span,
+}
+
+/// A joint that a motor drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MotorTerm {
+    /// The independent joint.
+    pub joint: BodyIndex,
+    /// Its factor in the combination.
+    pub factor: Ratio,
+}
+
+/// All actuated joints, as leg and joint, leg by leg.
 pub(crate) fn actuators(legs: &[Leg]) -> Vec<(usize, usize)> {
     let of_leg = |(index, leg): (usize, &Leg)| {
         let actuated = leg.joints.iter().enumerate().filter(|(_, j)| j.actuated);

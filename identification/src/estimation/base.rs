@@ -333,6 +333,7 @@ fn symmetric_order(columns: &ColumnSet, mut indices: Vec<usize>) -> Vec<usize> {
                 Body::Platform => (0, 0, column.symbol, direction, 0, 0),
                 Body::Leg { leg, index, shape } => (1, index, column.symbol, direction, shape, leg),
                 Body::Spring { index } => (1, u16::MAX, column.symbol, direction, 0, index),
+                Body::Motor { index } => (1, u16::MAX, column.symbol, direction, 1, index),
                 Body::Payload => (2, 0, column.symbol, direction, 0, 0),
             }
         })

@@ -232,6 +232,19 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
         actuator: None,
         parameters,
     };
+    // Motors are the last actuators.
+    for (motor, own) in mechanism.motors.iter().enumerate() {
+        let is_own =
+            |p: &BodyParameter| matches!(p, BodyParameter::Motor { motor: of, .. } if *of == motor);
+        let leg = own.leg.map(|leg| mechanism.legs[leg].name.as_str());
+        bodies.push(Body {
+            name: leg.map_or_else(|| own.name.clone(), |leg| format!("{leg}.{}", own.name)),
+            joint: "motor",
+            actuated: true,
+            actuator: actuators.next(),
+            parameters: named(&is_own),
+        });
+    }
     for (index, spring) in mechanism.springs.iter().enumerate() {
         let own = named(&|p| *p == BodyParameter::Spring(index));
         bodies.push(other(&spring.name, "spring", own));
@@ -286,7 +299,7 @@ impl Function {
             inputs.retain(|input| input.name != "pose");
             inputs.insert(
                 0,
-                free("actuators", model.mechanism.actuated().len(), false),
+                free("actuators", model.mechanism.actuator_count(), false),
             );
             inputs.push(free("start", model.mechanism.pose_len(), true));
         }

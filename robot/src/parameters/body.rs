@@ -11,6 +11,9 @@ pub(crate) fn body(mechanism: &Mechanism, parameter: BodyParameter) -> Body {
         BodyParameter::Spring(index) => Body::Spring {
             index: small(index),
         },
+        BodyParameter::Motor { motor, .. } => Body::Motor {
+            index: small(motor),
+        },
         BodyParameter::Leg { leg, joint, .. } => leg_body(
             leg,
             joint,

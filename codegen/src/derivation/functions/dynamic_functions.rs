@@ -178,6 +178,8 @@ impl<'a> DerivationContext<'a, '_> {
                 &mut forces,
                 self.robot.point_spring_forces(&motion, &values),
             );
+            let of_motors = self.robot.motor_forces(&motion, &values, actuators);
+            add_to(&mut forces, of_motors);
         }
         forces
     }
@@ -241,6 +243,10 @@ impl<'a> DerivationContext<'a, '_> {
     /// M for given parameters, from bodies summed from the tips to the base.
     pub(crate) fn mass_matrix(&mut self, of: Columns) -> Rows<'a> {
         let values = self.parameter_values(of);
-        self.robot.masses(&values).unwrap_or_default()
+        let mut masses = self.robot.masses(&values).unwrap_or_default();
+        if !matches!(self.owner, Owner::Leg(_)) {
+            self.robot.add_rotors(&mut masses, &values);
+        }
+        masses
     }
 }

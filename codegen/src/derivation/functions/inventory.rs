@@ -20,7 +20,7 @@ pub fn inventory(mechanism: &Mechanism, selection: &Selection) -> Vec<FunctionFo
     let closed = closed_form(&Arena::new(), mechanism).is_some();
     let has = |function: &Function| match function.condition() {
         Condition::Platform => !tree,
-        Condition::Redundancy => mechanism.actuated().len() > mechanism.dof(),
+        Condition::Redundancy => mechanism.actuator_count() > mechanism.dof(),
         Condition::Payload => payload,
         Condition::ClosedForm => closed,
         Condition::NumericJoints => joints == JointsBy::Newton,

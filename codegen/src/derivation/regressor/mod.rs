@@ -125,6 +125,11 @@ impl<'a> Robot<'a> {
                     self.combine(&projection.platform, &forces)
                 }
             }
+            BodyParameter::Motor { motor, symbol } => {
+                let force = self.motor_force(motion, motor, symbol);
+                let row = self.motor_row(motor, &projection.legs);
+                row.iter().map(|&g| g * force).collect()
+            }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
                 self.arena.enter("platform");
                 let body = motion.platform.as_ref();
