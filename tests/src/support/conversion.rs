@@ -2,7 +2,7 @@
 
 use crate::reference::{
     Element, ElementBody, ElementEnd, End, Frame, Joint, JointKind, Law, Leg, Mechanism, Motion,
-    Spring,
+    Motor, Spring,
 };
 use nalgebra::{Rotation3, Vector3};
 use overact_codegen::mechanism;
@@ -27,6 +27,7 @@ pub fn reference(mechanism: &mechanism::Mechanism, workspace: Vec<f64>) -> Mecha
             .map(|(k, own)| leg(own, &mechanism.home.joints[first(k)]))
             .collect(),
         elements: mechanism.springs.iter().map(element).collect(),
+        motors: mechanism.motors.iter().map(motor).collect(),
     }
 }
 
@@ -124,6 +125,14 @@ fn element(spring: &mechanism::PointSpring) -> Element {
         ends: spring.ends.each_ref().map(end),
         force: spring.force.as_ref().map(|force| law(&force.formula)),
         known: spring.known.as_ref().map(law),
+    }
+}
+
+fn motor(motor: &mechanism::Motor) -> Motor {
+    let terms = motor.terms.iter();
+    Motor {
+        terms: terms.map(|(at, factor)| (*at, factor.value())).collect(),
+        stribeck: motor.stribeck.map(Number::value),
     }
 }
 
