@@ -31,6 +31,11 @@ pub enum DerivationError {
         /// Name of the joint.
         joint: String,
     },
+    /// The force of a spring between two points does not follow from the configuration.
+    UndeterminedSpring {
+        /// Name of the spring.
+        spring: String,
+    },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
     /// Requested functions that the robot does not have.
@@ -111,6 +116,16 @@ impl DerivationError {
                 Diagnostic::new(Code::NO_CLOSED_SOLUTION, message, span.clone())
                     .help("let the motor turn joints that the closures determine")
             }
+            Self::UndeterminedSpring { spring } => {
+                let mut springs = description.springs.iter();
+                let own = springs.find(|own| own.name.value == *spring);
+                let span = own.map_or(&description.name.span, |own| &own.span);
+                let message = format!(
+                    "the length and force of the spring `{spring}` do not follow from the robot's configuration"
+                );
+                Diagnostic::new(Code::NO_CLOSED_SOLUTION, message, span.clone())
+                    .help("connect it to other bodies, or write its force with smaller numbers")
+            }
             Self::SingularPartition => Diagnostic::new(
                 Code::ALWAYS_SINGULAR,
                 format!("the kept actuators never determine {motion}"),
@@ -173,6 +188,9 @@ mod tests {
         }
         let other = DerivationError::ForwardKinematics.locate(&description);
         assert!(other.internal().is_none());
+        let spring = String::from("gas");
+        let spring = DerivationError::UndeterminedSpring { spring }.locate(&description);
+        assert!(spring.render_plain(&source).contains("the spring `gas`"));
         let leg = String::new();
         let home = DerivationError::SingularHome { leg }.locate(&description);
         assert!(home.internal().is_none());
