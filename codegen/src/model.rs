@@ -261,7 +261,9 @@ impl RobotModel {
                 let kind = self.mechanism.motors[motor].kind;
                 symbol.unit(kind == JointKind::Prismatic)
             }
-            BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => symbol.unit(false),
+            BodyParameter::Platform(symbol)
+            | BodyParameter::Payload(symbol)
+            | BodyParameter::Load { symbol, .. } => symbol.unit(false),
         }
     }
 }

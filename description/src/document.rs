@@ -7,7 +7,7 @@ use crate::experiments::excitation::Excitation;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::prior::Prior;
 use crate::experiments::settings::Identification;
-use crate::robot::model::{Frame, Leg, Motor, Platform, Spanned, actuators};
+use crate::robot::model::{Frame, Leg, Motor, Payload, Platform, Spanned, actuators};
 use crate::robot::point_spring::PointSpring;
 use overact_exact::Number;
 
@@ -28,6 +28,8 @@ pub struct Description {
     pub gravity: [Number; 3],
     /// Names of the payloads, if there are several.
     pub payloads: Vec<Spanned<String>>,
+    /// Payloads on bodies, whose names are the above.
+    pub payload_bodies: Vec<Payload>,
     /// Named constants that are not angles, in SI units.
     pub constants: Vec<(String, f64)>,
     /// Magnitudes of the numbers of platform and legs without a name, in SI units, sorted.

@@ -61,7 +61,7 @@ pub use parameters_file::parse_parameters;
 pub use robot::actuator_names::ActuatorNames;
 pub use robot::inventory::{Body, independent_joints};
 pub use robot::model::{
-    BodyIndex, End, Frame, FrameBody, Joint, JointKind, Leg, Motion, Motor, MotorTerm, Placement,
+    BodyIndex, End, Frame, FrameBody, Joint, JointKind, Leg, Motion, Motor, MotorTerm, Payload, Placement,
     Platform, PlatformHome, SIX, Spanned,
 };
 pub use robot::motion::TwistCoordinate;

@@ -32,6 +32,7 @@ pub fn parse_parameters(
         springs: &description.springs,
         scope: &scope,
         payloads: &description.payloads,
+        payload_bodies: &description.payload_bodies,
     };
     let item = table.require(
         "parameters",

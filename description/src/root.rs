@@ -8,7 +8,7 @@ use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::{Body, Inventory};
 use crate::robot::model::{Leg, Motor, Platform, Spanned, actuators};
 use crate::robot::shape::Shape;
-use crate::robot::{chain, coupled_motor, frame, leg, platform, point_spring, shape};
+use crate::robot::{chain, coupled_motor, frame, leg, payload, platform, point_spring, shape};
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
@@ -111,6 +111,10 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     check_actuators(table, platform.as_ref(), &legs, &motors);
     let frames = frame::read(table, platform_item.is_some(), &legs, &scope);
     let springs = point_spring::read(table, &scope, platform_item.is_some(), &legs);
+    let payload_bodies = payload::read(table, platform_item.is_some(), &legs, &scope);
+    let of_platform = platform.as_ref().filter(|platform| platform.payload.is_some());
+    let of_platform = of_platform.map(|platform| platform.span.clone());
+    payload::check_alone(table, &payload_bodies, of_platform, &legs);
     let robot = Inventory {
         platform: platform.as_ref(),
         legs: &legs,
@@ -118,6 +122,11 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         springs: &springs,
         scope: &scope,
         payloads: &[],
+        payload_bodies: &[],
+    };
+    let robot = Inventory {
+        payload_bodies: &payload_bodies,
+        ..robot
     };
     check_parameter_names(table, &robot);
     check_spring_names(table, &robot);
@@ -152,6 +161,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         source,
         gravity,
         payloads,
+        payload_bodies,
         constants: scope.values(),
         magnitudes,
         platform,
@@ -351,6 +361,7 @@ fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg], mo
         springs: &[],
         scope: &Scope::default(),
         payloads: &[],
+        payload_bodies: &[],
     };
     let names = robot.actuator_names();
     let names: Vec<&str> = names.usual().collect();

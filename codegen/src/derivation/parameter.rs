@@ -18,6 +18,13 @@ pub enum BodyParameter {
     Platform(StandardParameter),
     /// Of the payload.
     Payload(StandardParameter),
+    /// Of a payload with a table of its own.
+    Load {
+        /// The payload.
+        payload: usize,
+        /// Which parameter.
+        symbol: StandardParameter,
+    },
     /// The coefficient of the spring between two points of this index.
     Spring(usize),
     /// Of a motor that drives a combination of joints.
@@ -60,6 +67,10 @@ impl BodyParameter {
             Self::Leg { leg, joint, symbol } => mechanism.parameter_name(symbol, leg, joint),
             Self::Platform(symbol) => format!("{}_platform", symbol.name()),
             Self::Payload(symbol) => format!("{}_payload", symbol.name()),
+            Self::Load { payload, symbol } => {
+                let name = &mechanism.payloads[payload].name;
+                format!("{}_payload_{name}", symbol.name())
+            }
             Self::Spring(index) => {
                 let name = &mechanism.springs[index].name;
                 format!("{}_{name}", self.symbol().name())
@@ -75,16 +86,23 @@ impl BodyParameter {
             Self::Leg { symbol, .. }
             | Self::Platform(symbol)
             | Self::Payload(symbol)
+            | Self::Load { symbol, .. }
             | Self::Motor { symbol, .. } => symbol,
             Self::Spring(_) => StandardParameter::K,
         }
     }
 
-    /// The payload's parameters.
+    /// The parameters of all payloads.
     #[must_use]
     pub fn of_payload(mechanism: &Mechanism) -> Vec<Self> {
         let payload = mechanism.platform.iter().flat_map(|p| &p.payload);
-        payload.flatten().map(|&s| Self::Payload(s)).collect()
+        let payload = payload.flatten().map(|&s| Self::Payload(s));
+        let loads = mechanism.payloads.iter().enumerate();
+        let loads = loads.flat_map(|(payload, own)| {
+            let symbols = own.parameters.iter();
+            symbols.map(move |&symbol| Self::Load { payload, symbol })
+        });
+        payload.chain(loads).collect()
     }
 
     /// The symbol of a parameter of a leg's body or joint.
@@ -103,7 +121,7 @@ impl BodyParameter {
     pub(super) const fn of_platform(self) -> Option<StandardParameter> {
         match self {
             Self::Platform(symbol) | Self::Payload(symbol) => Some(symbol),
-            Self::Leg { .. } | Self::Spring(_) | Self::Motor { .. } => None,
+            Self::Leg { .. } | Self::Load { .. } | Self::Spring(_) | Self::Motor { .. } => None,
         }
     }
 }

@@ -10,7 +10,7 @@ use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
 use super::{
-    BaseColumns, Frame, Joint, JointIndex, Leg, Mechanism, Motor, Number, Platform, PointSpring,
+    BaseColumns, Frame, Joint, JointIndex, Leg, Mechanism, Motor, Number, Payload, Platform, PointSpring,
     SpringBody, SpringEnd,
 };
 use overact_description::Description;
@@ -156,6 +156,12 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         body: frame.body,
         placement: frame.placement.clone(),
     };
+    let payload = |payload: &overact_description::Payload| Payload {
+        name: payload.name.value.clone(),
+        body: payload.body,
+        placement: payload.placement.clone(),
+        parameters: payload.parameters.clone(),
+    };
     let axis = description.platform.as_ref().map(|p| p.axis_at);
     let mut mechanism = Mechanism {
         name: description.type_name(),
@@ -166,6 +172,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         magnitudes: description.magnitudes.clone(),
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
+        payloads: description.payload_bodies.iter().map(payload).collect(),
         motors: Vec::new(),
         springs: description.springs.iter().map(spring).collect(),
         frames: description.frames.iter().map(frame).collect(),

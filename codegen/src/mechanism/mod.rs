@@ -131,6 +131,19 @@ impl Leg {
     }
 }
 
+/// A payload on a body, which some runs carry.
+#[derive(Debug, Clone)]
+pub struct Payload {
+    /// Name, unique in the robot.
+    pub name: String,
+    /// The body on which it is fixed.
+    pub body: FrameBody,
+    /// Its frame in the body's frame.
+    pub placement: Placement,
+    /// Inertial parameters about its frame that are not absent.
+    pub parameters: Vec<StandardParameter>,
+}
+
 /// A motor that drives a combination of joints of a robot with loops.
 #[derive(Debug, Clone)]
 pub struct Motor {
@@ -211,6 +224,8 @@ pub struct Mechanism {
     pub platform: Option<Platform>,
     /// The legs.
     pub legs: Vec<Leg>,
+    /// Payloads on bodies, with tables of their own.
+    pub payloads: Vec<Payload>,
     /// Motors that drive combinations of joints of a robot with loops.
     pub motors: Vec<Motor>,
     /// Springs and dampers between two points.

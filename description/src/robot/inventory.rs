@@ -3,7 +3,7 @@
 use crate::expressions::dimension::Dimension;
 use crate::robot::actuator_names::ActuatorNames;
 use crate::robot::joint;
-use crate::robot::model::{JointKind, Leg, Motion, Motor, Platform, Spanned, actuators};
+use crate::robot::model::{JointKind, Leg, Motion, Motor, Payload, Platform, Spanned, actuators};
 use crate::robot::parameter::dimension;
 use crate::robot::point_spring::PointSpring;
 use crate::toml_text::scope::Scope;
@@ -39,6 +39,8 @@ pub(crate) struct Inventory<'r> {
     pub(crate) scope: &'r Scope,
     /// Names of the payloads, if there are several.
     pub(crate) payloads: &'r [Spanned<String>],
+    /// Payloads with tables of their own.
+    pub(crate) payload_bodies: &'r [Payload],
 }
 
 impl Inventory<'_> {
@@ -133,6 +135,10 @@ impl Inventory<'_> {
         if let Some(platform) = self.platform {
             let payload = platform.payload.as_deref().unwrap_or_default();
             all.extend(free(Body::Payload, "payload", payload));
+        }
+        for payload in self.payload_bodies {
+            let name = format!("payload_{}", payload.name.value);
+            all.extend(free(Body::Payload, &name, &payload.parameters));
         }
         let named = self.of_payloads(&all);
         all.extend(named);

@@ -17,6 +17,7 @@ pub(crate) mod motion;
 pub(crate) mod motor;
 pub(crate) mod parameter;
 pub(crate) mod parameters;
+pub(crate) mod payload;
 pub(crate) mod platform;
 pub(crate) mod point_spring;
 pub(crate) mod shape;

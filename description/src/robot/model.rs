@@ -295,11 +295,32 @@ impl Joint {
         }
     }
 
+    /// Whether its body is the payload of a robot without loops: a fixed joint named `payload`.
+    #[must_use]
+    pub fn is_payload(&self) -> bool {
+        self.kind.value == JointKind::Fixed && self.name.value == "payload"
+    }
+
     /// Whether the joint at `index` has a variable of its own.
     #[must_use]
     pub fn is_independent(&self, index: usize) -> bool {
         matches!(self.variable.as_slice(), [(own, _)] if *own == index)
     }
+}
+
+/// A payload on a body, which some runs carry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Payload {
+    /// Name, unique in the robot.
+    pub name: Spanned<String>,
+    /// The body on which it is fixed.
+    pub body: FrameBody,
+    /// Its frame in the body's frame.
+    pub placement: Placement,
+    /// Inertial parameters about its frame that are not absent.
+    pub parameters: Vec<StandardParameter>,
+    /// Location of its table.
+    pub span: Span,
 }
 
 /// A motor that drives a combination of joints of a robot with loops.

@@ -63,7 +63,7 @@ pub struct Inspection {
 pub struct Body {
     /// Name of the joint, `platform` or `payload`.
     pub name: String,
-    /// Joint type: `revolute`, `prismatic`, `fixed`, `motor` or `free`.
+    /// Joint type: `revolute`, `prismatic`, `fixed`, `motor`, `spring`, `payload` or `free`.
     pub joint: &'static str,
     /// Whether a motor drives the joint.
     pub actuated: bool,
@@ -248,6 +248,10 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
     for (index, spring) in mechanism.springs.iter().enumerate() {
         let own = named(&|p| *p == BodyParameter::Spring(index));
         bodies.push(other(&spring.name, "spring", own));
+    }
+    for (index, payload) in mechanism.payloads.iter().enumerate() {
+        let is_own = |p: &BodyParameter| matches!(p, BodyParameter::Load { payload: of, .. } if *of == index);
+        bodies.push(other(&payload.name, "payload", named(&is_own)));
     }
     if let Some(platform) = &mechanism.platform {
         let free = |name: &str, parameters| other(name, "free", parameters);

@@ -2,6 +2,7 @@
 
 use super::frames::{self, Frames};
 use super::sample::fitted_acceleration;
+use super::conversion::payload_joint;
 use super::{Failure, Parameters, Sample};
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
@@ -76,6 +77,12 @@ impl Expected {
             BodyParameter::Platform(symbol) => platform_start(&mechanism) + symbol as usize,
             BodyParameter::Payload(symbol) => {
                 platform_start(&mechanism) + INERTIAL + symbol as usize
+            }
+            BodyParameter::Load { payload, symbol } => {
+                match payload_joint(&model.mechanism, payload) {
+                    Some((leg, joint)) => leg_start(&mechanism, leg) + BODY * joint + symbol as usize,
+                    None => platform_start(&mechanism) + INERTIAL + symbol as usize,
+                }
             }
             BodyParameter::Spring(index) => element_start(&mechanism) + index,
             BodyParameter::Motor { motor, symbol } => {

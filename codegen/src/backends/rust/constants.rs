@@ -185,7 +185,7 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
                 let symbol = symbol(s);
                 quote!(Parameter::of_platform(#name, StandardParameter::#symbol, #unit))
             }
-            BodyParameter::Payload(s) => {
+            BodyParameter::Payload(s) | BodyParameter::Load { symbol: s, .. } => {
                 let symbol = symbol(s);
                 quote!(Parameter::of_payload(#name, StandardParameter::#symbol, #unit))
             }

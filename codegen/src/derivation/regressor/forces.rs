@@ -41,6 +41,7 @@ impl<'a> Robot<'a> {
             let own = |p: BodyParameter| match p {
                 BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => Some(symbol),
                 BodyParameter::Leg { .. }
+                | BodyParameter::Load { .. }
                 | BodyParameter::Spring(_)
                 | BodyParameter::Motor { .. } => None,
             };

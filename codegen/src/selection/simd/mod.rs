@@ -65,8 +65,9 @@ pub(crate) fn lane_program(
     if legs < LEGS || assembler.selection.values.is_some() {
         return None;
     }
-    // Motors that drive joints of several legs belong to none of them.
-    if !assembler.mechanism.motors.is_empty() {
+    // Motors that drive joints of several legs belong to none of them, and payloads to one.
+    let mechanism = assembler.mechanism;
+    if !mechanism.motors.is_empty() || !mechanism.payloads.is_empty() {
         return None;
     }
     let operations = straight.cost().operations();
