@@ -112,7 +112,9 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let frames = frame::read(table, platform_item.is_some(), &legs, &scope);
     let springs = point_spring::read(table, &scope, platform_item.is_some(), &legs);
     let payload_bodies = payload::read(table, platform_item.is_some(), &legs, &scope);
-    let of_platform = platform.as_ref().filter(|platform| platform.payload.is_some());
+    let of_platform = platform
+        .as_ref()
+        .filter(|platform| platform.payload.is_some());
     let of_platform = of_platform.map(|platform| platform.span.clone());
     payload::check_alone(table, &payload_bodies, of_platform, &legs);
     let robot = Inventory {

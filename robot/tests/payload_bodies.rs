@@ -50,7 +50,10 @@ fn payloads_on_two_bodies_are_identified() {
     for own in &base.parameters {
         let truth = own.true_value.expect("a true value");
         let off = (own.value - truth).abs() / own.correlated_standard_deviation;
-        println!("{:18} {:9.5}, true {truth:9.5}: {off:.1}", own.name, own.value);
+        println!(
+            "{:18} {:9.5}, true {truth:9.5}: {off:.1}",
+            own.name, own.value
+        );
         assert!(off < 4.5, "{}: {off:.1} standard deviations", own.name);
         seen += usize::from(own.name.contains("_payload_"));
     }

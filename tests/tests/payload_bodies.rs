@@ -68,7 +68,10 @@ fn payloads_on_bodies_agree_with_bodies_of_the_reference() -> Result<(), Failure
             .map(|&parameter| model.parameter_name(parameter))
             .collect();
         let has = |name: &str| names.iter().any(|own| own == name);
-        assert!(has("m_payload_tool") || has("mx_payload_tool"), "{stem}: {names:?}");
+        assert!(
+            has("m_payload_tool") || has("mx_payload_tool"),
+            "{stem}: {names:?}"
+        );
         assert!(!has("yy_payload_box"), "{stem}: {names:?}");
         let mechanism = reference(&model.mechanism, workspace(&model));
         let expected = Expected::by_position(&model, mechanism);
@@ -83,8 +86,16 @@ fn payloads_on_bodies_agree_with_bodies_of_the_reference() -> Result<(), Failure
                 comparison.function(function, &Evaluated(&model), &all, &truths)?;
             }
         }
-        assert!(comparison.lines.len() >= 4, "{stem}: {:?}", comparison.lines);
-        assert!(comparison.failures.is_empty(), "{stem}: {}", comparison.failures.join("\n"));
+        assert!(
+            comparison.lines.len() >= 4,
+            "{stem}: {:?}",
+            comparison.lines
+        );
+        assert!(
+            comparison.failures.is_empty(),
+            "{stem}: {}",
+            comparison.failures.join("\n")
+        );
         println!("{stem}");
     }
     Ok(())

@@ -10,8 +10,8 @@ use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
 use super::{
-    BaseColumns, Frame, Joint, JointIndex, Leg, Mechanism, Motor, Number, Payload, Platform, PointSpring,
-    SpringBody, SpringEnd,
+    BaseColumns, Frame, Joint, JointIndex, Leg, Mechanism, Motor, Number, Payload, Platform,
+    PointSpring, SpringBody, SpringEnd,
 };
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};

@@ -78,7 +78,10 @@ impl PayloadUse {
             };
             Error::check(loaded().map(problem).collect())?;
         }
-        let of_bodies = info.payload_parameters.iter().any(|one| load_of(one).is_some());
+        let of_bodies = info
+            .payload_parameters
+            .iter()
+            .any(|one| load_of(one).is_some());
         let all_loaded = loaded().count() == runs.len();
         if of_bodies && all_loaded && payload_names(runs).len() > 1 {
             let message = "all runs carry a payload, and the payloads are on bodies of their own: none of them can be told from its body";

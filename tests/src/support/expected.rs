@@ -1,8 +1,8 @@
 //! Expected outputs of functions, from the numeric reference.
 
+use super::conversion::payload_joint;
 use super::frames::{self, Frames};
 use super::sample::fitted_acceleration;
-use super::conversion::payload_joint;
 use super::{Failure, Parameters, Sample};
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
@@ -80,7 +80,9 @@ impl Expected {
             }
             BodyParameter::Load { payload, symbol } => {
                 match payload_joint(&model.mechanism, payload) {
-                    Some((leg, joint)) => leg_start(&mechanism, leg) + BODY * joint + symbol as usize,
+                    Some((leg, joint)) => {
+                        leg_start(&mechanism, leg) + BODY * joint + symbol as usize
+                    }
                     None => platform_start(&mechanism) + INERTIAL + symbol as usize,
                 }
             }

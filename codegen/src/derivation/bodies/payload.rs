@@ -84,5 +84,7 @@ pub(crate) fn on_body<'a>(
         },
     };
     let terms = all.into_iter().filter(|(_, factor)| !factor.is_zero());
-    terms.map(|(symbol, factor)| (of_body(symbol), factor)).collect()
+    terms
+        .map(|(symbol, factor)| (of_body(symbol), factor))
+        .collect()
 }
