@@ -32,7 +32,7 @@ const ROUNDING: f64 = 64.0;
 /// States in the default tier and in the full one.
 const STATES: [usize; 2] = [2, 10];
 /// Words of the reasons for which a draw is refused.
-const REFUSED: [&str; 10] = [
+const REFUSED: [&str; 11] = [
     "never reaches",
     "does not close",
     "singular",
@@ -43,6 +43,7 @@ const REFUSED: [&str; 10] = [
     "determine",
     "no joint is actuated",
     "cancel",
+    "no loop",
 ];
 /// Largest number of draws for each random robot.
 const DRAWS: u64 = 30;

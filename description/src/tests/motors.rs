@@ -197,7 +197,7 @@ fn errors_of_motors_of_robots_with_loops() {
         ),
         (
             "[motor.left]\nturns = \"left.q1\"\n[motor.a]\nturns = \"left.q1\"\nname = \"b\"",
-            "15:1 a motor has no `name`",
+            "15:1 unknown key `name`; known keys: ",
         ),
     ];
     for (tables, expected) in cases {

@@ -94,10 +94,13 @@ fn turned(robot: &Description) -> Vec<Turned> {
 ///
 /// # Errors
 ///
-/// An invalid description.
+/// An invalid description, or a robot without loops.
 pub fn with_random_motors(text: &str, seed: u64) -> Result<String, Failure> {
     let source = Source::new("motors.toml", text);
     let robot = parse(&source).map_err(|errors| errors.render_plain(&source))?;
+    if robot.platform.is_none() && robot.legs.iter().all(|leg| leg.end.is_none()) {
+        return Err("the robot has no loop".into());
+    }
     let joints = turned(&robot);
     let mut dice = Dice::new(seed ^ 0x3070_12f5);
     let mut motors = String::new();
