@@ -257,7 +257,13 @@ impl RobotModel {
                 let force = self.mechanism.springs[index].force.as_ref();
                 force.map_or("", |force| &force.unit)
             }
-            BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => symbol.unit(false),
+            BodyParameter::Motor { motor, symbol } => {
+                let kind = self.mechanism.motors[motor].kind;
+                symbol.unit(kind == JointKind::Prismatic)
+            }
+            BodyParameter::Platform(symbol)
+            | BodyParameter::Payload(symbol)
+            | BodyParameter::Load { symbol, .. } => symbol.unit(false),
         }
     }
 }

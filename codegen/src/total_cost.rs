@@ -168,7 +168,7 @@ impl RobotModel {
     /// `pose_from_actuators`: the closed form, if used, and Gauss-Newton steps for redundant
     /// actuators or without it.
     fn forward_kinematics(&self) -> TotalCost {
-        let (n, r) = (self.mechanism.actuated().len(), self.mechanism.dof());
+        let (n, r) = (self.mechanism.actuator_count(), self.mechanism.dof());
         let mut total = TotalCost::from(self.scaled_quaternion());
         let closed = self.function(Function::PoseInClosedForm, MotionInput::Actuators);
         if let Some(closed) = closed.filter(|_| n == r) {

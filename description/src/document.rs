@@ -7,7 +7,7 @@ use crate::experiments::excitation::Excitation;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::prior::Prior;
 use crate::experiments::settings::Identification;
-use crate::robot::model::{Frame, Leg, Platform, Spanned, actuators};
+use crate::robot::model::{Frame, Leg, Motor, Payload, Platform, Spanned, actuators};
 use crate::robot::point_spring::PointSpring;
 use overact_exact::Number;
 
@@ -28,6 +28,8 @@ pub struct Description {
     pub gravity: [Number; 3],
     /// Names of the payloads, if there are several.
     pub payloads: Vec<Spanned<String>>,
+    /// Payloads on bodies, whose names are the above.
+    pub payload_bodies: Vec<Payload>,
     /// Named constants that are not angles, in SI units.
     pub constants: Vec<(String, f64)>,
     /// Magnitudes of the numbers of platform and legs without a name, in SI units, sorted.
@@ -39,6 +41,10 @@ pub struct Description {
     pub platform: Option<Platform>,
     /// The legs in the order of their placement.
     pub legs: Vec<Leg>,
+    /// Motors of a robot with loops that drive combinations of joints.
+    ///
+    /// Those of a robot without loops are coupled joints of its leg.
+    pub motors: Vec<Motor>,
     /// Springs and dampers between two points.
     pub springs: Vec<PointSpring>,
     /// Frames on bodies, in the order of the file.
@@ -85,7 +91,7 @@ impl Description {
         type_name(&self.name.value)
     }
 
-    /// All actuators, as leg and joint, leg by leg: the order of q and τ.
+    /// All actuated joints, as leg and joint, leg by leg: the order of q and τ, before the motors.
     #[must_use]
     pub fn actuators(&self) -> Vec<(usize, usize)> {
         actuators(&self.legs)

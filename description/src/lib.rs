@@ -62,8 +62,8 @@ pub use parameters_file::parse_parameters;
 pub use robot::actuator_names::ActuatorNames;
 pub use robot::inventory::{Body, independent_joints};
 pub use robot::model::{
-    BodyIndex, Cable, End, Frame, FrameBody, Joint, JointKind, Leg, Motion, Placement, Platform,
-    PlatformHome, SIX, Spanned,
+    BodyIndex, Cable, End, Frame, FrameBody, Joint, JointKind, Leg, Motion, Motor, MotorTerm,
+    Payload, Placement, Platform, PlatformHome, SIX, Spanned,
 };
 pub use robot::motion::TwistCoordinate;
 pub use robot::point_spring::{PointSpring, SpringBody, SpringEnd};

@@ -28,9 +28,11 @@ pub fn parse_parameters(
     let robot = Inventory {
         platform: description.platform.as_ref(),
         legs: &description.legs,
+        motors: &description.motors,
         springs: &description.springs,
         scope: &scope,
         payloads: &description.payloads,
+        payload_bodies: &description.payload_bodies,
     };
     let item = table.require(
         "parameters",

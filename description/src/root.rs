@@ -5,15 +5,12 @@ use crate::document::{BaseColumns, Description, type_name};
 use crate::effort::Effort;
 use crate::experiments::{controller, data, excitation, experiment, payloads, prior, settings};
 use crate::expressions::dimension::Dimension;
-use crate::robot::inventory::Inventory;
-use crate::robot::model::{Leg, Platform, Spanned, actuators};
-<<<<<<< HEAD
+use crate::robot::inventory::{Body, Inventory};
+use crate::robot::model::{Leg, Motor, Platform, Spanned, actuators};
 use crate::robot::shape::{MOST_JOINTS, Shape};
-use crate::robot::{chain, frame, leg, platform, point_spring, shape};
-=======
-use crate::robot::shape::Shape;
-use crate::robot::{cable, chain, frame, leg, platform, point_spring, shape};
->>>>>>> e4ce6fdaa4ab6c3fb1034c64779376ca896325f4
+use crate::robot::{
+    cable, chain, coupled_motor, frame, leg, payload, platform, point_spring, shape,
+};
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
@@ -107,6 +104,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let shapes = shapes(table, &scope);
     let mut legs = legs(table, &shapes, &scope);
     check_joint_count(table, name.as_ref(), &legs)?;
+    let motors = motors(table, &shapes, platform_item.is_some(), &mut legs, &scope);
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     let has_platform = platform_item.is_some();
@@ -117,20 +115,31 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         platform.as_ref(),
         &legs,
     );
-    check_actuators(table, platform.as_ref(), &legs);
+    check_actuators(table, platform.as_ref(), &legs, &motors);
     let frames = frame::read(table, platform_item.is_some(), &legs, &scope);
-    let is_closed = legs.iter().any(|leg| leg.end.is_some());
-    check_motors(table, platform.is_some() || is_closed, &legs);
     let springs = point_spring::read(table, &scope, platform_item.is_some(), &legs);
+    let payload_bodies = payload::read(table, platform_item.is_some(), &legs, &scope);
+    let of_platform = platform
+        .as_ref()
+        .filter(|platform| platform.payload.is_some());
+    let of_platform = of_platform.map(|platform| platform.span.clone());
+    payload::check_alone(table, &payload_bodies, of_platform, &legs);
     let robot = Inventory {
         platform: platform.as_ref(),
         legs: &legs,
+        motors: &motors,
         springs: &springs,
         scope: &scope,
         payloads: &[],
+        payload_bodies: &[],
+    };
+    let robot = Inventory {
+        payload_bodies: &payload_bodies,
+        ..robot
     };
     check_parameter_names(table, &robot);
     check_spring_names(table, &robot);
+    check_motor_names(table, &robot);
     let payloads = payloads::read(table, &robot);
     let robot = Inventory {
         payloads: &payloads,
@@ -161,10 +170,12 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
         source,
         gravity,
         payloads,
+        payload_bodies,
         constants: scope.values(),
         magnitudes,
         platform,
         legs,
+        motors,
         springs,
         frames,
         experiment,
@@ -300,22 +311,34 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     }
 }
 
-/// Motors of several joints are supported in robots without loops: a leg's last frame has to be
-/// that of a joint.
-fn check_motors(table: &Table<'_, '_>, is_closed: bool, legs: &[Leg]) {
-    let mut joints = legs.iter().flat_map(|leg| &leg.joints);
-    if let (true, Some(motor)) = (is_closed, joints.find(|joint| joint.motor.is_some())) {
-        let message = "motors of their own are described of robots without loops only";
-        let help =
-            "actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
-        let error = Diagnostic::new(Code::ACTUATED, message, motor.span.clone());
-        table.context.report_once(error.help(help));
+/// Motors of a robot with loops: those described with its legs, then the tables `[motor.NAME]`.
+///
+/// Those of other robots are added to the joints of the leg.
+fn motors(
+    table: &Table<'_, '_>,
+    shapes: &[Shape<'_, '_>],
+    has_platform: bool,
+    legs: &mut [Leg],
+    scope: &Scope,
+) -> Vec<Motor> {
+    let is_closed = has_platform || shapes.iter().any(|shape| shape.end.is_some());
+    let mut motors = Vec::new();
+    if is_closed {
+        motors = coupled_motor::take_from_legs(shapes, legs);
     }
+    let own = coupled_motor::read(table, scope, is_closed, has_platform, legs);
+    motors.extend(own);
+    motors
 }
 
 /// Without actuators nothing can be identified.
-fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
-    let count = actuators(legs).len();
+fn check_actuators(
+    table: &Table<'_, '_>,
+    platform: Option<&Platform>,
+    legs: &[Leg],
+    motors: &[Motor],
+) {
+    let count = actuators(legs).len() + motors.len();
     let Some(platform) = platform else {
         let first = legs.iter().flat_map(|leg| &leg.joints).next();
         // After another error the intended actuated joints are unknown.
@@ -334,18 +357,20 @@ fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[L
     let dof = platform.motion.value.coordinates().len();
     // Missing actuators are reported by the mechanism, which knows the allowed motions.
     if count >= dof {
-        check_redundancy(table, platform, legs);
+        check_redundancy(table, platform, legs, motors);
     }
 }
 
 /// Checks the stated number of redundant actuators.
-fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
+fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg], motors: &[Motor]) {
     let robot = Inventory {
         platform: Some(platform),
         legs,
+        motors,
         springs: &[],
         scope: &Scope::default(),
         payloads: &[],
+        payload_bodies: &[],
     };
     let names = robot.actuator_names();
     let names: Vec<&str> = names.usual().collect();
@@ -411,6 +436,39 @@ fn check_spring_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
             let message = format!("another parameter is also called `{name}`");
             let error = Diagnostic::new(Code::SAME_NAME, message, spring.name.span.clone());
             let help = "the coefficient of a joint's spring has this name: rename this spring";
+            table.context.report(error.help(help));
+        }
+    }
+}
+
+/// Reports motors whose names, as actuators or in parameters, are those of others.
+fn check_motor_names(table: &Table<'_, '_>, robot: &Inventory<'_>) {
+    if robot.motors.is_empty() {
+        return;
+    }
+    let help = "rename this motor, or the joint or leg";
+    let parameters = robot.parameters();
+    let names = robot.actuator_names();
+    let usual: Vec<&str> = names.usual().collect();
+    let first = usual.len() - robot.motors.len();
+    for (index, motor) in robot.motors.iter().enumerate() {
+        let own = usual.get(first + index).copied().unwrap_or_default();
+        if usual.iter().filter(|name| **name == own).count() > 1 {
+            let message = format!("another actuator is also called `{own}`");
+            let error = Diagnostic::new(Code::SAME_NAME, message, motor.name.span.clone());
+            table.context.report(error.help(help));
+            continue;
+        }
+        let of_motor = parameters
+            .iter()
+            .filter(|(_, body, ..)| *body == Body::Motor(index));
+        let taken = of_motor.map(|(name, ..)| name).find(|name| {
+            let alike = parameters.iter().filter(|(other, ..)| other == *name);
+            alike.count() > 1
+        });
+        if let Some(name) = taken {
+            let message = format!("another parameter is also called `{name}`");
+            let error = Diagnostic::new(Code::SAME_NAME, message, motor.name.span.clone());
             table.context.report(error.help(help));
         }
     }

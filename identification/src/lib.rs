@@ -115,7 +115,7 @@ pub use overact_logs::{
 };
 pub use prior::Prior;
 pub use regression::{
-    columns::{Column, ColumnSet, Direction, is_carried},
+    columns::{Column, ColumnSet, Direction, is_carried, load_of},
     factor::Factor,
     projection::{ModelKind, Projection},
     states::SampledStates,

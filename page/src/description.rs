@@ -52,7 +52,7 @@ impl Description {
             summary: &mechanism.summary,
             legs: mechanism.legs.len(),
             joints: mechanism.joints().len(),
-            actuators: mechanism.actuated().len(),
+            actuators: mechanism.actuator_count(),
             dof: mechanism.dof(),
             note: self.note.as_deref(),
         })

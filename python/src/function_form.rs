@@ -294,7 +294,7 @@ fn own_arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Argumen
     });
     let actuators = follows.then(|| Argument {
         name: Input::Actuators.name().to_owned(),
-        length: model.mechanism.actuated().len(),
+        length: model.mechanism.actuator_count(),
     });
     let mut all: Vec<Argument> = actuators.into_iter().chain(own).collect();
     // Newton's method needs the pose to compute the joints.

@@ -21,7 +21,7 @@ use overact_codegen::{
     derivation::BodyParameter,
     description::{self, Description},
     diagnostic::{Diagnostic, Diagnostics, Source},
-    mechanism::{JointKind, Mechanism},
+    mechanism::Mechanism,
 };
 use overact_identification::filters::butterworth;
 use overact_simulation::Experiment;
@@ -221,9 +221,8 @@ fn check_filters(
 /// Parameters are omitted: their number follows from the model.
 fn with_info<T>(mechanism: &Mechanism, then: impl FnOnce(&Info<'_>) -> T) -> T {
     let joints = mechanism.joints();
-    let actuated_joints = mechanism.actuated();
-    let is_revolute = |&at: &usize| mechanism.joint(joints[at]).kind == JointKind::Revolute;
-    let actuator_is_revolute: Vec<bool> = actuated_joints.iter().map(is_revolute).collect();
+    let actuated_joints = mechanism.first_joints();
+    let actuator_is_revolute = mechanism.actuator_is_revolute();
     let actuators = mechanism.actuator_names();
     let actuators: Vec<&str> = actuators.iter().map(String::as_str).collect();
     let coordinates = mechanism.coordinates();

@@ -83,7 +83,7 @@ pub(crate) fn note(
 ///
 /// A motor marked by mistake looks like redundancy.
 fn redundancy(description: &Description, mechanism: &Mechanism) -> Option<String> {
-    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    let (n, r) = (mechanism.actuator_count(), mechanism.dof());
     let said = (description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
     // Descriptions of skeletons have no key for it.
     if n <= r || said || mechanism.skeleton().is_some() {

@@ -65,6 +65,22 @@ impl Parameter {
         }
     }
 
+    /// A parameter of a motor that drives several joints; see [`Body::Motor`].
+    #[must_use]
+    pub const fn of_motor(
+        name: &'static str,
+        symbol: StandardParameter,
+        unit: &'static str,
+        index: u16,
+    ) -> Self {
+        Self {
+            name,
+            symbol,
+            unit,
+            body: Body::Motor { index },
+        }
+    }
+
     /// A parameter of the payload.
     #[must_use]
     pub const fn of_payload(
@@ -131,6 +147,11 @@ pub enum Body {
         /// Index of the spring.
         index: u16,
     },
+    /// A motor that drives a combination of joints of a robot with loops.
+    Motor {
+        /// Index of the motor.
+        index: u16,
+    },
 }
 
 /// Description of a model's robot.
@@ -142,11 +163,12 @@ pub struct Info<'a> {
     pub sizes: Sizes,
     /// Names of the legs.
     pub legs: &'a [&'a str],
-    /// Names of the actuated joints, in the order of q and τ.
+    /// Names of the actuators, in the order of q and τ: actuated joints, then motors.
     pub actuators: &'a [&'a str],
-    /// Indices of the actuated joints among all joints.
+    /// Index of each actuator's joint among all joints; of a motor that drives several joints the
+    /// first, see [`Model::actuator_terms`].
     pub actuated_joints: &'a [usize],
-    /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
+    /// Whether each actuator turns (rad, N m) and does not slide (m, N).
     pub actuator_is_revolute: &'a [bool],
     /// Names of the independent coordinates, in the order of the twist.
     ///
@@ -191,6 +213,32 @@ pub trait Model: Sync {
     /// Empty if no actuator is a cable.
     fn pulls(&self) -> &[bool] {
         &[]
+    }
+
+    /// Joints that an actuator drives, as indices among all joints with factors.
+    ///
+    /// Its position, velocity and acceleration are the sums of theirs. Empty for an actuator that
+    /// drives the one joint of [`Info::actuated_joints`].
+    fn actuator_terms(&self, actuator: usize) -> &[(usize, f64)] {
+        let _ = actuator;
+        &[]
+    }
+
+    /// Position, velocity or acceleration of an actuator from those of all joints.
+    ///
+    /// Zero for an actuator that the robot does not have.
+    fn of_actuator(&self, actuator: usize, joints: &[f64]) -> f64 {
+        let value = |joint: usize| joints.get(joint).copied().unwrap_or(0.0);
+        match self.actuator_terms(actuator) {
+            [] => {
+                let joint = self.info().actuated_joints.get(actuator).copied();
+                joint.map_or(0.0, value)
+            }
+            terms => terms
+                .iter()
+                .map(|(joint, factor)| factor * value(*joint))
+                .sum(),
+        }
     }
 
     /// Evaluates `function` at `output.len() / (rows * columns)` samples.

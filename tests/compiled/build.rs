@@ -1,9 +1,9 @@
 //! Generates modules for the tests that `generated/` does not keep as text, as a user's build
 //! script does.
 //!
-//! These are the other robots of `robots/`, robots with all kinds of friction, springs and screws,
-//! the DualV in each of its four partitions, robots with frames, derivatives of the dynamics, and the
-//! RX90 with known parameters.
+//! These are the other robots of `robots/`, robots with all kinds of friction, springs, screws and
+//! coupled motors, the DualV in each of its four partitions, robots with frames, derivatives of the
+//! dynamics, and the RX90 with known parameters.
 //!
 //! The search for fewer operations is quick: the modules in `generated/` have a thorough one, which
 //! does not affect these tests. The partitions differ in one line, so the variants are generated
@@ -56,10 +56,16 @@ fn robots() -> Result<Vec<Module>, Box<dyn Error>> {
     Ok(modules)
 }
 
-/// Robots with all kinds of friction, with springs and with screws.
+/// Robots with all kinds of friction, with springs, with screws and with coupled motors.
 fn friction() -> Result<Vec<Module>, Box<dyn Error>> {
     let mut modules = Vec::new();
-    for stem in ["friction_arm", "friction_bar", "screw_arm", "spring_bar"] {
+    for stem in [
+        "friction_arm",
+        "friction_bar",
+        "motor_bar",
+        "screw_arm",
+        "spring_bar",
+    ] {
         let text = fs::read_to_string(format!("friction/{stem}.toml"))?;
         modules.push(Module::new(stem, stem, text, Effort::Quick));
     }

@@ -7,7 +7,7 @@ use overact::{Columns, Function, Model, StandardParameter};
 use overact_codegen::derivation::BodyParameter;
 use overact_codegen::{Effort, Request, RobotModel, Source};
 use overact_compiled::friction::{
-    ARM, BAR, FrictionArm, FrictionBar, SCREW, SPRING, ScrewArm, SpringBar,
+    ARM, BAR, FrictionArm, FrictionBar, MOTOR, MotorBar, SCREW, SPRING, ScrewArm, SpringBar,
 };
 use overact_tests::support::conversion::reference;
 use overact_tests::support::expected::Expected;
@@ -72,6 +72,20 @@ fn a_five_bar_with_passive_joints() -> Result<(), Failure> {
 #[test]
 fn a_five_bar_with_springs_and_known_torques() -> Result<(), Failure> {
     compare(SPRING, &SpringBar)
+}
+
+/// More motors than degrees of freedom, each of which turns joints of one leg or two.
+#[test]
+fn a_bar_with_coupled_motors() -> Result<(), Failure> {
+    compare(MOTOR, &MotorBar)?;
+    // Actuators from the positions of the joints, as an excitation or a calibration asks for them.
+    let joints = [0.3, -0.7, 1.1, 0.4];
+    let positions = [0.7, -0.4, 0.3 - 1.5 * 0.7];
+    for (actuator, wanted) in positions.into_iter().enumerate() {
+        let found = MotorBar.of_actuator(actuator, &joints);
+        assert!((found - wanted).abs() < 1e-15, "{actuator}: {found}");
+    }
+    Ok(())
 }
 
 #[test]

@@ -70,7 +70,7 @@ impl Checked {
             robot: mechanism.name.clone(),
             legs: mechanism.legs.len(),
             joints: mechanism.joints().len(),
-            actuators: mechanism.actuated().len(),
+            actuators: mechanism.actuator_count(),
             dof: mechanism.dof(),
             file: found.file,
         }

@@ -22,7 +22,7 @@ pub(crate) fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<
         match array.name.as_str() {
             "joints" if model.finds_joints(function) => {}
             "pose" if model.finds_pose(function) => {
-                arguments.push(("actuators".to_owned(), model.mechanism.actuated().len()));
+                arguments.push(("actuators".to_owned(), model.mechanism.actuator_count()));
             }
             name => arguments.push((name.to_owned(), array.len())),
         }
@@ -37,7 +37,7 @@ pub(crate) fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<
 pub(crate) fn forward_arguments(model: &RobotModel) -> Vec<(String, usize)> {
     let mechanism = &model.mechanism;
     vec![
-        ("actuators".to_owned(), mechanism.actuated().len()),
+        ("actuators".to_owned(), mechanism.actuator_count()),
         ("start".to_owned(), mechanism.pose_len()),
     ]
 }
@@ -172,11 +172,10 @@ pub(crate) fn states(robot: &InterpretedRobot, count: usize, seed: u64) -> Vec<I
     let model = robot.model();
     let mechanism = &model.mechanism;
     let mut dice = Dice::new(seed);
-    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    let (n, r) = (mechanism.actuator_count(), mechanism.dof());
     let drawn = random_states(mechanism, count, seed).into_iter();
     let all = drawn.map(|state| {
-        let actuators = mechanism.actuated();
-        let actuators: Vec<f64> = actuators.iter().map(|&at| state.joints[at]).collect();
+        let actuators = mechanism.actuator_positions(&state.joints);
         let mut start = state.pose.clone();
         let step = dice.many(r, 0.02);
         robot.displace(&mut start, &step);

@@ -53,7 +53,8 @@ impl<'a, 's> DerivationContext<'a, 's> {
     /// Derives the robot; `still` are pose coordinates that are known to be zero.
     ///
     /// # Errors
-    /// See [`Robot::new`] and [`Robot::check_formulas`].
+    /// See [`Robot::new`], [`Robot::check_formulas`], [`Robot::check_motors`] and
+    /// [`Robot::check_point_springs`].
     pub(super) fn new(
         arena: &'a Arena,
         mechanism: &'a Mechanism,
@@ -73,6 +74,8 @@ impl<'a, 's> DerivationContext<'a, 's> {
             still,
         )?;
         robot.check_formulas()?;
+        robot.check_motors()?;
+        robot.check_point_springs()?;
         Ok(Self {
             inputs: configuration_inputs(&robot, configuration),
             robot,

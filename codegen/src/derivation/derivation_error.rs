@@ -24,6 +24,18 @@ pub enum DerivationError {
         /// Name of the leg; empty for the platform.
         leg: String,
     },
+    /// The position of a joint that a motor turns does not follow from the pose.
+    UndeterminedMotor {
+        /// Name of the motor.
+        motor: String,
+        /// Name of the joint.
+        joint: String,
+    },
+    /// The force of a spring between two points does not follow from the configuration.
+    UndeterminedSpring {
+        /// Name of the spring.
+        spring: String,
+    },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
     /// Requested functions that the robot does not have.
@@ -94,6 +106,26 @@ impl DerivationError {
                 Diagnostic::new(Code::SINGULAR_HOME, format!("{what} is singular at the home configuration"), span)
                     .help("choose a home pose where no leg is stretched or folded and the actuators determine its motion")
             }
+            Self::UndeterminedMotor { motor, joint } => {
+                let mut motors = description.motors.iter();
+                let own = motors.find(|own| own.name.value == *motor);
+                let span = own.map_or(&description.name.span, |own| &own.span);
+                let message = format!(
+                    "the motor `{motor}` turns the joint `{joint}`, whose position does not follow from the pose"
+                );
+                Diagnostic::new(Code::NO_CLOSED_SOLUTION, message, span.clone())
+                    .help("let the motor turn joints that the closures determine")
+            }
+            Self::UndeterminedSpring { spring } => {
+                let mut springs = description.springs.iter();
+                let own = springs.find(|own| own.name.value == *spring);
+                let span = own.map_or(&description.name.span, |own| &own.span);
+                let message = format!(
+                    "the length and force of the spring `{spring}` do not follow from the robot's configuration"
+                );
+                Diagnostic::new(Code::NO_CLOSED_SOLUTION, message, span.clone())
+                    .help("connect it to other bodies, or write its force with smaller numbers")
+            }
             Self::SingularPartition => Diagnostic::new(
                 Code::ALWAYS_SINGULAR,
                 format!("the kept actuators never determine {motion}"),
@@ -156,6 +188,9 @@ mod tests {
         }
         let other = DerivationError::ForwardKinematics.locate(&description);
         assert!(other.internal().is_none());
+        let spring = String::from("gas");
+        let spring = DerivationError::UndeterminedSpring { spring }.locate(&description);
+        assert!(spring.render_plain(&source).contains("the spring `gas`"));
         let leg = String::new();
         let home = DerivationError::SingularHome { leg }.locate(&description);
         assert!(home.internal().is_none());

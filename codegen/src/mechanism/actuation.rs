@@ -167,7 +167,7 @@ impl Mechanism {
         let Some(rates) = self.rates_at_home() else {
             return Vec::new();
         };
-        let jacobian = rates.select_rows(&self.actuated());
+        let jacobian = self.actuator_rows(&rates);
         let least = ROUNDING * rates.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
         let [well, at_all] = DEPENDENT.map(|limit| independent_rows(&jacobian, least, limit));
         if well.len() == self.dof() {

@@ -10,7 +10,8 @@ use super::states::random_states;
 use super::still::still_coordinates;
 use super::structure::defects;
 use super::{
-    BaseColumns, Frame, Joint, Leg, Mechanism, Number, Platform, PointSpring, SpringBody, SpringEnd,
+    BaseColumns, Frame, Joint, JointIndex, Leg, Mechanism, Motor, Number, Payload, Platform,
+    PointSpring, SpringBody, SpringEnd,
 };
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -158,8 +159,14 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         body: frame.body,
         placement: frame.placement.clone(),
     };
+    let payload = |payload: &overact_description::Payload| Payload {
+        name: payload.name.value.clone(),
+        body: payload.body,
+        placement: payload.placement.clone(),
+        parameters: payload.parameters.clone(),
+    };
     let axis = description.platform.as_ref().map(|p| p.axis_at);
-    Mechanism {
+    let mut mechanism = Mechanism {
         name: description.type_name(),
         summary: description.summary.clone(),
         source: description.source.clone(),
@@ -168,6 +175,8 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         magnitudes: description.magnitudes.clone(),
         platform,
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
+        payloads: description.payload_bodies.iter().map(payload).collect(),
+        motors: Vec::new(),
         springs: description.springs.iter().map(spring).collect(),
         frames: description.frames.iter().map(frame).collect(),
         origin: axis.unwrap_or([Number::ZERO; 3]),
@@ -176,7 +185,29 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         base_columns: base_columns(description),
         kept_actuators: (description.identification.kept_actuators.clone()).unwrap_or_default(),
         still: Vec::new(),
-    }
+    };
+    mechanism.motors = motors(description, &mechanism);
+    mechanism
+}
+
+/// The motors, with the positions of their joints among all joints.
+fn motors(description: &Description, mechanism: &Mechanism) -> Vec<Motor> {
+    let joints = mechanism.joints();
+    let term = |term: &overact_description::MotorTerm| {
+        let overact_description::BodyIndex { leg, joint } = term.joint;
+        let index = JointIndex { leg, joint };
+        let at = joints.iter().position(|own| *own == index)?;
+        Some((at, term.factor))
+    };
+    let motor = |motor: &overact_description::Motor| Motor {
+        name: motor.name.value.clone(),
+        leg: motor.leg,
+        kind: motor.kind,
+        terms: motor.terms.iter().filter_map(term).collect(),
+        parameters: motor.parameters.clone(),
+        stribeck: motor.stribeck,
+    };
+    description.motors.iter().map(motor).collect()
 }
 
 /// The legs relative to the platform's origin on a fixed axis.
@@ -194,7 +225,7 @@ fn on_axis(description: &Description, mut legs: Vec<Leg>) -> Vec<Leg> {
 }
 
 fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
-    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    let (n, r) = (mechanism.actuator_count(), mechanism.dof());
     let span = description.name.span.clone();
     if mechanism.is_tree() && n < r {
         let passive = mechanism

@@ -13,7 +13,7 @@ pub struct Home {
     pub pose: Vec<f64>,
     /// Positions of all independent joints.
     pub joints: Vec<f64>,
-    /// Positions of the actuated joints.
+    /// Positions of the actuators.
     pub actuators: Vec<f64>,
     /// Sign inputs of the square roots in the first leg's closed form, in order.
     ///
@@ -26,9 +26,8 @@ impl Home {
     /// The home configuration of a mechanism.
     #[must_use]
     pub fn new(mechanism: &Mechanism, pose: Vec<f64>, joints: Vec<f64>) -> Self {
-        let actuated = mechanism.actuated();
         Self {
-            actuators: actuated.iter().map(|&i| joints[i]).collect(),
+            actuators: mechanism.actuator_positions(&joints),
             pose,
             joints,
             signs: Vec::new(),

@@ -132,7 +132,7 @@ impl Mobility {
             let Some(rates) = rates(leg) else { return 0 };
             all = stacked(&all, &rates);
         }
-        rank(&all.select_rows(&mechanism.actuated()), ROUNDING)
+        rank(&mechanism.actuator_rows(&all), ROUNDING)
     }
 }
 

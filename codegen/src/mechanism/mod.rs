@@ -9,6 +9,7 @@
 //! branches, which are legs without an end.
 
 mod actuation;
+mod actuators;
 mod cable;
 mod check;
 mod explain;
@@ -133,6 +134,45 @@ impl Leg {
     }
 }
 
+/// A payload on a body, which some runs carry.
+#[derive(Debug, Clone)]
+pub struct Payload {
+    /// Name, unique in the robot.
+    pub name: String,
+    /// The body on which it is fixed.
+    pub body: FrameBody,
+    /// Its frame in the body's frame.
+    pub placement: Placement,
+    /// Inertial parameters about its frame that are not absent.
+    pub parameters: Vec<StandardParameter>,
+}
+
+/// A motor that drives a combination of joints of a robot with loops.
+#[derive(Debug, Clone)]
+pub struct Motor {
+    /// Name, unique in its leg, or in the robot without one.
+    pub name: String,
+    /// The leg with whose shape it is described.
+    pub leg: Option<usize>,
+    /// Whether the combination is an angle or a length.
+    pub kind: JointKind,
+    /// The joints that it drives, as positions among [`Mechanism::joints`], with factors.
+    pub terms: Vec<(usize, Ratio)>,
+    /// Parameters of rotor and friction that are not absent, of the combination's rate.
+    pub parameters: Vec<StandardParameter>,
+    /// Stribeck velocity of the friction, rad/s or m/s.
+    pub stribeck: Option<Number>,
+}
+
+/// An actuator of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Actuator {
+    /// An actuated joint, as its position among [`Mechanism::joints`].
+    Joint(usize),
+    /// The motor of this index.
+    Motor(usize),
+}
+
 /// A spring or damper between two points on two bodies.
 #[derive(Debug, Clone)]
 pub struct PointSpring {
@@ -187,6 +227,10 @@ pub struct Mechanism {
     pub platform: Option<Platform>,
     /// The legs.
     pub legs: Vec<Leg>,
+    /// Payloads on bodies, with tables of their own.
+    pub payloads: Vec<Payload>,
+    /// Motors that drive combinations of joints of a robot with loops.
+    pub motors: Vec<Motor>,
     /// Springs and dampers between two points.
     pub springs: Vec<PointSpring>,
     /// Frames on bodies.
@@ -229,7 +273,8 @@ impl Mechanism {
         &self.legs[index.leg].joints[index.joint]
     }
 
-    /// Positions of the actuated joints among [`Self::joints`]: the order of q and τ.
+    /// Positions of the actuated joints among [`Self::joints`]: the order of q and τ, before the
+    /// motors.
     #[must_use]
     pub fn actuated(&self) -> Vec<usize> {
         let joints = self.joints();
@@ -330,25 +375,6 @@ impl Mechanism {
             return joint.clone();
         }
         format!("{}.{joint}", self.legs[index.leg].name)
-    }
-
-    /// Names of the actuators, in all spellings.
-    #[must_use]
-    pub fn named_actuators(&self) -> ActuatorNames {
-        let joints = self.joints();
-        let name = |&at: &usize| {
-            let index = joints[at];
-            let leg = self.legs[index.leg].name.as_str();
-            (leg, self.joint(index).name.as_str())
-        };
-        let single = self.platform.is_none() && self.legs.len() == 1;
-        ActuatorNames::new(single, self.actuated().iter().map(name))
-    }
-
-    /// Preferred names of the actuators.
-    #[must_use]
-    pub fn actuator_names(&self) -> Vec<String> {
-        self.named_actuators().usual().map(str::to_owned).collect()
     }
 
     /// Names of the independent coordinates in the order of the twist: of the platform, or of the

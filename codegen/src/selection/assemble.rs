@@ -44,7 +44,8 @@ impl Assembler<'_> {
     }
 }
 
-/// How the joints follow from the pose: in closed form if a rule fits every leg.
+/// How the joints follow from the pose: in closed form if a rule fits every leg, and the positions
+/// of motors and springs follow, too.
 ///
 /// # Errors
 /// See [`DerivationError`].
@@ -59,7 +60,11 @@ pub(super) fn joints(
     };
     match derive(&Arena::new(), mechanism, selection, Function::Joints, from) {
         Ok(_) => Ok(JointsBy::Rule),
-        Err(DerivationError::InverseKinematics { .. }) => Ok(JointsBy::Newton),
+        Err(
+            DerivationError::InverseKinematics { .. }
+            | DerivationError::UndeterminedMotor { .. }
+            | DerivationError::UndeterminedSpring { .. },
+        ) => Ok(JointsBy::Newton),
         Err(error) => Err(error),
     }
 }

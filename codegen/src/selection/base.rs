@@ -41,7 +41,9 @@ pub(super) fn symmetric_order(mechanism: &Mechanism, parameters: &[BodyParameter
             (1, mechanism.legs[leg].shape, joint, symbol, leg)
         }
         BodyParameter::Spring(index) => (1, usize::MAX, 0, parameters[i].symbol(), index),
+        BodyParameter::Motor { motor, symbol } => (1, usize::MAX, 1, symbol, motor),
         BodyParameter::Payload(symbol) => (2, 0, 0, symbol, 0),
+        BodyParameter::Load { payload, symbol } => (2, payload + 1, 0, symbol, 0),
     });
     order
 }

@@ -105,7 +105,9 @@ fn groups(mechanism: &Mechanism, candidates: &[Combination]) -> Vec<Vec<Combinat
         BodyParameter::Leg { leg, joint, symbol } => (0, mechanism.legs[leg].shape, joint, symbol),
         BodyParameter::Platform(symbol) => (1, 0, 0, symbol),
         BodyParameter::Payload(symbol) => (2, 0, 0, symbol),
+        BodyParameter::Load { payload, symbol } => (2, payload + 1, 0, symbol),
         BodyParameter::Spring(index) => (3, 0, index, c.parameter.symbol()),
+        BodyParameter::Motor { motor, symbol } => (4, 0, motor, symbol),
     };
     let mut sorted: Vec<&Combination> = candidates.iter().collect();
     sorted.sort_by_key(|c| (key(c), c.parameter));

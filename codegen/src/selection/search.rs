@@ -220,8 +220,8 @@ fn at_state(mechanism: &Mechanism, state: &State, element: InputElement) -> Opti
         "twist" | "joint_velocities" => &state.twist,
         "acceleration" | "joint_accelerations" => &state.acceleration,
         "actuators" => {
-            let joint = *mechanism.actuated().get(element.index)?;
-            return state.joints.get(joint).copied();
+            let actuators = mechanism.actuator_positions(&state.joints);
+            return actuators.get(element.index).copied();
         }
         _ => return None,
     };

@@ -4,7 +4,6 @@ use crate::diagnostic::Code;
 use crate::experiments::per_actuator::per_actuator;
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
-use crate::robot::model::actuators;
 use crate::toml_text::reader::Item;
 
 /// Position and velocity loops, u = k_v (k_p (q_d - q) - q̇); lists have one value per actuator.
@@ -26,7 +25,7 @@ pub struct Controller {
 pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Controller> {
     let table = item.table("the table `[controller]`")?;
     let kinds = robot.actuator_kinds();
-    let count = actuators(robot.legs).len();
+    let count = robot.actuator_count();
     let list = |item: &Item<'_, '_>, dimension| per_actuator(item, &kinds, dimension, robot.scope);
     // The unit of the drive's signal is arbitrary.
     let position_gain = table

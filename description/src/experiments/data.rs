@@ -5,7 +5,7 @@ use crate::experiments::experiment::position;
 use crate::experiments::transmission;
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
-use crate::robot::model::{JointKind, actuators};
+use crate::robot::model::JointKind;
 use crate::robot::warnings;
 use crate::toml_text::reader::{Item, Table};
 
@@ -29,10 +29,10 @@ pub struct Data {
     pub torque_gain: Vec<Factor>,
     /// Rate of uniform times at which the log is resampled, Hz; `None` if its time is uniform.
     pub resample: Option<f64>,
-    /// Matrix T of a log of motors with θ = T q, one row per motor, where q are the actuated
-    /// joints.
+    /// Matrix T of a log in other coordinates, θ = T q, one row per column of the log, where q are
+    /// the positions of the actuators.
     ///
-    /// Empty if the log has the joints' own positions and torques.
+    /// Empty if the log has the actuators' own positions and torques.
     pub transmission: Vec<Vec<f64>>,
     /// Location of the table.
     pub span: Span,
@@ -58,7 +58,7 @@ pub enum Factor {
 /// Reads `[data]`.
 pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let table = item.table("the table `[data]`")?;
-    let count = actuators(robot.legs).len();
+    let count = robot.actuator_count();
     let listed = |item: Item<'_, '_>| {
         let names = item.strings()?;
         check_count(&item, names.len(), count)?;
@@ -90,13 +90,20 @@ pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let position_offset = offsets(&table, robot);
     let coordinates = table.get("coordinates");
     let of_joints = gains_of_joints(&table, robot);
-    let motors = coordinates.as_ref().and_then(|item| {
+    let is_of_motors = coordinates.as_ref().and_then(|item| {
         let choice = item.choice(&[("joints", false), ("motors", true)])?;
-        choice.value.then_some(item)
+        Some(choice.value)
     });
-    let transmission = motors.map_or(Some(Vec::new()), |item| transmission::matrix(item, robot));
+    let transmission = match (&coordinates, is_of_motors) {
+        (Some(item), Some(false)) if !robot.motors.is_empty() => {
+            transmission::from_joints(item, robot)
+        }
+        _ if !robot.motors.is_empty() => Some(transmission::gears(robot)),
+        (Some(item), Some(true)) => transmission::matrix(item, robot),
+        _ => Some(Vec::new()),
+    };
     check_drums(&table, robot, torque_gain.as_deref().unwrap_or_default());
-    if motors.is_none() {
+    if is_of_motors != Some(true) {
         of_joints
             .into_iter()
             .for_each(|error| table.context.report_once(error));

@@ -4,7 +4,7 @@
 use crate::diagnostic::{Code, Diagnostic};
 use crate::experiments::experiment::parameters;
 use crate::robot::inventory::Inventory;
-use crate::robot::model::{JointKind, Leg};
+use crate::robot::model::{Joint, Leg};
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;
 
@@ -33,8 +33,7 @@ impl Leg {
     /// `payload`.
     #[must_use]
     pub fn carries_payload(&self) -> bool {
-        let mut joints = self.joints.iter();
-        joints.any(|joint| joint.kind.value == JointKind::Fixed && joint.name.value == "payload")
+        self.joints.iter().any(Joint::is_payload)
     }
 }
 

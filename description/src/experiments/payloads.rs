@@ -11,6 +11,10 @@ const MOST: usize = 100;
 
 /// Reads the key `payloads`: distinct names, for a robot that may carry a payload.
 pub(crate) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<String>> {
+    if !robot.payload_bodies.is_empty() {
+        let bodies = robot.payload_bodies.iter();
+        return bodies.map(|payload| payload.name.clone()).collect();
+    }
     let Some(item) = table.get("payloads") else {
         return Vec::new();
     };
@@ -59,6 +63,9 @@ pub(crate) fn read(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Spanned<
 /// Identification recognises payloads by parameter names, which contain the leg's name if there are
 /// several legs.
 pub(crate) fn has_payload(robot: &Inventory<'_>) -> bool {
+    if !robot.payload_bodies.is_empty() {
+        return true;
+    }
     match robot.platform {
         Some(platform) => platform.payload.is_some(),
         None => robot.legs.len() == 1 && robot.legs.iter().any(Leg::carries_payload),
@@ -70,7 +77,7 @@ pub(crate) fn help(robot: &Inventory<'_>) -> &'static str {
     match robot.platform {
         Some(_) => "describe it in a table [platform.payload]",
         None if robot.legs.len() > 1 => {
-            "payloads are supported on robots with a platform, or without loops: describe a load of a skeleton, chain or branch as a separate body, and loaded runs in a description of the loaded robot"
+            "describe it in a table [payload.NAME] with the `body` that carries it"
         }
         None => "describe it as a joint of type \"fixed\" with the name `payload` on the last body",
     }
@@ -102,7 +109,7 @@ pub(crate) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Optio
     } else if loaded && known().next().is_some() {
         let error = item.error(
             Code::PAYLOAD,
-            "the robot has several payloads: the run must name one",
+            "the robot's payloads have names: the run must name one",
         );
         item.context
             .report(error.help(format!("give its name, one of {}", list())));

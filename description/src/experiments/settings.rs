@@ -6,7 +6,7 @@ use crate::experiments::experiment::position;
 use crate::experiments::known;
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
-use crate::robot::model::{Spanned, actuators};
+use crate::robot::model::Spanned;
 use crate::toml_text::reader::{Item, Table};
 use overact_exact::Number;
 
@@ -279,7 +279,7 @@ fn standstill(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<f64>> {
 
 /// Number of kept actuators: r, or all of a robot with fewer.
 fn kept_count(robot: &Inventory<'_>) -> usize {
-    robot.coordinates().len().min(actuators(robot.legs).len())
+    robot.coordinates().len().min(robot.actuator_count())
 }
 
 fn kept_actuators(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<usize>> {

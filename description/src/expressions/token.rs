@@ -67,7 +67,17 @@ fn substitute(c: char) -> &'static str {
     }
 }
 
+/// Length of a name, or of a leg's name with that of one of its variables: `left.q1`.
 fn name_length(text: &str) -> usize {
+    let end = word_length(text);
+    let variable = text[end..].strip_prefix('.');
+    match variable.filter(|rest| rest.starts_with(|c: char| c.is_ascii_alphabetic())) {
+        Some(rest) => end + 1 + word_length(rest),
+        None => end,
+    }
+}
+
+fn word_length(text: &str) -> usize {
     text.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
         .unwrap_or(text.len())
 }

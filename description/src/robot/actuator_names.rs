@@ -25,7 +25,23 @@ impl ActuatorNames {
     /// would have the same name.
     #[must_use]
     pub fn new<'a>(single: bool, actuators: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
-        let actuators: Vec<(&str, &str)> = actuators.into_iter().collect();
+        Self::with_motors(single, actuators, [])
+    }
+
+    /// Names from those of legs and actuated joints, then of motors and their legs.
+    ///
+    /// A motor without a leg has its own name.
+    #[must_use]
+    pub fn with_motors<'a>(
+        single: bool,
+        joints: impl IntoIterator<Item = (&'a str, &'a str)>,
+        motors: impl IntoIterator<Item = (Option<&'a str>, &'a str)>,
+    ) -> Self {
+        let motors: Vec<(Option<&str>, &str)> = motors.into_iter().collect();
+        let of_legs = motors
+            .iter()
+            .filter_map(|(leg, name)| Some(((*leg)?, *name)));
+        let actuators: Vec<(&str, &str)> = joints.into_iter().chain(of_legs).collect();
         let alone = |leg: &str| actuators.iter().filter(|(other, _)| *other == leg).count() == 1;
         let short = |&(leg, joint): &(&str, &str)| match (single, alone(leg)) {
             (true, _) => joint.to_owned(),
@@ -48,9 +64,18 @@ impl ActuatorNames {
             others.retain(|other| *other != usual);
             Names { usual, others }
         };
-        Self {
-            all: actuators.iter().map(names).collect(),
+        let mut of_legs = actuators.iter().map(names);
+        let joints = actuators.len() - motors.iter().filter(|(leg, _)| leg.is_some()).count();
+        let mut all: Vec<Names> = of_legs.by_ref().take(joints).collect();
+        for (leg, name) in motors {
+            let of_robot = || Names {
+                usual: name.to_owned(),
+                others: Vec::new(),
+            };
+            let own = leg.and_then(|_| of_legs.next());
+            all.push(own.unwrap_or_else(of_robot));
         }
+        Self { all }
     }
 
     /// The usual names.

@@ -77,10 +77,10 @@ fn check_name(item: &Item<'_, '_>, name: &Spanned<String>) -> bool {
     false
 }
 
-/// The bodies that may carry a frame.
-struct Bodies<'l> {
-    has_platform: bool,
-    legs: &'l [Leg],
+/// The bodies that may carry a frame or a payload.
+pub(crate) struct Bodies<'l> {
+    pub(crate) has_platform: bool,
+    pub(crate) legs: &'l [Leg],
 }
 
 impl Bodies<'_> {
@@ -97,7 +97,7 @@ impl Bodies<'_> {
     }
 
     /// The body of a name: `platform`, `LEG.JOINT`, or `JOINT` of a robot without a platform.
-    fn find(&self, name: &Spanned<String>) -> Result<FrameBody, Diagnostic> {
+    pub(crate) fn find(&self, name: &Spanned<String>) -> Result<FrameBody, Diagnostic> {
         if name.value == PLATFORM && self.has_platform {
             return Ok(FrameBody::Platform);
         }

@@ -3,7 +3,7 @@
 use crate::expressions::dimension::Dimension;
 use crate::robot::actuator_names::ActuatorNames;
 use crate::robot::joint;
-use crate::robot::model::{JointKind, Leg, Motion, Platform, Spanned, actuators};
+use crate::robot::model::{JointKind, Leg, Motion, Motor, Payload, Platform, Spanned, actuators};
 use crate::robot::parameter::dimension;
 use crate::robot::point_spring::PointSpring;
 use crate::toml_text::scope::Scope;
@@ -25,24 +25,47 @@ pub enum Body {
     Payload,
     /// The spring between two points of this index.
     Spring(usize),
+    /// The motor of this index, in a robot with loops.
+    Motor(usize),
 }
 
 /// Data of the robot for the tables after the legs.
 pub(crate) struct Inventory<'r> {
     pub(crate) platform: Option<&'r Platform>,
     pub(crate) legs: &'r [Leg],
+    /// Motors of a robot with loops.
+    pub(crate) motors: &'r [Motor],
     pub(crate) springs: &'r [PointSpring],
     pub(crate) scope: &'r Scope,
     /// Names of the payloads, if there are several.
     pub(crate) payloads: &'r [Spanned<String>],
+    /// Payloads with tables of their own.
+    pub(crate) payload_bodies: &'r [Payload],
 }
 
 impl Inventory<'_> {
-    /// Kind of each actuated joint.
+    /// Kind of each actuator: of the actuated joints, then of the motors.
     pub(crate) fn actuator_kinds(&self) -> Vec<JointKind> {
         let kind =
             |(leg, joint): (usize, usize)| Some(self.legs.get(leg)?.joints.get(joint)?.kind.value);
-        actuators(self.legs).into_iter().filter_map(kind).collect()
+        let joints = actuators(self.legs).into_iter().filter_map(kind);
+        joints
+            .chain(self.motors.iter().map(|motor| motor.kind))
+            .collect()
+    }
+
+    /// Number of actuators.
+    pub(crate) fn actuator_count(&self) -> usize {
+        actuators(self.legs).len() + self.motors.len()
+    }
+
+    /// Name of a motor's parameters: `fv_wrist`, or `fv_m1_left` of a leg's motor.
+    fn motor_parameter(&self, motor: &Motor, symbol: StandardParameter) -> String {
+        let name = format!("{}_{}", symbol.name(), motor.name.value);
+        match motor.leg.and_then(|leg| self.legs.get(leg)) {
+            Some(leg) => format!("{name}_{}", leg.name.value),
+            None => name,
+        }
     }
 
     /// Names and dimensions of the r coordinates.
@@ -101,9 +124,21 @@ impl Inventory<'_> {
             Some((name, Body::Spring(index), symbol, force.dimension))
         });
         all.extend(springs);
+        for (index, motor) in self.motors.iter().enumerate() {
+            let own = motor.parameters.iter().map(|symbol| {
+                let name = self.motor_parameter(motor, *symbol);
+                let dimension = dimension(*symbol, motor.kind);
+                (name, Body::Motor(index), *symbol, dimension)
+            });
+            all.extend(own);
+        }
         if let Some(platform) = self.platform {
             let payload = platform.payload.as_deref().unwrap_or_default();
             all.extend(free(Body::Payload, "payload", payload));
+        }
+        for payload in self.payload_bodies {
+            let name = format!("payload_{}", payload.name.value);
+            all.extend(free(Body::Payload, &name, &payload.parameters));
         }
         let named = self.of_payloads(&all);
         all.extend(named);
@@ -141,7 +176,13 @@ impl Inventory<'_> {
             ))
         };
         let single = self.platform.is_none() && self.legs.len() == 1;
-        ActuatorNames::new(single, actuators(self.legs).into_iter().filter_map(name))
+        let joints = actuators(self.legs).into_iter().filter_map(name);
+        let motors = self.motors.iter().map(|motor| {
+            let leg = motor.leg.and_then(|leg| self.legs.get(leg));
+            let leg = leg.map(|leg| leg.name.value.as_str());
+            (leg, motor.name.value.as_str())
+        });
+        ActuatorNames::with_motors(single, joints, motors)
     }
 }
 

@@ -35,12 +35,16 @@ pub(crate) const STEPS: [&str; 6] = ["gamma", "b", "alpha", "d", "theta", "r"];
 impl JointShape<'_, '_> {
     /// Name of the joint's variable in expressions of the leg: `q1`, `q_elbow`.
     pub(crate) fn variable(&self) -> String {
-        let name = &self.name.value;
-        let numbered = name.starts_with(|c: char| c.is_ascii_digit());
-        if numbered {
-            format!("q{name}")
-        } else {
-            format!("q_{name}")
-        }
+        variable_name(&self.name.value)
+    }
+}
+
+/// Name of the variable of a joint of this name.
+pub(crate) fn variable_name(joint: &str) -> String {
+    let numbered = joint.starts_with(|c: char| c.is_ascii_digit());
+    if numbered {
+        format!("q{joint}")
+    } else {
+        format!("q_{joint}")
     }
 }

@@ -308,6 +308,12 @@ impl Joint {
         }
     }
 
+    /// Whether its body is the payload of a robot without loops: a fixed joint named `payload`.
+    #[must_use]
+    pub fn is_payload(&self) -> bool {
+        self.kind.value == JointKind::Fixed && self.name.value == "payload"
+    }
+
     /// Whether the joint at `index` has a variable of its own.
     #[must_use]
     pub fn is_independent(&self, index: usize) -> bool {
@@ -315,7 +321,52 @@ impl Joint {
     }
 }
 
-/// All actuators, as leg and joint, leg by leg.
+/// A payload on a body, which some runs carry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Payload {
+    /// Name, unique in the robot.
+    pub name: Spanned<String>,
+    /// The body on which it is fixed.
+    pub body: FrameBody,
+    /// Its frame in the body's frame.
+    pub placement: Placement,
+    /// Inertial parameters about its frame that are not absent.
+    pub parameters: Vec<StandardParameter>,
+    /// Location of its table.
+    pub span: Span,
+}
+
+/// A motor that drives a combination of joints of a robot with loops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motor {
+    /// Name, unique in its leg, or in the robot without one.
+    pub name: Spanned<String>,
+    /// The leg with whose shape it is described.
+    pub leg: Option<usize>,
+    /// Whether the combination is an angle or a length.
+    pub kind: JointKind,
+    /// The independent joints that it drives, with their factors.
+    pub terms: Vec<MotorTerm>,
+    /// Gear ratio, rotor turns per unit of the combination.
+    pub ratio: Number,
+    /// Parameters of rotor and friction, of the combination's rate.
+    pub parameters: Vec<StandardParameter>,
+    /// Stribeck velocity of the friction, rad/s or m/s.
+    pub stribeck: Option<Number>,
+    /// Location of its table.
+    pub span: Span,
+}
+
+/// A joint that a motor drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MotorTerm {
+    /// The independent joint.
+    pub joint: BodyIndex,
+    /// Its factor in the combination.
+    pub factor: Ratio,
+}
+
+/// All actuated joints, as leg and joint, leg by leg.
 pub(crate) fn actuators(legs: &[Leg]) -> Vec<(usize, usize)> {
     let of_leg = |(index, leg): (usize, &Leg)| {
         let actuated = leg.joints.iter().enumerate().filter(|(_, j)| j.actuated);

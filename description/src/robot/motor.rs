@@ -1,9 +1,9 @@
-//! The tables `[[leg.NAME.motor]]`: transmissions between motors and joints.
+//! The tables `[[leg.NAME.motor]]` and `[motor.NAME]`: transmissions between motors and joints.
 //!
 //! A motor drives a combination c of joint variables through its gear: θ = ratio × c. With several
 //! coupled joints its rotor inertia and friction act on c and not on a single joint. Their torque
-//! acts on the joints by the combination's factors. In the model a motor is a coupled joint without
-//! a body.
+//! acts on the joints by the combination's factors. In the model of a robot without loops a motor is
+//! a coupled joint without a body.
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::expressions::dimension::Dimension;
@@ -18,13 +18,13 @@ use overact_exact::{Angle, Number};
 
 /// The table of a motor, with unevaluated expressions.
 pub(crate) struct MotorShape<'c, 't> {
-    name: Spanned<String>,
+    pub(crate) name: Spanned<String>,
     /// The driven combination of joints.
     turns: Option<Item<'c, 't>>,
     ratio: Option<Item<'c, 't>>,
     stribeck: Option<Item<'c, 't>>,
     /// Parameters, if given.
-    parameters: Option<Vec<StandardParameter>>,
+    pub(crate) parameters: Option<Vec<StandardParameter>>,
     span: Span,
 }
 
@@ -35,7 +35,7 @@ pub(crate) fn shapes<'c, 't>(
 ) -> Vec<MotorShape<'c, 't>> {
     let mut motors: Vec<MotorShape<'c, 't>> = Vec::new();
     for (index, table) in item.tables("a motor").iter().enumerate() {
-        let motor = shape(table, index);
+        let motor = numbered(table, index);
         let mut names = joints.iter().chain(motors.iter().map(|other| &other.name));
         if names.any(|name| name.value == motor.name.value) {
             let message = format!(
@@ -52,7 +52,8 @@ pub(crate) fn shapes<'c, 't>(
     motors
 }
 
-fn shape<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
+/// A motor of a leg, which is called by its number if it has no name.
+fn numbered<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
     let number = || Spanned::new(format!("m{}", index + 1), table.span.clone());
     let given = table.get("name").and_then(|item| item.string());
     let name = given.unwrap_or_else(number);
@@ -62,20 +63,25 @@ fn shape<'c, 't>(table: &Table<'c, 't>, index: usize) -> MotorShape<'c, 't> {
         let help = "use letters, digits and underscores, but not \"base\"";
         table.context.report(diagnostic.help(help));
     }
+    let motor = shape(table, name);
+    table.finish();
+    motor
+}
+
+/// The keys of a motor's table other than its name.
+pub(crate) fn shape<'c, 't>(table: &Table<'c, 't>, name: Spanned<String>) -> MotorShape<'c, 't> {
     let help =
         "joint variables that the motor turns through its gear, for instance turns = \"q5 + q6\"";
     let turns = table.require("turns", help);
     let parameters = table.get("parameters");
-    let motor = MotorShape {
+    MotorShape {
         name,
         turns,
         ratio: table.get("ratio"),
         stribeck: table.get("stribeck"),
         parameters: parameters.and_then(|item| item.parameters(Owner::Motor)),
         span: table.span.clone(),
-    };
-    table.finish();
-    motor
+    }
 }
 
 impl MotorShape<'_, '_> {
@@ -100,7 +106,7 @@ impl MotorShape<'_, '_> {
         };
         let coupled = value.terms.len() > 1;
         let stribeck = self.stribeck.as_ref();
-        let mut parameters = self.parameters.clone().unwrap_or_else(|| own(coupled));
+        let mut parameters = self.parameters.clone().unwrap_or_else(|| usual(coupled));
         parameters.extend(stribeck.map(|_| StandardParameter::Fst));
         let here = |value: Angle| Spanned::new(value, self.span.clone());
         let zero = Spanned::new(Number::ZERO, self.span.clone());
@@ -131,7 +137,7 @@ impl MotorShape<'_, '_> {
 /// Default parameters of a motor: a motor of one joint shares those of the joint.
 ///
 /// Offsets of motors are determined by those of the joints.
-fn own(coupled: bool) -> Vec<StandardParameter> {
+pub(crate) fn usual(coupled: bool) -> Vec<StandardParameter> {
     use StandardParameter as P;
     if coupled {
         vec![P::Ia, P::Fv, P::Fs]

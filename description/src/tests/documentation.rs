@@ -61,6 +61,8 @@ name = "gas"
 from = { zzzz20 = 1, body = "ground" }
 to = { body = "platform" }
 force = "l"
+[payload.box]
+zzzz21 = 1
 [experiment]
 zzzz11 = 1
 [experiment.drives]
@@ -73,7 +75,7 @@ terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and the text before the keys there.
-const SECTIONS: [(&str, &str); 21] = [
+const SECTIONS: [(&str, &str); 22] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -104,6 +106,7 @@ const SECTIONS: [(&str, &str); 21] = [
         "### `[[spring]]`: springs and dampers between two points",
         "from.",
     ),
+    ("### `[payload.NAME]`: payloads on bodies", ""),
 ];
 
 fn folder(path: &str) -> PathBuf {

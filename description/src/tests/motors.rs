@@ -127,13 +127,141 @@ fn a_slip_in_one_motor_is_told_alone() {
     assert_eq!(all, ["4:12 a fixed joint cannot be actuated"]);
 }
 
+/// Two slides that carry a platform along z, with tables of motors from line 11.
+fn slides(tables: &str) -> String {
+    format!(
+        "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
+         [[leg.slide.joint]]\ntype = \"prismatic\"\n[leg.slide.end]\n\
+         [[place]]\nname = \"left\"\nshape = \"slide\"\n{tables}\n\
+         [[place]]\nname = \"right\"\nshape = \"slide\"\n"
+    )
+}
+
 #[test]
-fn robots_with_a_platform_have_no_motors_of_their_own() {
-    let text = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
-                [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\n\
-                [[leg.slide.motor]]\nturns = \"q1\"\n[leg.slide.end]\n\
-                [[place]]\nname = \"slide\"\nshape = \"slide\"\n";
-    let expected = "8:1 motors of their own are described of robots without loops only; \
-                    actuate the joint itself: its `ia`, `fv`, `fs` and `off` are those of its motor";
-    assert_eq!(listed(text), [expected]);
+fn motors_of_robots_with_loops_turn_joints_of_several_legs() {
+    let robot = good(&slides(
+        "[motor.sum]\nturns = \"left.q1 + 0.5*right.q1\"\nratio = 3\n\
+         [motor.own]\nturns = \"2*right.q1\"\nparameters = [\"ia\"]",
+    ));
+    assert!(robot.legs.iter().all(|leg| leg.joints.len() == 1));
+    let terms = |index: usize| -> Vec<(usize, usize, f64)> {
+        let terms = robot.motors[index].terms.iter();
+        terms
+            .map(|term| (term.joint.leg, term.joint.joint, term.factor.value()))
+            .collect()
+    };
+    assert_eq!(terms(0), [(0, 0, 1.0), (1, 0, 0.5)]);
+    assert_eq!(terms(1), [(1, 0, 2.0)]);
+    let names = |index: usize| -> Vec<&str> {
+        let parameters = robot.motors[index].parameters.iter();
+        parameters.map(|symbol| symbol.name()).collect()
+    };
+    assert_eq!(names(0), ["ia", "fv", "fs"]);
+    assert_eq!(names(1), ["ia"]);
+    assert_eq!(robot.motors[0].kind, crate::JointKind::Prismatic);
+}
+
+#[test]
+fn a_motor_of_a_leg_is_placed_with_it() {
+    let robot = good(&slides("").replace(
+        "[leg.slide.end]",
+        "[[leg.slide.motor]]\nname = \"belt\"\nturns = \"2*q1\"\n[leg.slide.end]",
+    ));
+    let legs: Vec<Option<usize>> = robot.motors.iter().map(|motor| motor.leg).collect();
+    assert_eq!(legs, [Some(0), Some(1)]);
+    let names: Vec<&str> = { robot.motors[1].parameters.iter() }
+        .map(|symbol| symbol.name())
+        .collect();
+    assert_eq!(
+        names,
+        ["ia", "fv", "fs"],
+        "those of the passive joint are its bearings'"
+    );
+}
+
+#[test]
+fn errors_of_motors_of_robots_with_loops() {
+    let first = "[motor.a]\nturns = \"left.q1\"\n";
+    let cases = [
+        (
+            "[motor.a]\nturns = \"left.q2\"",
+            "12:10 unknown name `left.q2`; did you mean `left.q1`?",
+        ),
+        (
+            "[motor.a]\nturns = \"left.q1 - left.q1\"",
+            "12:9 a motor must turn a joint; name the joint variables, for instance \"q5 + q6\"",
+        ),
+        (
+            "[motor.1a]\nturns = \"left.q1\"",
+            "11:8 `1a` cannot be the name of a motor; use letters, digits and underscores, a letter first",
+        ),
+        (
+            "[motor.left]\nturns = \"left.q1\"\n[motor.a]\nturns = \"left.q1\"\nname = \"b\"",
+            "15:1 unknown key `name`; known keys: ",
+        ),
+    ];
+    for (tables, expected) in cases {
+        let all = listed(&slides(tables));
+        assert_eq!(all.len(), 1, "{tables}: {all:#?}");
+        assert!(
+            all[0].contains(expected) || all[0] == expected,
+            "{tables}: {all:#?}"
+        );
+    }
+    let clash = slides(&format!("{first}[motor.left]\nturns = \"right.q1\"")).replace(
+        "type = \"prismatic\"",
+        "type = \"prismatic\"\nactuated = true",
+    );
+    let all = listed(&clash);
+    assert_eq!(
+        all,
+        ["14:8 another actuator is also called `left`; rename this motor, or the joint or leg"]
+    );
+}
+
+#[test]
+fn a_table_of_a_motor_may_stand_outside_its_leg() {
+    let text = arm("").replace(
+        "[data]",
+        "[motor.one]\nturns = \"q1\"\nratio = 45\n\
+         [motor.wrist]\nturns = \"(arm.q1 + q2)/2\"\nratio = -32\n[data]",
+    );
+    let robot = good(&text);
+    assert!(
+        robot.motors.is_empty(),
+        "they are coupled joints of the leg"
+    );
+    let data = robot.data.expect("a log");
+    assert_eq!(data.transmission, [[45.0, 0.0], [-16.0, -16.0]]);
+}
+
+#[test]
+fn logs_of_robots_with_loops_have_motors_or_joints() {
+    let log = |coordinates: &str, motors: &str| {
+        slides(motors)
+            + "[data]\ntime = \"t\"\npositions = [\"a\", \"b\"]\ntorques = [\"c\", \"d\"]\n"
+            + coordinates
+    };
+    let both = "[motor.a]\nturns = \"left.q1 + right.q1\"\nratio = 3\n\
+                [motor.b]\nturns = \"left.q1 - right.q1\"";
+    let transmission = |coordinates: &str| {
+        let robot = good(&log(coordinates, both));
+        robot.data.expect("a log").transmission
+    };
+    let gears = [[3.0, 0.0], [0.0, 1.0]];
+    assert_eq!(transmission(""), gears);
+    assert_eq!(transmission("coordinates = \"motors\""), gears);
+    // θ = T q, and the log has q.
+    let joints = transmission("coordinates = \"joints\"");
+    assert_eq!(joints, [[0.5, 0.5], [0.5, -0.5]]);
+    let twins = "[motor.a]\nturns = \"left.q1 + right.q1\"\n\
+                 [motor.b]\nturns = \"2*left.q1 + 2*right.q1\"";
+    let all = listed(&log("coordinates = \"joints\"", twins));
+    assert_eq!(
+        all,
+        [
+            "22:15 the motors do not determine the joints: some turn the same combinations; \
+             use coordinates = \"motors\", the positions and torques of the motors themselves"
+        ]
+    );
 }

@@ -18,7 +18,7 @@ use nalgebra::DMatrix;
 use overact::{Body, Info, Model, StandardParameter};
 
 use crate::regression::{
-    columns::{Column, ColumnSet, Direction, has_payload},
+    columns::{Column, ColumnSet, Direction, has_payload, load_of},
     elimination::{Elimination, eliminate},
     states::random_states,
 };
@@ -77,6 +77,16 @@ impl PayloadUse {
                 .help("describe the payload in [platform.payload], or declare the run unloaded")
             };
             Error::check(loaded().map(problem).collect())?;
+        }
+        let of_bodies = info
+            .payload_parameters
+            .iter()
+            .any(|one| load_of(one).is_some());
+        let all_loaded = loaded().count() == runs.len();
+        if of_bodies && all_loaded && payload_names(runs).len() > 1 {
+            let message = "all runs carry a payload, and the payloads are on bodies of their own: none of them can be told from its body";
+            let help = "record a run without payload, or identify the payloads one by one";
+            return Err(Problem::new(Code::LOG_PAYLOAD, message).help(help).into());
         }
         Ok(match loaded().count() {
             0 => Self::Absent,
@@ -333,6 +343,7 @@ fn symmetric_order(columns: &ColumnSet, mut indices: Vec<usize>) -> Vec<usize> {
                 Body::Platform => (0, 0, column.symbol, direction, 0, 0),
                 Body::Leg { leg, index, shape } => (1, index, column.symbol, direction, shape, leg),
                 Body::Spring { index } => (1, u16::MAX, column.symbol, direction, 0, index),
+                Body::Motor { index } => (1, u16::MAX, column.symbol, direction, 1, index),
                 Body::Payload => (2, 0, column.symbol, direction, 0, 0),
             }
         })

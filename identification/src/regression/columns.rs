@@ -65,6 +65,16 @@ pub fn is_carried(parameter: &Parameter) -> bool {
     of_leg && parameter.symbol.is_inertial() && rest == Some("_payload")
 }
 
+/// Name of the payload that a parameter belongs to, if payloads have tables of their own.
+///
+/// Its parameters are named after it, `m_payload_tool`.
+#[must_use]
+pub fn load_of(parameter: &Parameter) -> Option<&'static str> {
+    let rest = parameter.name.strip_prefix(parameter.symbol.name())?;
+    let own = parameter.body == Body::Payload;
+    rest.strip_prefix("_payload_").filter(|_| own)
+}
+
 /// Whether a robot can carry a payload.
 pub(crate) fn has_payload(info: &Info<'_>) -> bool {
     !info.payload_parameters.is_empty() || info.parameters.iter().any(is_carried)
@@ -276,14 +286,18 @@ impl ColumnSet {
         }
         if payload {
             let parameters = info.payload_parameters.iter().enumerate();
-            columns.extend(parameters.map(|(k, p)| Column::new(p, Origin::Payload(k))));
+            columns.extend(parameters.map(|(k, parameter)| Column {
+                load: load_of(parameter).map(str::to_owned),
+                ..Column::new(parameter, Origin::Payload(k))
+            }));
         }
         Ok(Self { columns })
     }
 
     /// Repeats the payload's columns for each of these payloads, such as `m_payload_A`.
     ///
-    /// Without names the columns stay unchanged.
+    /// Without names the columns stay unchanged. Of payloads with tables of their own, whose columns
+    /// have these names, only those of the given ones are kept.
     #[must_use]
     pub fn with_payloads(self, names: &[String]) -> Self {
         if names.is_empty() {
@@ -292,7 +306,11 @@ impl ColumnSet {
         let (loads, mut columns): (Vec<Column>, Vec<Column>) =
             { self.columns.into_iter() }.partition(|column| column.origin.is_of_payload());
         for name in names {
-            columns.extend(loads.iter().map(|column| column.named(name)));
+            let of_load = |column: &Column| match &column.load {
+                Some(own) => (own == name).then(|| column.clone()),
+                None => Some(column.named(name)),
+            };
+            columns.extend(loads.iter().filter_map(of_load));
         }
         Self { columns }
     }

@@ -268,7 +268,9 @@ impl ChangedGeometry for ChangedMechanism<'_> {
         reached.by_pose = DMatrix::zeros(n, r);
         reached.by_parameter = DMatrix::zeros(n, m);
         let platform = platform_frame(self.described.motion, pose);
-        let mut actuators = info.actuated_joints.iter().enumerate().peekable();
+        let joints = info.sizes.joints;
+        let (mut by_pose, mut by_parameter) =
+            (DMatrix::zeros(joints, r), DMatrix::zeros(joints, m));
         for (index, leg) in self.legs.iter().enumerate() {
             let Some(end) = &leg.end else { continue };
             let range = mechanism.leg_range(index);
@@ -280,12 +282,28 @@ impl ChangedGeometry for ChangedMechanism<'_> {
                         leg: model.leg_name(index),
                         condition: f64::INFINITY,
                     })?;
-            while let Some((actuator, &joint)) = actuators.next_if(|(_, at)| range.contains(at)) {
-                let own = joint - range.start;
-                reached.positions.push(q[own]);
-                reached.by_pose.set_row(actuator, &by_twist.row(own));
-                reached.by_parameter.set_row(actuator, &by_length.row(own));
+            by_pose
+                .rows_mut(range.start, range.len())
+                .copy_from(&by_twist);
+            by_parameter
+                .rows_mut(range.start, range.len())
+                .copy_from(&by_length);
+        }
+        for (actuator, &joint) in info.actuated_joints.iter().enumerate() {
+            let alone = [(joint, 1.0)];
+            let terms = match model.actuator_terms(actuator) {
+                [] => &alone[..],
+                terms => terms,
+            };
+            let mut position = 0.0;
+            for &(joint, factor) in terms {
+                position += factor * memory[joint];
+                let mut row = reached.by_pose.row_mut(actuator);
+                row += by_pose.row(joint) * factor;
+                let mut row = reached.by_parameter.row_mut(actuator);
+                row += by_parameter.row(joint) * factor;
             }
+            reached.positions.push(position);
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use crate::parameters::body::leg_body;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use overact::{Body, Info, Parameter, StandardParameter};
 use overact_codegen::description::{Description, Joint, JointKind};
-use overact_identification::{Prior, is_carried};
+use overact_identification::{Prior, is_carried, load_of};
 
 /// Smallest length of a rod, relative to the mean length.
 const SHORTEST: f64 = 0.3;
@@ -26,6 +26,7 @@ pub(crate) fn with_loads(
     let own = all().map(|one| (one.name.to_owned(), one.symbol, one.body));
     let loads = description.payloads.iter().flat_map(|load| {
         let loads = all().filter(|one| is_of_payload(one));
+        let loads = loads.filter(|one| load_of(one).is_none());
         loads.map(|one| (of_load(one.name, &load.value), one.symbol, one.body))
     });
     own.chain(loads).collect()
@@ -37,8 +38,15 @@ pub(crate) fn is_of_payload(parameter: &Parameter) -> bool {
 }
 
 /// Name of a payload's parameter for a named payload.
+///
+/// Parameters of payloads with tables of their own have these names; for other payloads the name is
+/// empty.
 pub(crate) fn of_load(parameter: &str, load: &str) -> String {
-    format!("{parameter}_{load}")
+    match parameter.split_once("_payload_") {
+        Some((_, own)) if own == load => parameter.to_owned(),
+        Some(_) => String::new(),
+        None => format!("{parameter}_{load}"),
+    }
 }
 
 /// Prior for a robot with these standard parameters and this home configuration.

@@ -43,12 +43,9 @@ impl Robot {
         let info = self.model().info();
         let at = |values: &Option<Vec<f64>>, place: usize| values.as_ref()?.get(place).copied();
         for (place, range) in ranges.iter_mut().enumerate() {
-            let joint = info.actuated_joints.get(place);
-            let home = joint.and_then(|joint| info.home_joints.get(*joint));
+            let home = self.model().of_actuator(place, info.home_joints);
             let travel = at(&table.travel, place);
-            range.position_limits = home
-                .zip(travel)
-                .map(|(home, travel)| [home - travel, home + travel]);
+            range.position_limits = travel.map(|travel| [home - travel, home + travel]);
             range.velocity_limit = at(&table.velocity, place);
             range.acceleration_limit = at(&table.acceleration, place);
         }

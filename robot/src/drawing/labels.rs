@@ -11,7 +11,7 @@ use overact_codegen::mechanism::Mechanism;
 /// Title: the robot's name, degrees of freedom and motors.
 pub(super) fn title(mechanism: &Mechanism) -> (String, String) {
     let freedoms = counted(mechanism.dof(), "degree of freedom", "degrees of freedom");
-    let motors = counted(mechanism.actuated().len(), "motor", "motors");
+    let motors = counted(mechanism.actuator_count(), "motor", "motors");
     let Some(platform) = &mechanism.platform else {
         return (mechanism.name.clone(), format!("{freedoms}, {motors}"));
     };

@@ -109,9 +109,9 @@ impl<'a> Bench<'a> {
         let rate =
             |row: &[f64], twist: &[f64]| row.iter().zip(twist).map(|(j, v)| j * v).sum::<f64>();
         let velocity = rates.flat_map(|(j, v)| j.chunks_exact(r).map(move |row| rate(row, v)));
-        let actuated = self.info.actuated_joints;
         let accelerations = joints.chunks_exact(sizes.joints);
-        let acceleration = accelerations.flat_map(|row| actuated.iter().map(|&joint| row[joint]));
+        let acceleration = accelerations
+            .flat_map(|row| (0..n).map(|actuator| self.model.of_actuator(actuator, row)));
         let (displacement, rise) = self.displacement(frame, trajectory, samples);
         Ok(Course {
             samples,
@@ -168,11 +168,7 @@ impl<'a> Bench<'a> {
     fn travel(&self, positions: &[f64]) -> Vec<f64> {
         let n = self.info.sizes.actuators;
         let from = |index: usize| {
-            let joint = self.info.actuated_joints.get(index);
-            let home = joint
-                .and_then(|&joint| self.info.home_joints.get(joint))
-                .copied();
-            let home = home.unwrap_or(0.0);
+            let home = self.model.of_actuator(index, self.info.home_joints);
             let start = positions.get(index).copied().unwrap_or(home) - home;
             let turns =
                 self.has_platform && self.info.actuator_is_revolute[index] && start.abs() > PI;

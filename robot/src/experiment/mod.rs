@@ -11,7 +11,7 @@ use crate::{
 use overact::{Info, Model, Parameter};
 use overact_codegen::diagnostic::Code;
 use overact_codegen::{description, diagnostic::did_you_mean};
-use overact_identification::is_carried;
+use overact_identification::{is_carried, load_of};
 use overact_simulation::{Drives, Experiment, Record, Run, Term, Trajectory, simulate};
 use std::collections::BTreeMap;
 
@@ -94,7 +94,8 @@ impl Robot {
         let info = self.model().info();
         let all = info.parameters.iter().chain(info.payload_parameters);
         let names = |one: &Parameter| {
-            let loads = self.payloads().into_iter().filter(|_| is_of_payload(one));
+            let is_load = is_of_payload(one) && load_of(one).is_none();
+            let loads = self.payloads().into_iter().filter(|_| is_load);
             let loads = loads.map(|load| of_load(one.name, load));
             loads.chain([one.name.to_owned()]).collect::<Vec<_>>()
         };

@@ -9,7 +9,7 @@ use overact::{Info, Model};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
     Estimate, Instruments, Log, PreparedSystem, Projection, Settings, estimate_projection,
-    is_carried, prepare,
+    is_carried, load_of, prepare,
 };
 use overact_simulation::{
     Cascade, Drives, Experiment, Record, Recorded, follow_recorded, simulate,
@@ -173,7 +173,8 @@ fn standard(
     let all = info.parameters.iter().chain(info.payload_parameters);
     all.map(|parameter| {
         let own = load.map(|load| value(&of_load(parameter.name, load)));
-        own.filter(|own| *own != 0.0)
+        let of_other = load.is_some() && load_of(parameter).is_some_and(|own| Some(own) != load);
+        own.filter(|own| *own != 0.0 || of_other)
             .unwrap_or_else(|| value(parameter.name))
     })
     .collect()

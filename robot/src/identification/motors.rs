@@ -1,5 +1,6 @@
 //! Drive parameters on the motor side, from the gear ratios of the description.
 
+use overact::StandardParameter;
 use overact_codegen::description::{Description, Joint};
 use overact_identification::{Estimate, Estimator, MotorParameter, ParameterEstimate, Stage};
 
@@ -14,33 +15,62 @@ pub(crate) fn at_motors(description: &Description, estimates: &[Estimate]) -> Ve
     };
     let legs = description.legs.iter();
     let motors = legs.flat_map(|leg| leg.joints.iter().map(|joint| (&leg.joints, joint)));
-    motors
+    let of_tree = motors
         .filter_map(|(joints, motor)| Some((joints, motor, motor.motor?.value())))
         .flat_map(|(joints, motor, gear)| {
-            let mut all = of(motor, motor, gear, &estimate.parameters);
+            let owner = Owner::of(motor);
+            let mut all = of(&motor.name.value, &owner, gear, &estimate.parameters);
             // A motor of one joint shares the parameters of that joint, which are on the joint side
             // of its gear.
             if let [(joint, factor)] = motor.variable[..] {
                 let turned = gear * factor.value();
                 let joint = joints.get(joint);
-                let own = joint.map(|joint| of(motor, joint, turned, &estimate.parameters));
+                let own = joint.map(|joint| {
+                    let owner = Owner::of(joint);
+                    of(&motor.name.value, &owner, turned, &estimate.parameters)
+                });
                 all.extend(own.unwrap_or_default());
             }
             all
-        })
-        .collect()
+        });
+    let of_loops = description.motors.iter().flat_map(|motor| {
+        let leg = motor.leg.and_then(|leg| description.legs.get(leg));
+        let name = &motor.name.value;
+        let name = leg.map_or_else(|| name.clone(), |leg| format!("{name}_{}", leg.name.value));
+        let owner = Owner {
+            name: &name,
+            parameters: &motor.parameters,
+        };
+        of(&name, &owner, motor.ratio.value(), &estimate.parameters)
+    });
+    of_tree.chain(of_loops).collect()
+}
+
+/// The joint or motor whose name parameters have.
+struct Owner<'d> {
+    name: &'d str,
+    parameters: &'d [StandardParameter],
+}
+
+impl<'d> Owner<'d> {
+    fn of(joint: &'d Joint) -> Self {
+        Self {
+            name: &joint.name.value,
+            parameters: &joint.parameters,
+        }
+    }
 }
 
 /// Parameters of a joint or motor, converted to the motor side of a gear.
 fn of(
-    motor: &Joint,
-    owner: &Joint,
+    motor: &str,
+    owner: &Owner<'_>,
     ratio: f64,
     estimates: &[ParameterEstimate],
 ) -> Vec<MotorParameter> {
     let at_motor = |one: &ParameterEstimate| {
         let symbol = { owner.parameters.iter() }
-            .find(|symbol| one.name == format!("{}_{}", symbol.name(), owner.name.value))?;
+            .find(|symbol| one.name == format!("{}_{}", symbol.name(), owner.name))?;
         let (divisor, unit) = match symbol.name() {
             "ia" => (ratio * ratio, "kg m^2"),
             _ if symbol.is_viscous() => (ratio * ratio, "N m s/rad"),
@@ -50,7 +80,7 @@ fn of(
             _ => return None,
         };
         Some(MotorParameter {
-            motor: motor.name.value.clone(),
+            motor: motor.to_owned(),
             name: one.name.clone(),
             ratio,
             value: one.value / divisor,

@@ -63,7 +63,7 @@ pub struct Inspection {
 pub struct Body {
     /// Name of the joint, `platform` or `payload`.
     pub name: String,
-    /// Joint type: `revolute`, `prismatic`, `fixed`, `motor` or `free`.
+    /// Joint type: `revolute`, `prismatic`, `fixed`, `motor`, `spring`, `payload` or `free`.
     pub joint: &'static str,
     /// Whether a motor drives the joint.
     pub actuated: bool,
@@ -232,9 +232,26 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
         actuator: None,
         parameters,
     };
+    // Motors are the last actuators.
+    for (motor, own) in mechanism.motors.iter().enumerate() {
+        let is_own =
+            |p: &BodyParameter| matches!(p, BodyParameter::Motor { motor: of, .. } if *of == motor);
+        let leg = own.leg.map(|leg| mechanism.legs[leg].name.as_str());
+        bodies.push(Body {
+            name: leg.map_or_else(|| own.name.clone(), |leg| format!("{leg}.{}", own.name)),
+            joint: "motor",
+            actuated: true,
+            actuator: actuators.next(),
+            parameters: named(&is_own),
+        });
+    }
     for (index, spring) in mechanism.springs.iter().enumerate() {
         let own = named(&|p| *p == BodyParameter::Spring(index));
         bodies.push(other(&spring.name, "spring", own));
+    }
+    for (index, payload) in mechanism.payloads.iter().enumerate() {
+        let is_own = |p: &BodyParameter| matches!(p, BodyParameter::Load { payload: of, .. } if *of == index);
+        bodies.push(other(&payload.name, "payload", named(&is_own)));
     }
     if let Some(platform) = &mechanism.platform {
         let free = |name: &str, parameters| other(name, "free", parameters);
@@ -286,7 +303,7 @@ impl Function {
             inputs.retain(|input| input.name != "pose");
             inputs.insert(
                 0,
-                free("actuators", model.mechanism.actuated().len(), false),
+                free("actuators", model.mechanism.actuator_count(), false),
             );
             inputs.push(free("start", model.mechanism.pose_len(), true));
         }

@@ -368,6 +368,11 @@ impl Model for InterpretedRobot {
         &self.names.pulls
     }
 
+    fn actuator_terms(&self, actuator: usize) -> &[(usize, f64)] {
+        let terms = self.names.actuator_terms.get(actuator);
+        terms.map_or(&[], Vec::as_slice)
+    }
+
     fn evaluate(
         &self,
         function: Function,

@@ -2,7 +2,7 @@
 
 use crate::parameters::body::body;
 use overact::{Info, Parameter, Sizes};
-use overact_codegen::{RobotModel, derivation::BodyParameter, mechanism::JointKind};
+use overact_codegen::{RobotModel, derivation::BodyParameter, mechanism::Mechanism};
 
 /// Names, sizes and parameters of a robot.
 #[derive(Debug)]
@@ -12,6 +12,8 @@ pub(super) struct Names {
     legs: Vec<&'static str>,
     actuators: Vec<&'static str>,
     actuated_joints: Vec<usize>,
+    /// Joints that each actuator drives; empty if none drives several.
+    pub(super) actuator_terms: Vec<Vec<(usize, f64)>>,
     pub(super) actuator_is_revolute: Vec<bool>,
     /// Whether each actuator is a cable; empty if none is.
     pub(super) pulls: Vec<bool>,
@@ -27,8 +29,7 @@ impl Names {
     pub(super) fn new(model: &RobotModel) -> Self {
         let mechanism = &model.mechanism;
         let joints = mechanism.joints();
-        let actuated_joints = mechanism.actuated();
-        let is_revolute = |&at: &usize| mechanism.joint(joints[at]).kind == JointKind::Revolute;
+        let actuated_joints = mechanism.first_joints();
         let coordinates = mechanism.coordinates().into_iter().map(leaked).collect();
         Self {
             name: leaked(mechanism.name.clone()),
@@ -47,13 +48,14 @@ impl Names {
                 .map(|leg| leaked(leg.name.clone()))
                 .collect(),
             actuators: mechanism.actuator_names().into_iter().map(leaked).collect(),
-            actuator_is_revolute: actuated_joints.iter().map(is_revolute).collect(),
+            actuator_is_revolute: mechanism.actuator_is_revolute(),
             actuated_joints,
             pulls: if mechanism.has_cables() {
                 mechanism.pulls()
             } else {
                 Vec::new()
             },
+            actuator_terms: actuator_terms(mechanism),
             coordinates,
             parameters: parameters(model, &model.selection.standard),
             payload_parameters: parameters(model, &model.selection.payload),
@@ -91,6 +93,21 @@ impl Names {
             kept_actuators: &model.mechanism.kept_actuators,
         }
     }
+}
+
+/// Joints that each actuator drives, with factors; empty without motors of several joints.
+fn actuator_terms(mechanism: &Mechanism) -> Vec<Vec<(usize, f64)>> {
+    if mechanism.motors.is_empty() {
+        return Vec::new();
+    }
+    let actuators = mechanism.actuators().into_iter();
+    let terms = actuators.map(|actuator| {
+        let terms = mechanism.actuator_terms(actuator).into_iter();
+        terms
+            .map(|(joint, factor)| (joint, factor.value()))
+            .collect()
+    });
+    terms.collect()
 }
 
 fn leaked(name: String) -> &'static str {

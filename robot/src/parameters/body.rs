@@ -7,9 +7,12 @@ use overact_codegen::{derivation::BodyParameter, mechanism::Mechanism};
 pub(crate) fn body(mechanism: &Mechanism, parameter: BodyParameter) -> Body {
     match parameter {
         BodyParameter::Platform(_) => Body::Platform,
-        BodyParameter::Payload(_) => Body::Payload,
+        BodyParameter::Payload(_) | BodyParameter::Load { .. } => Body::Payload,
         BodyParameter::Spring(index) => Body::Spring {
             index: small(index),
+        },
+        BodyParameter::Motor { motor, .. } => Body::Motor {
+            index: small(motor),
         },
         BodyParameter::Leg { leg, joint, .. } => leg_body(
             leg,

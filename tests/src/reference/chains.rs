@@ -11,6 +11,7 @@ use super::jacobians::{Jacobians, end_rows};
 use super::kinematics::{BodyMotion, all_legs, end_components, end_from_leg, end_from_platform};
 use super::linear::pseudo_inverse;
 use super::mechanism::{Leg, Mechanism};
+use super::motors::transmission;
 use super::placement::{Frame, logarithm};
 use nalgebra::{DMatrix, DVector, Vector6};
 
@@ -104,7 +105,8 @@ fn solve(matrix: &DMatrix<f64>, sides: &DMatrix<f64>) -> Result<DMatrix<f64>, Er
 /// If a chain's Jacobian isn't square, or its equations contradict the independent joints.
 pub fn jacobians(mechanism: &Mechanism, q: &DVector<f64>) -> Result<Jacobians, Error> {
     let (total, dof) = (mechanism.joints(), mechanism.dof());
-    let actuated = mechanism.actuated();
+    let transmission = transmission(mechanism);
+    let n = transmission.nrows();
     let cuts = cuts(mechanism, q);
     let mut wanted = DMatrix::zeros(cuts.nrows() + dof, dof);
     wanted.rows_mut(cuts.nrows(), dof).fill_with_identity();
@@ -113,11 +115,12 @@ pub fn jacobians(mechanism: &Mechanism, q: &DVector<f64>) -> Result<Jacobians, E
         attachments: DMatrix::zeros(cuts.nrows(), dof),
         legs: DMatrix::zeros(total, total),
         platform: DMatrix::zeros(total, dof),
-        inverse: joints.select_rows(&actuated),
+        inverse: &transmission * &joints,
         joints,
-        a_p: DMatrix::zeros(actuated.len(), dof),
-        b_p: DMatrix::zeros(actuated.len(), actuated.len()),
-        actuated,
+        a_p: DMatrix::zeros(n, dof),
+        b_p: DMatrix::zeros(n, n),
+        actuated: mechanism.actuated(),
+        transmission,
         ends: cuts,
     };
     let mut first = 0;
@@ -146,6 +149,7 @@ pub fn jacobians(mechanism: &Mechanism, q: &DVector<f64>) -> Result<Jacobians, E
         all.reduce(range.start, &square, &kept);
         first += count;
     }
+    all.reduce_motors();
     Ok(all)
 }
 

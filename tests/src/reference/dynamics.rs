@@ -1,7 +1,8 @@
 //! Dynamics of the closed robot: constrained system, platform projection and actuator projection.
 //!
 //! *Lagrange multipliers.* Each leg end exerts a wrench w, in the rows of the ends, on the
-//! platform. Motors act on the actuated joints, selected by E:
+//! platform. The torques of motors act on the joints by E = Tᵀ, which selects
+//! actuated joints and has the factors of motors that drive several:
 //!
 //! - legs: E τ - J_endsᵀ w = τ_t, platform: J_attachmentsᵀ w = τ_pr.
 //!
@@ -23,6 +24,7 @@ use super::jacobians::Jacobians;
 use super::linear::{condition, pseudo_inverse};
 use super::mechanism::Mechanism;
 use super::motion::Motion;
+use super::motors;
 use super::newton_euler::{projected_platform_wrench, regressor, tree_torques};
 use nalgebra::{DMatrix, DVector};
 use std::cell::OnceCell;
@@ -83,7 +85,8 @@ impl<'a> Dynamics<'a> {
             tree.iter().chain(platform.iter()).copied(),
         );
         let elements = all_loads(self.mechanism, self.state, parameters, own.len());
-        own + elements
+        let motors = motors::all_loads(self.mechanism, self.state, parameters, elements.len());
+        own + elements + motors
     }
 
     /// The same for every unit parameter: IDM of the tree above DᵀIDM of the platform.
@@ -152,7 +155,10 @@ impl<'a> Dynamics<'a> {
         let jacobians = &self.jacobians;
         let (wrenches, joints) = jacobians.ends.shape();
         // With parasitic motion: all six components of the platform's wrench.
-        let (dof, actuators) = (jacobians.attachments.ncols(), jacobians.actuated.len());
+        let (dof, actuators) = (
+            jacobians.attachments.ncols(),
+            jacobians.transmission.nrows(),
+        );
         let mut system = DMatrix::zeros(joints + dof, wrenches + actuators);
         system
             .view_mut((0, 0), (joints, wrenches))
@@ -160,9 +166,9 @@ impl<'a> Dynamics<'a> {
         system
             .view_mut((joints, 0), (dof, wrenches))
             .copy_from(&jacobians.attachments.transpose());
-        for (column, &row) in jacobians.actuated.iter().enumerate() {
-            system[(row, wrenches + column)] = 1.0;
-        }
+        system
+            .view_mut((0, wrenches), (joints, actuators))
+            .copy_from(&jacobians.transmission.transpose());
         system
     }
 
@@ -171,7 +177,7 @@ impl<'a> Dynamics<'a> {
     pub fn multiplier_matrix(&self) -> DMatrix<f64> {
         let jacobians = &self.jacobians;
         let (joints, dof) = jacobians.platform.shape();
-        let actuators = jacobians.actuated.len();
+        let actuators = jacobians.transmission.nrows();
         let mut matrix = DMatrix::zeros(joints + dof, joints + actuators);
         matrix
             .view_mut((0, 0), (joints, joints))
@@ -210,7 +216,7 @@ impl<'a> Dynamics<'a> {
     ///
     /// If the partition is singular in this state.
     pub fn partition(&self, kept: &[usize], loads: &DMatrix<f64>) -> Result<Partition, Error> {
-        let actuators = self.jacobians.actuated.len();
+        let actuators = self.jacobians.transmission.nrows();
         let projected: Vec<usize> = (0..actuators).filter(|at| !kept.contains(at)).collect();
         if matches!(self.mechanism.motion, Motion::Parasitic(_)) {
             return self.partition_with_parasitic_motion(kept, projected, loads);

@@ -9,6 +9,7 @@ use super::closure::State;
 use super::elements::length;
 use super::kinematics::BodyMotion;
 use super::mechanism::{JointKind, Mechanism, Spring};
+use super::motors;
 use super::newton_euler::inertia;
 use super::parameters::{BODY, INERTIAL, STIFFNESS, element_start, leg_start, platform_start};
 use nalgebra::{DVector, Vector3};
@@ -70,5 +71,5 @@ pub fn total_energy(mechanism: &Mechanism, state: &State, parameters: &DVector<f
             }
         }
     }
-    energy
+    energy + motors::energy(mechanism, state, parameters)
 }

@@ -22,6 +22,7 @@ use super::kinematics::{
 use super::linear::{adjugate, condition, determinant, independent_rows, pseudo_inverse};
 use super::mechanism::{End, Leg, Mechanism};
 use super::motion::Motion;
+use super::motors::transmission;
 use super::parasitic_motion;
 use nalgebra::{DMatrix, DVector};
 
@@ -49,6 +50,8 @@ pub struct Jacobians {
     pub b_p: DMatrix<f64>,
     /// Positions of the actuated joints among the variables.
     pub actuated: Vec<usize>,
+    /// T, n x n_t: actuator rates from joint rates.
+    pub transmission: DMatrix<f64>,
 }
 
 impl Jacobians {
@@ -59,8 +62,10 @@ impl Jacobians {
     /// If a leg's Jacobian isn't square or the leg can't follow the platform.
     pub fn at(mechanism: &Mechanism, pose: &[f64], q: &DVector<f64>) -> Result<Self, Error> {
         let actuated = mechanism.actuated();
+        let transmission = transmission(mechanism);
+        let n = transmission.nrows();
         if mechanism.motion == Motion::None {
-            return Ok(Self::of_tree(mechanism.joints(), actuated));
+            return Ok(Self::of_tree(mechanism.joints(), actuated, transmission));
         }
         if !mechanism.motion.has_platform() {
             return chains::jacobians(mechanism, q);
@@ -76,10 +81,11 @@ impl Jacobians {
             legs: DMatrix::zeros(total, total),
             platform: DMatrix::zeros(total, dof),
             joints: DMatrix::zeros(total, dof),
-            inverse: DMatrix::zeros(actuated.len(), dof),
-            a_p: DMatrix::zeros(actuated.len(), dof),
-            b_p: DMatrix::zeros(actuated.len(), actuated.len()),
+            inverse: DMatrix::zeros(n, dof),
+            a_p: DMatrix::zeros(n, dof),
+            b_p: DMatrix::zeros(n, n),
             actuated,
+            transmission,
         };
         let mut first = 0;
         for (k, (leg, range)) in mechanism
@@ -117,12 +123,13 @@ impl Jacobians {
             all.reduce(range.start, &square, &kept);
             first += end.nrows();
         }
-        all.inverse = all.joints.select_rows(&all.actuated);
+        all.inverse = &all.transmission * &all.joints;
+        all.reduce_motors();
         Ok(all)
     }
 
     /// Without a platform the twist coordinates are the joint rates themselves.
-    fn of_tree(joints: usize, actuated: Vec<usize>) -> Self {
+    fn of_tree(joints: usize, actuated: Vec<usize>, transmission: DMatrix<f64>) -> Self {
         let identity = DMatrix::identity(joints, joints);
         Self {
             ends: identity.clone(),
@@ -134,6 +141,7 @@ impl Jacobians {
             a_p: identity.clone(),
             b_p: -identity,
             actuated,
+            transmission,
         }
     }
 
@@ -147,6 +155,15 @@ impl Jacobians {
                     .set_row(row, &(cofactors.row(at - start) * platform));
                 self.b_p[(row, row)] = -determinant;
             }
+        }
+    }
+
+    /// Writes the closure of the motors, θ̇ = T q̇: their rows of J_p^inv, and -1.
+    pub(super) fn reduce_motors(&mut self) {
+        for row in self.actuated.len()..self.transmission.nrows() {
+            let own = self.inverse.row(row).into_owned();
+            self.a_p.set_row(row, &own);
+            self.b_p[(row, row)] = -1.0;
         }
     }
 

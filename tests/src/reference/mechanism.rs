@@ -344,6 +344,15 @@ impl PartialEq for Law {
     }
 }
 
+/// A motor that drives a combination of joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motor {
+    /// Positions of the joints among all variables, with their factors.
+    pub terms: Vec<(usize, f64)>,
+    /// Stribeck velocity of its friction, rad/s or m/s.
+    pub stribeck: Option<f64>,
+}
+
 /// A whole robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
@@ -359,6 +368,8 @@ pub struct Mechanism {
     pub legs: Vec<Leg>,
     /// Springs and dampers between two points.
     pub elements: Vec<Element>,
+    /// Motors that drive combinations of joints; they are the last actuators.
+    pub motors: Vec<Motor>,
 }
 
 impl Mechanism {
@@ -423,7 +434,7 @@ impl Mechanism {
     /// Number of actuators, n.
     #[must_use]
     pub fn actuators(&self) -> usize {
-        self.actuated().len()
+        self.actuated().len() + self.motors.len()
     }
 
     /// Range of every leg's variables within a joint vector.

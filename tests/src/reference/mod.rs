@@ -29,6 +29,7 @@ pub mod linear;
 pub mod masses;
 pub mod mechanism;
 pub mod motion;
+pub mod motors;
 pub mod newton_euler;
 pub mod parameters;
 pub mod parasitic_motion;
@@ -45,7 +46,7 @@ pub use closure::State;
 pub use dynamics::Dynamics;
 pub use jacobians::Jacobians;
 pub use mechanism::{
-    Element, ElementBody, ElementEnd, End, Joint, JointKind, Law, Leg, Mechanism, Spring,
+    Element, ElementBody, ElementEnd, End, Joint, JointKind, Law, Leg, Mechanism, Motor, Spring,
 };
 pub use motion::Motion;
 pub use placement::Frame;

@@ -17,6 +17,7 @@ use super::closure::State;
 use super::elements::add_columns;
 use super::kinematics::BodyMotion;
 use super::mechanism::{JointKind, Leg, Mechanism};
+use super::motors;
 use super::parameters::{BODY, INERTIAL, element_start, leg_start, platform_start};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -151,7 +152,8 @@ fn leg_torques(
 ///
 /// Each direction has its own law; at rest their mean applies. The excess `fst` falls from
 /// standstill to half at the Stribeck velocity.
-fn friction(rate: f64, coefficients: &[f64], stribeck: Option<f64>) -> f64 {
+#[must_use]
+pub fn friction(rate: f64, coefficients: &[f64], stribeck: Option<f64>) -> f64 {
     let [viscous_up, dry_up, viscous_down, dry_down, excess] =
         std::array::from_fn(|at| coefficients[at]);
     let directed = if rate > 0.0 {
@@ -313,5 +315,6 @@ pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
             .copy_from(&platform);
     }
     add_columns(mechanism, state, &mut columns);
+    motors::add_columns(mechanism, state, &mut columns);
     columns
 }

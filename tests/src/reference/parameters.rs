@@ -4,7 +4,8 @@
 //! friction by direction, at standstill and by load: [xx xy xz yy yz zz mx my mz m ia fv fs off k
 //! fv_pos fs_pos fv_neg fs_neg fst fl]. Platform and payload have the first ten. Inertial
 //! parameters are about the origin of the body's frame, in its axes. Columns are ordered by leg,
-//! joint and parameter; coefficients of elements between two points come last.
+//! joint and parameter; coefficients of elements between two points and parameters of motors come
+//! last.
 
 use super::mechanism::Mechanism;
 
@@ -23,6 +24,12 @@ pub const STIFFNESS: usize = 14;
 /// Total number of standard parameters; a serial robot has no platform and no payload.
 #[must_use]
 pub fn count(mechanism: &Mechanism) -> usize {
+    motor_start(mechanism) + BODY * mechanism.motors.len()
+}
+
+/// Column of the first parameter of the first motor, which has the layout of a leg body.
+#[must_use]
+pub fn motor_start(mechanism: &Mechanism) -> usize {
     element_start(mechanism) + mechanism.elements.len()
 }
 
@@ -71,5 +78,8 @@ pub fn names(mechanism: &Mechanism) -> Vec<String> {
         }
     }
     names.extend((1..=mechanism.elements.len()).map(|index| format!("k_element{index}")));
+    for index in 1..=mechanism.motors.len() {
+        names.extend(SYMBOLS.iter().map(|s| format!("{s}_motor{index}")));
+    }
     names
 }

@@ -17,6 +17,7 @@ use super::kinematics::{
 use super::linear::pseudo_inverse;
 use super::mechanism::{Leg, Mechanism};
 use super::motion::Motion;
+use super::motors::transmission;
 use nalgebra::{DMatrix, DVector};
 
 /// Relative residual of the equations up to which it counts as rounding.
@@ -170,7 +171,8 @@ pub fn jacobians(
 ) -> Result<Jacobians, Error> {
     let free = freed(mechanism);
     let (total, dof) = (mechanism.joints(), mechanism.dof());
-    let actuated = mechanism.actuated();
+    let transmission = transmission(mechanism);
+    let n = transmission.nrows();
     let [joints, velocities] = rates(mechanism, pose, q)?;
     let all = closures(&free, pose, q);
     let mut jacobians = Jacobians {
@@ -178,11 +180,12 @@ pub fn jacobians(
         attachments: -all.columns(total, 6).into_owned(),
         legs: DMatrix::zeros(total, total),
         platform: DMatrix::zeros(total, dof),
-        inverse: joints.select_rows(&actuated),
+        inverse: &transmission * &joints,
         joints,
-        a_p: DMatrix::zeros(actuated.len(), dof),
-        b_p: DMatrix::zeros(actuated.len(), actuated.len()),
-        actuated,
+        a_p: DMatrix::zeros(n, dof),
+        b_p: DMatrix::zeros(n, n),
+        actuated: mechanism.actuated(),
+        transmission,
     };
     let mut first = 0;
     for (leg, range) in mechanism.legs.iter().zip(mechanism.leg_ranges()) {
@@ -205,6 +208,7 @@ pub fn jacobians(
         jacobians.reduce(range.start, &square, &kept);
         first += count;
     }
+    jacobians.reduce_motors();
     Ok(jacobians)
 }
 

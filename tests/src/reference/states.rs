@@ -8,7 +8,9 @@ use super::Error;
 use super::closure::State;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
-use super::parameters::{BODY, INERTIAL, STIFFNESS, count, element_start, platform_start};
+use super::parameters::{
+    BODY, INERTIAL, STIFFNESS, count, element_start, motor_start, platform_start,
+};
 use super::parasitic_motion;
 use super::units::unitless_condition;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -118,6 +120,19 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
     }
     let coefficient = |_| generator.random_range(1.0..10.0);
     all.extend(mechanism.elements.iter().map(coefficient));
+    for motor in &mechanism.motors {
+        let mut within = |low: f64, high: f64| generator.random_range(low..high);
+        all.extend([0.0; INERTIAL]);
+        all.extend([
+            within(0.01, 0.1),
+            within(0.1, 1.0),
+            within(0.1, 1.0),
+            within(-0.3, 0.3),
+            0.0,
+        ]);
+        all.extend([(); 4].map(|()| within(0.1, 1.0)));
+        all.extend([motor.stribeck.map_or(0.0, |_| within(0.1, 1.0)), 0.0]);
+    }
     DVector::from_vec(all)
 }
 
@@ -127,6 +142,11 @@ pub fn frictionless(mechanism: &Mechanism, parameters: &DVector<f64>) -> DVector
     let mut kept = parameters.clone();
     for at in 0..platform_start(mechanism) {
         if at % BODY > INERTIAL && at % BODY != STIFFNESS {
+            kept[at] = 0.0;
+        }
+    }
+    for at in motor_start(mechanism)..kept.len() {
+        if (at - motor_start(mechanism)) % BODY > INERTIAL {
             kept[at] = 0.0;
         }
     }

@@ -120,7 +120,7 @@ impl Dynamics<'_> {
 
     /// τ = [0, -B_pᵀ] λ (15).
     fn torques_of(&self, multipliers: &DMatrix<f64>) -> DVector<f64> {
-        let all: Vec<usize> = (0..self.jacobians.actuated.len()).collect();
+        let all: Vec<usize> = (0..self.jacobians.transmission.nrows()).collect();
         (self.torque_rows(&all) * multipliers)
             .column(0)
             .into_owned()

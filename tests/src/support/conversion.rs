@@ -2,7 +2,7 @@
 
 use crate::reference::{
     Element, ElementBody, ElementEnd, End, Frame, Joint, JointKind, Law, Leg, Mechanism, Motion,
-    Spring,
+    Motor, Spring,
 };
 use nalgebra::{Rotation3, Vector3};
 use overact_codegen::mechanism;
@@ -14,7 +14,7 @@ use overact_codegen::mechanism::{Angle, Number};
 pub fn reference(mechanism: &mechanism::Mechanism, workspace: Vec<f64>) -> Mechanism {
     let first = |leg: usize| mechanism.leg_range(leg);
     let legs = mechanism.legs.iter().enumerate();
-    Mechanism {
+    let mut plain = Mechanism {
         gravity: vector(mechanism.gravity),
         motion: match &mechanism.platform {
             Some(platform) => motion(platform.motion),
@@ -27,7 +27,65 @@ pub fn reference(mechanism: &mechanism::Mechanism, workspace: Vec<f64>) -> Mecha
             .map(|(k, own)| leg(own, &mechanism.home.joints[first(k)]))
             .collect(),
         elements: mechanism.springs.iter().map(element).collect(),
+        motors: mechanism.motors.iter().map(motor).collect(),
+    };
+    for payload in &mechanism.payloads {
+        if let mechanism::FrameBody::Joint(body) = payload.body {
+            let joints = &mut plain.legs[body.leg].joints;
+            joints.extend(fixed(&payload.placement, body.joint, joints.len()));
+        }
     }
+    plain
+}
+
+/// Index of the joint of the reference that carries a payload, in its leg.
+///
+/// Payloads are bodies on fixed joints after all others, two for each: the first one shifts and the
+/// second one turns.
+#[must_use]
+pub fn payload_joint(mechanism: &mechanism::Mechanism, payload: usize) -> Option<(usize, usize)> {
+    let leg_of = |payload: &mechanism::Payload| match payload.body {
+        mechanism::FrameBody::Joint(body) => Some(body.leg),
+        mechanism::FrameBody::Platform => None,
+    };
+    let leg = leg_of(&mechanism.payloads[payload])?;
+    let before = mechanism.payloads[..payload].iter();
+    let before = before.filter(|other| leg_of(other) == Some(leg)).count();
+    Some((leg, mechanism.legs[leg].joints.len() + 2 * before + 1))
+}
+
+/// A placement on a body as two fixed joints, the first of which gets the index `next`.
+fn fixed(placement: &mechanism::Placement, body: usize, next: usize) -> [Joint; 2] {
+    let at = frame(placement);
+    let shift = at.position;
+    let gamma = shift.y.atan2(shift.x);
+    let shifted = Joint {
+        antecedent: Some(body),
+        gamma,
+        b: shift.z,
+        d: shift.x.hypot(shift.y),
+        theta: -gamma,
+        ..Joint::new(JointKind::Fixed, next)
+    };
+    // Rz(γ) Rx(α) Rz(θ), as Euler angles.
+    let turn = at.rotation;
+    let (sine, cosine) = (turn[(0, 2)].hypot(turn[(1, 2)]), turn[(2, 2)]);
+    let (gamma, theta) = if sine > 1e-12 {
+        (
+            turn[(0, 2)].atan2(-turn[(1, 2)]),
+            turn[(2, 0)].atan2(turn[(2, 1)]),
+        )
+    } else {
+        (0.0, (-turn[(0, 1)]).atan2(turn[(0, 0)]))
+    };
+    let turned = Joint {
+        antecedent: Some(next),
+        gamma,
+        alpha: sine.atan2(cosine),
+        theta,
+        ..Joint::new(JointKind::Fixed, next + 1)
+    };
+    [shifted, turned]
 }
 
 fn motion(motion: mechanism::Motion) -> Motion {
@@ -131,6 +189,14 @@ fn element(spring: &mechanism::PointSpring) -> Element {
         ends: spring.ends.each_ref().map(end),
         force: spring.force.as_ref().map(|force| law(&force.formula)),
         known: spring.known.as_ref().map(law),
+    }
+}
+
+fn motor(motor: &mechanism::Motor) -> Motor {
+    let terms = motor.terms.iter();
+    Motor {
+        terms: terms.map(|(at, factor)| (*at, factor.value())).collect(),
+        stribeck: motor.stribeck.map(Number::value),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Expected outputs of functions, from the numeric reference.
 
+use super::conversion::payload_joint;
 use super::derivatives;
 use super::frames::{self, Frames};
 use super::sample::fitted_acceleration;
@@ -7,7 +8,7 @@ use super::{Failure, Parameters, Sample};
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
 use crate::reference::parameters::{
-    BODY, INERTIAL, element_start, leg_start, names, platform_start,
+    BODY, INERTIAL, element_start, leg_start, motor_start, names, platform_start,
 };
 use crate::reference::parasitic_motion::rates;
 use crate::reference::{Dynamics, Mechanism, State};
@@ -78,7 +79,18 @@ impl Expected {
             BodyParameter::Payload(symbol) => {
                 platform_start(&mechanism) + INERTIAL + symbol as usize
             }
+            BodyParameter::Load { payload, symbol } => {
+                match payload_joint(&model.mechanism, payload) {
+                    Some((leg, joint)) => {
+                        leg_start(&mechanism, leg) + BODY * joint + symbol as usize
+                    }
+                    None => platform_start(&mechanism) + INERTIAL + symbol as usize,
+                }
+            }
             BodyParameter::Spring(index) => element_start(&mechanism) + index,
+            BodyParameter::Motor { motor, symbol } => {
+                motor_start(&mechanism) + BODY * motor + symbol as usize
+            }
         };
         let columns = |of: &[BodyParameter]| of.iter().map(at).collect::<Vec<usize>>();
         Self {
@@ -355,10 +367,10 @@ fn kinematic(
     Ok(Some(match function {
         Function::PoseInClosedForm => DMatrix::from_column_slice(state.pose.len(), 1, &state.pose),
         Function::Joints => vector(&state.q),
-        Function::ActuatorPositions => vector(&state.q.select_rows(&mechanism.actuated())),
+        Function::ActuatorPositions => vector(&(&jacobians.transmission * &state.q)),
         Function::PoseStep => {
             let measured = DVector::from_column_slice(&sample.missed);
-            let reached = state.q.select_rows(&mechanism.actuated());
+            let reached = &jacobians.transmission * &state.q;
             vector(&(pseudo_inverse(&jacobians.inverse) * (measured - reached)))
         }
         Function::InverseJacobian => jacobians.inverse.clone(),

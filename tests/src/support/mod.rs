@@ -12,6 +12,7 @@ pub mod expected;
 pub mod frames;
 pub mod imports;
 pub mod library;
+pub mod motors;
 pub mod precise;
 pub mod random;
 pub mod rank;

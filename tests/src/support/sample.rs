@@ -2,6 +2,7 @@
 
 use super::Failure;
 use crate::reference::linear::pseudo_inverse;
+use crate::reference::motors::transmission;
 use crate::reference::states::{MAX_CONDITION, random_parameters, random_states};
 use crate::reference::units::unitless_condition;
 use crate::reference::{Dynamics, Mechanism, State};
@@ -93,10 +94,10 @@ impl Sample {
         let mut random = |count: usize, size: f64| -> DVector<f64> {
             DVector::from_fn(count, |_, _| size * generator.random_range(-1.0..1.0))
         };
-        let actuated = mechanism.actuated();
-        let (n, r) = (actuated.len(), mechanism.dof());
-        let velocities = state.qd.select_rows(&actuated) + random(n, NOISE);
-        let accelerations = state.qdd.select_rows(&actuated) + random(n, NOISE);
+        let transmission = transmission(mechanism);
+        let (n, r) = (transmission.nrows(), mechanism.dof());
+        let velocities = &transmission * &state.qd + random(n, NOISE);
+        let accelerations = &transmission * &state.qdd + random(n, NOISE);
         let fitted = fit(mechanism, &state, &velocities, &accelerations)?;
         let drawn = random_parameters(mechanism, seed);
         let mut all_parameters = DVector::zeros(drawn.len());
@@ -104,7 +105,7 @@ impl Sample {
             all_parameters[at] = drawn[at];
         }
         let shift = random(r, 0.02);
-        let actuators = state.q.select_rows(&actuated);
+        let actuators = &transmission * &state.q;
         Ok(Self {
             fitted,
             actuators: actuators.as_slice().to_vec(),
@@ -190,7 +191,7 @@ pub fn fitted_acceleration(
     let still = DVector::zeros(mechanism.dof());
     let bias = State::with_joints(mechanism, &state.pose, &state.q, twist, &still)?;
     let inverse = pseudo_inverse(&state.jacobians(mechanism)?.inverse);
-    Ok(inverse * (measured - bias.qdd.select_rows(&mechanism.actuated())))
+    Ok(inverse * (measured - transmission(mechanism) * bias.qdd))
 }
 
 /// Random regular samples.

@@ -164,8 +164,11 @@ impl Gatherer<'_> {
             .map(<[f64]>::to_vec);
         if self.from == MotionInput::Joints && actuators.is_none() {
             let joints = self.states.get(at, "joints", sizes.joints)?;
-            let actuated = self.robot.info().actuated_joints;
-            actuators = joints.map(|joints| actuated.iter().map(|&i| joints[i]).collect());
+            let of_all = |joints: &[f64]| {
+                let all = 0..sizes.actuators;
+                all.map(|at| self.robot.of_actuator(at, joints)).collect()
+            };
+            actuators = joints.map(of_all);
         }
         let Some(actuators) = actuators else {
             let wanted = if self.from == MotionInput::Actuators {

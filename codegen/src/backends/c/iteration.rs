@@ -114,7 +114,7 @@ const PARTITION: &str = include_str!("text/partition.c");
 /// Whether partitions of the actuator projection are written: for redundant robots with all
 /// functions needed.
 fn has_partitions(model: &RobotModel) -> bool {
-    let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
+    let is_redundant = model.mechanism.actuator_count() > model.mechanism.dof();
     let jacobian = model.function(Function::InverseJacobian, MotionInput::Pose);
     let regressor = model.function(
         Function::IdmRedPlatform(overact_core::Columns::Standard),
@@ -132,7 +132,7 @@ pub fn forward_arguments(model: &RobotModel) -> [Array; 2] {
     };
     let mechanism = &model.mechanism;
     [
-        array("actuators", mechanism.actuated().len()),
+        array("actuators", mechanism.actuator_count()),
         array("start", mechanism.pose_len()),
     ]
 }
@@ -152,7 +152,7 @@ pub fn declarations(model: &RobotModel, naming: &Naming) -> String {
         let lines = [
             format!("Forward kinematics: the pose that fits all actuators best by least squares, iterated from the pose `start`.{way}"),
             String::new(),
-            "@param actuators q, positions of the actuated joints (m, rad) (ROB_ACTUATORS)".to_owned(),
+            format!("@param actuators q, positions of the {} (m, rad) (ROB_ACTUATORS)", model.mechanism.kind_of_actuators()),
             "@param start a pose near the wanted one, in its assembly mode (m, rad) (ROB_POSE)".to_owned(),
             "@param[out] output [ROB_POSE]".to_owned(),
             "@return 0, or an error: an input that is infinite, NaN or too large, no convergence, or a singular or unreachable configuration on the way.".to_owned(),
@@ -179,7 +179,7 @@ enum ClosedForm {
 }
 
 fn closed_form(model: &RobotModel) -> ClosedForm {
-    let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
+    let is_redundant = model.mechanism.actuator_count() > model.mechanism.dof();
     match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
         Some(_) if is_redundant => ClosedForm::Start,
         Some(_) => ClosedForm::Alone,

@@ -178,7 +178,7 @@ fn overview(model: &RobotModel) -> Vec<String> {
         "{} legs, {} joints, {} actuators, {} degrees of freedom; {} standard parameters, {} base parameters.",
         mechanism.legs.len(),
         mechanism.joints().len(),
-        mechanism.actuated().len(),
+        mechanism.actuator_count(),
         mechanism.dof(),
         model.selection.standard.len(),
         model.base.len()

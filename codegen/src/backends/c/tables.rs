@@ -3,18 +3,26 @@
 use super::lines::string;
 use super::naming::Naming;
 use crate::derivation::BodyParameter;
-use crate::mechanism::JointKind;
+use crate::mechanism::Mechanism;
 use crate::model::RobotModel;
 
 /// The macros of sizes.
 #[must_use]
 pub fn sizes(model: &RobotModel, naming: &Naming) -> String {
     let mechanism = &model.mechanism;
-    let (actuators, dof) = (mechanism.actuated().len(), mechanism.dof());
+    let (actuators, dof) = (mechanism.actuator_count(), mechanism.dof());
     let mut sizes = vec![
         ("POSE", mechanism.pose_len(), "numbers in a pose"),
         ("DOF", dof, "r, independent platform coordinates"),
-        ("ACTUATORS", actuators, "n, actuated joints"),
+        (
+            "ACTUATORS",
+            actuators,
+            if mechanism.motors.is_empty() {
+                "n, actuated joints"
+            } else {
+                "n, actuators"
+            },
+        ),
         (
             "REDUNDANCY",
             actuators.saturating_sub(dof),
@@ -154,18 +162,22 @@ fn configuration(model: &RobotModel) -> Vec<Table> {
         comment,
         elements,
     };
-    let (joints, actuated) = (mechanism.joints(), mechanism.actuated());
-    let turns = |&at: &usize| mechanism.joint(joints[at]).kind == JointKind::Revolute;
-    let turns = actuated.iter().map(|at| u8::from(turns(at)).to_string());
+    let turns = mechanism.actuator_is_revolute().into_iter();
+    let turns = turns.map(|turns| u8::from(turns).to_string());
     let numbers = |values: &[f64]| values.iter().map(|&value| number(value)).collect();
     let indices = |values: &[usize]| values.iter().map(ToString::to_string).collect();
-    vec![
+    let has_motors = !mechanism.motors.is_empty();
+    let mut tables = vec![
         table(
             "int",
             "actuated_joints",
             "ROB_ACTUATORS",
-            "Indices of the actuated joints among all joints.",
-            indices(&actuated),
+            if has_motors {
+                "Index of each actuator's joint among all joints; of a motor that drives several joints the first."
+            } else {
+                "Indices of the actuated joints among all joints."
+            },
+            indices(&mechanism.first_joints()),
         ),
         table(
             "int",
@@ -195,7 +207,31 @@ fn configuration(model: &RobotModel) -> Vec<Table> {
             "Joint positions of the home configuration, which defines the working mode (m, rad).",
             numbers(&mechanism.home.joints),
         ),
-    ]
+    ];
+    if has_motors {
+        tables.push(table(
+            "double",
+            "transmission",
+            "ROB_ACTUATORS * ROB_JOINTS",
+            "Transmission T, row by row: the positions of the actuators are T q_t.",
+            numbers(&transmission(mechanism)),
+        ));
+    }
+    tables
+}
+
+/// The matrix T with the actuators' positions T q_t, row by row.
+fn transmission(mechanism: &Mechanism) -> Vec<f64> {
+    let count = mechanism.joints().len();
+    let actuators = mechanism.actuators().into_iter();
+    let rows = actuators.map(|actuator| {
+        let mut row = vec![0.0; count];
+        for (joint, factor) in mechanism.actuator_terms(actuator) {
+            row[joint] = factor.value();
+        }
+        row
+    });
+    rows.flatten().collect()
 }
 
 fn parameters(model: &RobotModel) -> Vec<Table> {

@@ -3,7 +3,7 @@
 use super::expression::{kind, number};
 use crate::derivation::BodyParameter;
 use crate::float::Float;
-use crate::mechanism::{JointKind, StandardParameter};
+use crate::mechanism::{Mechanism, StandardParameter};
 use crate::model::RobotModel;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -22,8 +22,12 @@ pub fn items(model: &RobotModel) -> TokenStream {
         ),
         (
             "ACTUATORS",
-            mechanism.actuated().len(),
-            " n, actuated joints.",
+            mechanism.actuator_count(),
+            if mechanism.motors.is_empty() {
+                " n, actuated joints."
+            } else {
+                " n, actuators."
+            },
         ),
         (
             "JOINTS",
@@ -108,12 +112,15 @@ pub fn items(model: &RobotModel) -> TokenStream {
 
 fn home(model: &RobotModel) -> TokenStream {
     let mechanism = &model.mechanism;
-    let joints = mechanism.joints();
-    let actuated = mechanism.actuated();
-    let indices = actuated.iter().map(|&i| Literal::usize_unsuffixed(i));
-    let revolute = actuated
-        .iter()
-        .map(|&i| mechanism.joint(joints[i]).kind == JointKind::Revolute);
+    let indices = mechanism.first_joints();
+    let indices = indices.iter().map(|&i| Literal::usize_unsuffixed(i));
+    let revolute = mechanism.actuator_is_revolute();
+    let of_joints = if mechanism.motors.is_empty() {
+        " Indices of the actuated joints among all joints."
+    } else {
+        " Index of each actuator's joint among all joints; of a motor that drives several joints the first."
+    };
+    let terms = (!mechanism.motors.is_empty()).then(|| actuator_terms(mechanism));
     let kept = mechanism
         .kept_actuators
         .iter()
@@ -127,8 +134,9 @@ fn home(model: &RobotModel) -> TokenStream {
         .map(|&v| number(v, model.float));
     let kind = kind(model.float);
     quote! {
-        #[doc = " Indices of the actuated joints among all joints."]
+        #[doc = #of_joints]
         pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [#(#indices),*];
+        #terms
         #[doc = " Whether each actuator is revolute (rad, N m); otherwise it is prismatic (m, N)."]
         pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [#(#revolute),*];
         #[doc = " Kept actuators of the actuator projection (case 2)."]
@@ -137,6 +145,23 @@ fn home(model: &RobotModel) -> TokenStream {
         pub const HOME_POSE: [#kind; Self::POSE] = [#(#pose),*];
         #[doc = " Joint positions of the home configuration, which defines the working mode (m, rad)."]
         pub const HOME_JOINTS: [#kind; Self::JOINTS] = [#(#positions),*];
+    }
+}
+
+/// Joints that each actuator drives, with factors.
+fn actuator_terms(mechanism: &Mechanism) -> TokenStream {
+    let actuators = mechanism.actuators().into_iter();
+    let rows = actuators.map(|actuator| {
+        let terms = mechanism.actuator_terms(actuator).into_iter();
+        let terms = terms.map(|(joint, factor)| {
+            let (joint, factor) = (index(joint), number(factor.value(), Float::F64));
+            quote!((#joint, #factor))
+        });
+        quote!(&[#(#terms),*])
+    });
+    quote! {
+        #[doc = " Joints that each actuator drives: indices among all joints, with factors. Its position is the sum of theirs."]
+        pub const ACTUATOR_TERMS: [&'static [(::core::primitive::usize, ::core::primitive::f64)]; Self::ACTUATORS] = [#(#rows),*];
     }
 }
 
@@ -160,13 +185,17 @@ fn parameters(name: &str, doc: &str, model: &RobotModel, of: &[BodyParameter]) -
                 let symbol = symbol(s);
                 quote!(Parameter::of_platform(#name, StandardParameter::#symbol, #unit))
             }
-            BodyParameter::Payload(s) => {
+            BodyParameter::Payload(s) | BodyParameter::Load { symbol: s, .. } => {
                 let symbol = symbol(s);
                 quote!(Parameter::of_payload(#name, StandardParameter::#symbol, #unit))
             }
             BodyParameter::Spring(at) => {
                 let (symbol, at) = (symbol(parameter.symbol()), index(at));
                 quote!(Parameter::of_spring(#name, StandardParameter::#symbol, #unit, #at))
+            }
+            BodyParameter::Motor { motor, symbol: s } => {
+                let (symbol, at) = (symbol(s), index(motor));
+                quote!(Parameter::of_motor(#name, StandardParameter::#symbol, #unit, #at))
             }
         }
     });

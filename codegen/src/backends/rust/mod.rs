@@ -171,7 +171,7 @@ fn sizes(model: &RobotModel) -> String {
         " {}, {}, {}, {}; {}, {}.",
         counted(mechanism.legs.len(), "leg", "legs"),
         counted(mechanism.joints().len(), "joint", "joints"),
-        counted(mechanism.actuated().len(), "actuator", "actuators"),
+        counted(mechanism.actuator_count(), "actuator", "actuators"),
         counted(mechanism.dof(), "degree of freedom", "degrees of freedom"),
         counted(
             model.selection.standard.len(),

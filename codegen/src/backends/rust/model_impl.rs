@@ -45,6 +45,16 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
             }
         }
     });
+    let terms = (!mechanism.motors.is_empty()).then(|| {
+        quote! {
+            fn actuator_terms(
+                &self,
+                actuator: ::core::primitive::usize,
+            ) -> &[(::core::primitive::usize, ::core::primitive::f64)] {
+                Self::ACTUATOR_TERMS.get(actuator).copied().unwrap_or_default()
+            }
+        }
+    });
     quote! {
         impl #name {
             const SIZES: ::overact::Sizes = ::overact::Sizes {
@@ -109,6 +119,7 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
             #frames
 
             #pulls
+            #terms
         }
     }
 }
@@ -236,7 +247,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             #displace,
         )
     };
-    let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
+    let is_redundant = model.mechanism.actuator_count() > model.mechanism.dof();
     let (way, body) = match model.function(Function::PoseInClosedForm, MotionInput::Actuators) {
         Some(_) if is_redundant => (
             " The iteration starts from `pose_in_closed_form` if that is within 0.01 (m, rad) of `start`, otherwise from `start`, whose assembly mode it keeps. If that fails, the result is in the assembly mode of the home configuration.",

@@ -2,7 +2,7 @@
 
 use super::dimensions::{Dimension, Dimensions};
 use crate::lowering::{Array, Column, Elements, LaneOutput, Lanes, Program};
-use crate::mechanism::TwistCoordinate;
+use crate::mechanism::{Actuator, Motor, TwistCoordinate};
 use crate::model::{CompiledFunction, RobotModel};
 use overact_core::Function;
 use std::collections::BTreeSet;
@@ -269,7 +269,18 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
         all.iter().map(label).collect()
     };
     let all: Vec<usize> = (0..model.mechanism.joints().len()).collect();
-    let actuated = model.mechanism.actuated();
+    let actuators = |prefix: &str| -> Vec<Label> {
+        let motors = model.mechanism.motors.iter();
+        let label = |motor: &Motor| Label {
+            what: format!("{prefix}_{}", motor.name),
+            place: motor
+                .leg
+                .map_or_else(String::new, |leg| model.mechanism.legs[leg].name.clone()),
+        };
+        let mut labels = joints(prefix, &model.mechanism.actuated());
+        labels.extend(motors.map(label));
+        labels
+    };
     match name {
         "pose" => {
             let names = model.mechanism.pose_coordinates().into_iter();
@@ -280,10 +291,10 @@ fn input(model: &RobotModel, name: &str, count: usize) -> Vec<Label> {
         "joints" => joints("q", &all),
         "joint_velocities" => joints("qd", &all),
         "joint_accelerations" => joints("qdd", &all),
-        "actuators" => joints("q", &actuated),
-        "actuator_velocities" => joints("qd", &actuated),
-        "actuator_accelerations" => joints("qdd", &actuated),
-        "torques" => joints("tau", &actuated),
+        "actuators" => actuators("q"),
+        "actuator_velocities" => actuators("qd"),
+        "actuator_accelerations" => actuators("qdd"),
+        "torques" => actuators("tau"),
         "parameters" => {
             let all = model
                 .selection
@@ -354,9 +365,13 @@ fn row(model: &RobotModel, function: Function, row: usize) -> String {
         return joint(row);
     }
     if on_actuators {
-        let actuated = model.mechanism.actuated();
+        let actuators = model.mechanism.actuators();
         let kept = model.selection.kept_actuators.get(row);
-        return kept.map_or_else(String::new, |&kept| joint(actuated[kept]));
+        let label = |&kept: &usize| match actuators[kept] {
+            Actuator::Joint(at) => joint(at),
+            Actuator::Motor(at) => format!("q_{}", model.mechanism.motors[at].name),
+        };
+        return kept.map_or_else(String::new, label);
     }
     twist(model).get(row).cloned().unwrap_or_default()
 }

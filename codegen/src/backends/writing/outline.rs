@@ -89,7 +89,7 @@ fn arguments(model: &RobotModel, function: &CompiledFunction) -> Vec<Array> {
         match input.name.as_str() {
             "joints" if model.finds_joints(function) => {}
             "pose" if model.finds_pose(function) => {
-                arguments.push(array("actuators", model.mechanism.actuated().len()));
+                arguments.push(array("actuators", model.mechanism.actuator_count()));
             }
             _ => arguments.push(input.clone()),
         }
@@ -178,6 +178,7 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
             .unwrap_or_default()
     };
     let of_skeleton = model.mechanism.skeleton().is_some();
+    let driven = || model.mechanism.kind_of_actuators();
     Some(match name {
         "pose" if platform.is_some_and(|p| p.motion.has_quaternion()) => format!(
             "x = `[{}]` (m), in the base frame; the quaternion is scaled to length 1",
@@ -189,14 +190,14 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
         "twist" if of_skeleton => "v, velocities of the independent joints (m/s, rad/s)".to_owned(),
         "pose" => format!("x = `[{}]` (m, rad), in the base frame", coordinates()),
         "joints" => "q_t, all joint positions, leg by leg (m, rad)".to_owned(),
-        "actuators" => "q, positions of the actuated joints (m, rad)".to_owned(),
+        "actuators" => format!("q, positions of the {} (m, rad)", driven()),
         "twist" => format!("v = `[{}]` (m/s, rad/s), in the base frame", rates()),
         "acceleration" => "the derivative of `twist` (m/s², rad/s²)".to_owned(),
         "joint_velocities" => "velocities of the joints (m/s, rad/s)".to_owned(),
         "joint_accelerations" => "accelerations of the joints (m/s², rad/s²)".to_owned(),
-        "actuator_velocities" => "velocities of the actuated joints (m/s, rad/s)".to_owned(),
+        "actuator_velocities" => format!("velocities of the {} (m/s, rad/s)", driven()),
         "actuator_accelerations" => {
-            "accelerations of the actuated joints (m/s², rad/s²)".to_owned()
+            format!("accelerations of the {} (m/s², rad/s²)", driven())
         }
         "torques" => "τ, forces and torques of the actuators (N, N m)".to_owned(),
         "parameters" => {

@@ -3,4 +3,5 @@
 pub(crate) mod body;
 pub(crate) mod inertia;
 pub(crate) mod motion;
+pub(crate) mod payload;
 pub(crate) mod platform_body;

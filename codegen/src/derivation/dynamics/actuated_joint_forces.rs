@@ -19,6 +19,8 @@ pub(crate) struct ActuatedJointForces<'a> {
     rates: Vec<ActuatedRate>,
     /// Force on each actuator; empty if these forces are not separated.
     forces: Vec<Expr<'a>>,
+    /// Number of motors, which are the last actuators.
+    motors: usize,
 }
 
 impl<'a> ActuatedJointForces<'a> {
@@ -27,7 +29,8 @@ impl<'a> ActuatedJointForces<'a> {
     pub(crate) fn of(robot: &Robot<'a>) -> Self {
         let mechanism = robot.mechanism;
         let actuated = mechanism.actuated();
-        if actuated.len() != mechanism.dof() {
+        let count = mechanism.actuator_count();
+        if count != mechanism.dof() {
             return Self::default();
         }
         let joints = mechanism.joints();
@@ -42,7 +45,8 @@ impl<'a> ActuatedJointForces<'a> {
         };
         Self {
             rates: actuated.iter().enumerate().filter_map(rate).collect(),
-            forces: vec![robot.arena.zero(); actuated.len()],
+            forces: vec![robot.arena.zero(); count],
+            motors: mechanism.motors.len(),
         }
     }
 
@@ -58,6 +62,15 @@ impl<'a> ActuatedJointForces<'a> {
     /// Force on each actuator; empty if these forces are not separated.
     pub(crate) fn forces(&self) -> &[Expr<'a>] {
         &self.forces
+    }
+
+    /// Adds a torque at a motor; false if these forces are not separated.
+    pub(crate) fn add_at_motor(&mut self, motor: usize, torque: Expr<'a>) -> bool {
+        let first = self.forces.len().checked_sub(self.motors);
+        let own = first.and_then(|first| self.forces.get_mut(first + motor));
+        let Some(own) = own else { return false };
+        *own = *own + torque;
+        true
     }
 
     /// Actuator torques: these forces plus those that balance the rest.

@@ -59,6 +59,7 @@ impl<'a> Robot<'a> {
             twice = twice + twice_energy(&Inertia { mass, ..body }, &own);
         }
         arena.enter("");
+        twice = twice + self.twice_motor_energy(motion, values);
         Some(twice * arena.number(Number::ratio(Ratio::new(1, 2)?)))
     }
 

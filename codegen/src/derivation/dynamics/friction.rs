@@ -21,26 +21,35 @@ impl<'a> Robot<'a> {
         symbol: StandardParameter,
         rate: impl Fn() -> Expr<'a>,
     ) -> Option<Expr<'a>> {
-        use StandardParameter as P;
-        let one = || self.arena.one();
-        Some(match symbol {
-            P::Fv => rate(),
-            P::Fs => rate().sign(),
-            P::FvPos => (rate() + magnitude(rate())) * half(),
-            P::FvNeg => (rate() - magnitude(rate())) * half(),
-            P::FsPos => (rate().sign() + one()) * half(),
-            P::FsNeg => (rate().sign() - one()) * half(),
-            P::Fst => {
-                let velocity = self.mechanism.joint(at).stribeck;
-                velocity.map_or_else(
-                    || self.arena.zero(),
-                    |velocity| stribeck(self.arena, rate(), velocity),
-                )
-            }
-            P::Fl => rate().sign() * magnitude(self.load(at)),
-            _ => return None,
-        })
+        let velocity = self.mechanism.joint(at).stribeck;
+        friction(self.arena, symbol, &rate, velocity, &|| self.load(at))
     }
+}
+
+/// Friction at a rate per unit of a parameter; `None` if it is no friction parameter.
+pub(crate) fn friction<'a>(
+    arena: &'a Arena,
+    symbol: StandardParameter,
+    rate: &dyn Fn() -> Expr<'a>,
+    velocity: Option<Number>,
+    load: &dyn Fn() -> Expr<'a>,
+) -> Option<Expr<'a>> {
+    use StandardParameter as P;
+    let one = || arena.one();
+    Some(match symbol {
+        P::Fv => rate(),
+        P::Fs => rate().sign(),
+        P::FvPos => (rate() + magnitude(rate())) * half(),
+        P::FvNeg => (rate() - magnitude(rate())) * half(),
+        P::FsPos => (rate().sign() + one()) * half(),
+        P::FsNeg => (rate().sign() - one()) * half(),
+        P::Fst => velocity.map_or_else(
+            || arena.zero(),
+            |velocity| stribeck(arena, rate(), velocity),
+        ),
+        P::Fl => rate().sign() * magnitude(load()),
+        _ => return None,
+    })
 }
 
 /// sign(q̇) / (1 + (q̇/v)²).

@@ -7,6 +7,7 @@ pub(crate) mod energy;
 mod formula;
 pub(crate) mod friction;
 pub(crate) mod masses;
+pub(crate) mod motor;
 pub(crate) mod newton_euler;
 mod point_spring;
 mod spring;

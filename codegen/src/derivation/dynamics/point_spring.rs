@@ -8,6 +8,7 @@
 use super::formula::{Variable, expression};
 use crate::cas::{Expr, Vector3};
 use crate::derivation::bodies::motion::RobotMotion;
+use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::guard::{Guard, GuardKind};
 use crate::derivation::kinematics::path::{KnownMotion, Path, orientation};
 use crate::derivation::linear_algebra::linear::{add_to, dot};
@@ -96,7 +97,32 @@ impl<'a> Robot<'a> {
         guards
     }
 
-    /// (∂l/∂v)ᵀ times a force; zero if the configuration does not determine it.
+    /// Checks that the configuration determines the forces of all springs between points.
+    ///
+    /// # Errors
+    /// A spring whose length does not follow from the configuration, or whose force has no value.
+    pub(crate) fn check_point_springs(&self) -> Result<(), DerivationError> {
+        for spring in &self.mechanism.springs {
+            self.arena.enter(self.place(spring));
+            let undetermined = || DerivationError::UndeterminedSpring {
+                spring: spring.name.clone(),
+            };
+            let length = self.length(spring).ok_or_else(undetermined)?;
+            let stretch = Stretch {
+                length: length.length,
+                rate: self.arena.zero(),
+            };
+            let force = spring.force.as_ref().map(|force| &force.formula);
+            for formula in [force, spring.known.as_ref()].into_iter().flatten() {
+                let force = expression(self.arena, &stretch, formula, &mut Vec::new());
+                force.ok_or_else(undetermined)?;
+            }
+        }
+        self.arena.enter("");
+        Ok(())
+    }
+
+    /// (∂l/∂v)ᵀ times a force, which [`Self::check_point_springs`] has found to be determined.
     fn along(
         &self,
         spring: &PointSpring,

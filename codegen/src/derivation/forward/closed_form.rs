@@ -53,13 +53,13 @@ struct Work<'a> {
     normal: Option<usize>,
 }
 
-/// The closed form, if the robot has one.
+/// The closed form, if the robot has one; motors may drive joints of several legs at once.
 #[must_use]
 pub(crate) fn closed_form<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
 ) -> Option<ClosedForm<'a>> {
-    if mechanism.has_cables() {
+    if mechanism.has_cables() || !mechanism.motors.is_empty() {
         return None;
     }
     let motion = mechanism.platform.as_ref()?.motion;

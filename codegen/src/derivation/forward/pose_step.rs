@@ -22,8 +22,8 @@ use crate::derivation::context::DerivationContext;
 use crate::derivation::guard::GuardKind;
 use crate::derivation::linear_algebra::elimination::{Rows, adjugate};
 use crate::derivation::linear_algebra::linear::{apply, dot, product};
-use crate::mechanism::JointKind;
 use crate::mechanism::numeric::best_conditioned;
+use crate::mechanism::{Actuator, JointKind};
 use nalgebra::DMatrix;
 use overact_core::ActuatorGroup;
 
@@ -77,10 +77,15 @@ impl<'a> DerivationContext<'a, '_> {
         let measured = self.input("actuators", positions.len());
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let (configuration, joints) = (&self.robot.configuration, mechanism.joints());
-        let actuated = mechanism.actuated().into_iter().enumerate();
-        let difference = |(k, index): (usize, usize)| {
-            let unit = match mechanism.joint(joints[index]).kind {
-                JointKind::Revolute => configuration.unit(&configuration.joint_angle(index)),
+        let actuators = mechanism.actuators().into_iter().enumerate();
+        let difference = |(k, actuator): (usize, Actuator)| {
+            // The position of a motor may be the sum of several angles, without whole turns.
+            let unit = match actuator {
+                Actuator::Joint(index)
+                    if mechanism.joint(joints[index]).kind == JointKind::Revolute =>
+                {
+                    configuration.unit(&configuration.joint_angle(index))
+                }
                 _ => None,
             };
             let Some(CosineSine { cosine, sine }) = unit.map(unscaled) else {
@@ -93,8 +98,8 @@ impl<'a> DerivationContext<'a, '_> {
             );
             (s * cosine - c * sine).atan2(c * cosine + s * sine)
         };
-        let named = |at: (usize, usize)| difference(at).named(&format!("missed_{}", at.0 + 1));
-        actuated.map(named).collect()
+        let named = |at: (usize, Actuator)| difference(at).named(&format!("missed_{}", at.0 + 1));
+        actuators.map(named).collect()
     }
 
     /// Guards determinants of blocks that may vanish although J is regular.

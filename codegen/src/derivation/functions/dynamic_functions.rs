@@ -2,6 +2,7 @@
 //! inverse dynamics with given parameters.
 
 use crate::cas::{Expr, Number};
+use crate::derivation::bodies::payload::on_body;
 use crate::derivation::context::{DerivationContext, Owner, column};
 use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::dynamics::actuated_joint_forces::ActuatedJointForces;
@@ -131,7 +132,8 @@ impl<'a> DerivationContext<'a, '_> {
                 let value = value(&one).map_or(0.0, |&(_, value)| value);
                 (one, self.robot.arena.number(Number::float(value)))
             };
-            return all.into_iter().map(number).collect();
+            let values = all.into_iter().map(number).collect();
+            return self.on_bodies(values);
         }
         let input = match of {
             Columns::Standard => Input::Parameters,
@@ -139,7 +141,24 @@ impl<'a> DerivationContext<'a, '_> {
         };
         let values = self.input(input.name(), all.len());
         let values = all.into_iter().zip(values);
-        values.filter(|(of, _)| self.owner.has(*of)).collect()
+        let values = values.filter(|(of, _)| self.owner.has(*of)).collect();
+        self.on_bodies(values)
+    }
+
+    /// Parameters of payloads with tables of their own as those of the bodies that carry them.
+    fn on_bodies(&self, values: Vec<(BodyParameter, Expr<'a>)>) -> Vec<(BodyParameter, Expr<'a>)> {
+        let (arena, payloads) = (self.robot.arena, &self.robot.mechanism.payloads);
+        let mut all = Vec::with_capacity(values.len());
+        for (parameter, value) in values {
+            match parameter {
+                BodyParameter::Load { payload, symbol } => {
+                    let terms = on_body(arena, &payloads[payload], symbol).into_iter();
+                    all.extend(terms.map(|(of_body, factor)| (of_body, factor * value)));
+                }
+                _ => all.push((parameter, value)),
+            }
+        }
+        all
     }
 
     /// Γ¹ for given parameters.
@@ -179,6 +198,8 @@ impl<'a> DerivationContext<'a, '_> {
                 &mut forces,
                 self.robot.point_spring_forces(&motion, &values),
             );
+            let of_motors = self.robot.motor_forces(&motion, &values, actuators);
+            add_to(&mut forces, of_motors);
         }
         forces
     }
@@ -284,6 +305,10 @@ impl<'a> DerivationContext<'a, '_> {
     /// M for given parameters, from bodies summed from the tips to the base.
     pub(crate) fn mass_matrix(&mut self, of: Columns) -> Rows<'a> {
         let values = self.parameter_values(of);
-        self.robot.masses(&values).unwrap_or_default()
+        let mut masses = self.robot.masses(&values).unwrap_or_default();
+        if !matches!(self.owner, Owner::Leg(_)) {
+            self.robot.add_rotors(&mut masses, &values);
+        }
+        masses
     }
 }

@@ -17,10 +17,11 @@ pub fn inventory(mechanism: &Mechanism, selection: &Selection) -> Vec<FunctionFo
         .platform
         .as_ref()
         .is_some_and(|p| p.payload.is_some());
+    let payload = payload || !mechanism.payloads.is_empty();
     let closed = closed_form(&Arena::new(), mechanism).is_some();
     let has = |function: &Function| match function.condition() {
         Condition::Platform => !tree,
-        Condition::Redundancy => mechanism.actuated().len() > mechanism.dof(),
+        Condition::Redundancy => mechanism.actuator_count() > mechanism.dof(),
         Condition::Payload => payload,
         Condition::ClosedForm => closed,
         Condition::NumericJoints => joints == JointsBy::Newton,

@@ -12,7 +12,7 @@ impl<'a> DerivationContext<'a, '_> {
     pub(crate) fn twist(&mut self) -> Vec<Expr<'a>> {
         let tree = self.robot.mechanism.is_tree();
         if self.from == MotionInput::Actuators {
-            let rates = self.input("actuator_velocities", self.robot.mechanism.actuated().len());
+            let rates = self.input("actuator_velocities", self.robot.mechanism.actuator_count());
             self.twist = self.least_squares(&rates);
             self.name_coordinates(&self.twist, "");
             return self.twist.clone();
@@ -60,11 +60,10 @@ impl<'a> DerivationContext<'a, '_> {
             .collect()
     }
 
-    /// Positions of the actuated joints.
+    /// Positions of the actuators.
     pub(crate) fn actuator_positions(&mut self) -> Vec<Expr<'a>> {
         let all = self.joint_positions();
-        let actuated = self.robot.mechanism.actuated();
-        actuated.iter().map(|&i| all[i]).collect()
+        self.robot.of_actuators(&all)
     }
 
     /// (J_p^inv)⁺, which is J_p for as many actuators as coordinates.
@@ -79,14 +78,15 @@ impl<'a> DerivationContext<'a, '_> {
 
     /// v̇ by least squares: J_p^inv v̇ = q̈ - J̇_p^inv v, where the last term is q̈ at v̇ = 0.
     pub(crate) fn acceleration_of(&mut self, twist: &[Expr<'a>]) -> Vec<Expr<'a>> {
-        let actuated = self.robot.mechanism.actuated();
-        let measured = self.input("actuator_accelerations", actuated.len());
+        let count = self.robot.mechanism.actuator_count();
+        let measured = self.input("actuator_accelerations", count);
         let still = self.zeros();
         let bias = self.joint_motion(twist, &still).1;
+        let bias = self.robot.of_actuators(&bias);
         let rest: Vec<Expr<'a>> = measured
             .iter()
-            .zip(&actuated)
-            .map(|(m, &i)| *m - bias[i])
+            .zip(&bias)
+            .map(|(measured, bias)| *measured - *bias)
             .collect();
         self.least_squares(&rest)
     }

@@ -5,17 +5,22 @@ use crate::derivation::context::{DerivationContext, column};
 use crate::derivation::kinematics::frames::independent_columns;
 use crate::derivation::linear_algebra::elimination::{Rows, inverse};
 use crate::derivation::robot::constraints::placement_error;
+use crate::mechanism::Actuator;
 
 impl<'a> DerivationContext<'a, '_> {
-    /// A_p (n × r) and B_p (n × n), eq. (11): the rows of the legs' adjugates.
+    /// A_p (n × r) and B_p (n × n), eq. (11): the rows of the legs' adjugates. A motor that drives
+    /// several joints has its rows of J_p^inv and of minus the identity.
     pub(crate) fn closure_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let joints = mechanism.joints();
         let jacobian = self.robot.inverse_jacobian();
-        let actuated = mechanism.actuated();
-        let n = actuated.len();
+        let actuators = mechanism.actuators();
+        let n = actuators.len();
         let scale = |k: usize| {
-            let leg = joints[actuated[k]].leg;
+            let Actuator::Joint(joint) = actuators[k] else {
+                return arena.one();
+            };
+            let leg = joints[joint].leg;
             let closure = self.robot.legs[leg].closure.as_ref();
             if mechanism.is_parasitic() {
                 self.determinant(leg).unwrap_or_else(|| arena.one())
@@ -27,11 +32,11 @@ impl<'a> DerivationContext<'a, '_> {
         let platform = (0..n)
             .map(|k| jacobian[k].iter().map(|&g| g * scales[k]).collect())
             .collect();
-        let diagonal = |i: usize, j: usize| if i == j { -scales[i] } else { arena.zero() };
-        let actuators = (0..n)
-            .map(|i| (0..n).map(|j| diagonal(i, j)).collect())
+        let entry = |i: usize, j: usize| if i == j { -scales[i] } else { arena.zero() };
+        let diagonal = (0..n)
+            .map(|i| (0..n).map(|j| entry(i, j)).collect())
             .collect();
-        (platform, actuators)
+        (platform, diagonal)
     }
 
     /// Determinant of a leg's rows of J_k, if the leg is solved in other axes.

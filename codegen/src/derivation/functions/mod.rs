@@ -164,7 +164,7 @@ fn pose_in_closed_form<'a>(
         leg,
     });
     Ok(Derived {
-        inputs: vec![("actuators", mechanism.actuated().len())],
+        inputs: vec![("actuators", mechanism.actuator_count())],
         shape: (found.pose.len(), 1),
         entries: found.pose,
         guards: guards.collect(),
@@ -175,7 +175,7 @@ fn pose_in_closed_form<'a>(
 impl<'a> DerivationContext<'a, '_> {
     /// The output of each function, row by row.
     fn rows(&mut self, function: Function) -> Result<Rows<'a>, DerivationError> {
-        let n = self.robot.mechanism.actuated().len();
+        let n = self.robot.mechanism.actuator_count();
         Ok(match function {
             Function::PoseInClosedForm | Function::TotalMass => {
                 return Err(DerivationError::ForwardKinematics);

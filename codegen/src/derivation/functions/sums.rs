@@ -219,7 +219,7 @@ fn upper<'a>(matrix: &Rows<'a>) -> Vec<Expr<'a>> {
 impl<'a> DerivationContext<'a, '_> {
     /// Contributions of the first leg and of the platform to each sum, and the first leg's rows.
     fn addends(&mut self, function: Function) -> Option<Parts<'a>> {
-        let n = self.robot.mechanism.actuated().len();
+        let n = self.robot.mechanism.actuator_count();
         let mut parts = Parts::default();
         for owner in [Owner::Leg(0), Owner::Platform] {
             self.owner = owner;

@@ -40,7 +40,10 @@ impl<'a> Robot<'a> {
         if let Some(body) = &motion.platform {
             let own = |p: BodyParameter| match p {
                 BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => Some(symbol),
-                BodyParameter::Leg { .. } | BodyParameter::Spring(_) => None,
+                BodyParameter::Leg { .. }
+                | BodyParameter::Load { .. }
+                | BodyParameter::Spring(_)
+                | BodyParameter::Motor { .. } => None,
             };
             let wrench = self.wrench(values, &own, &|s| body.unit_wrench(self.arena, s));
             self.name_wrench(&wrench, "", "platform");

@@ -10,10 +10,11 @@ mod forces;
 
 use crate::cas::{Arena, Expr, Number, Vector3};
 use crate::derivation::bodies::motion::RobotMotion;
+use crate::derivation::bodies::payload::on_body;
 use crate::derivation::bodies::platform_body::PlatformBody;
 use crate::derivation::derivation_error::DerivationError;
 use crate::derivation::linear_algebra::elimination::{Rows, inverse};
-use crate::derivation::linear_algebra::linear::{dot, product, transposed};
+use crate::derivation::linear_algebra::linear::{add_to, dot, product, transposed};
 use crate::derivation::parameter::BodyParameter;
 use crate::derivation::robot::Robot;
 use crate::derivation::selection::Combination;
@@ -124,6 +125,20 @@ impl<'a> Robot<'a> {
                 } else {
                     self.combine(&projection.platform, &forces)
                 }
+            }
+            BodyParameter::Load { payload, symbol } => {
+                let payload = &self.mechanism.payloads[payload];
+                let mut sum = vec![self.arena.zero(); self.mechanism.dof()];
+                for (of_body, factor) in on_body(self.arena, payload, symbol) {
+                    let column = self.column(motion, projection, of_body).into_iter();
+                    add_to(&mut sum, column.map(|entry| entry * factor).collect());
+                }
+                sum
+            }
+            BodyParameter::Motor { motor, symbol } => {
+                let force = self.motor_force(motion, motor, symbol);
+                let row = self.motor_row(motor, &projection.legs);
+                row.iter().map(|&g| g * force).collect()
             }
             BodyParameter::Platform(symbol) | BodyParameter::Payload(symbol) => {
                 self.arena.enter("platform");

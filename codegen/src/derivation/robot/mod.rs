@@ -4,6 +4,7 @@
 pub(crate) mod constraints;
 pub(crate) mod derivable;
 mod legs;
+mod motors;
 mod naming;
 
 use crate::cas::{Arena, Expr, Vector3};
@@ -266,15 +267,16 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// J_p^inv, n × r: the rows of the actuated joints in the reduced Jacobians.
+    /// J_p^inv, n × r: the rows of the actuated joints in the reduced Jacobians, then those of the
+    /// motors.
     #[must_use]
     pub fn inverse_jacobian(&self) -> Rows<'a> {
         let all = self.joint_rows();
-        self.mechanism
-            .actuated()
-            .iter()
-            .map(|&i| all[i].clone())
-            .collect()
+        let actuated = self.mechanism.actuated();
+        let mut rows: Rows<'a> = actuated.iter().map(|&i| all[i].clone()).collect();
+        let legs: Vec<&Rows<'a>> = self.legs.iter().map(|state| &state.rows).collect();
+        rows.extend((0..self.mechanism.motors.len()).map(|motor| self.motor_row(motor, &legs)));
+        rows
     }
 
     /// Generalised forces on the actuated joints for their torques, and the reverse: a tension

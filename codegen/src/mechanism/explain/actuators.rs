@@ -5,7 +5,7 @@ use crate::mechanism::mobility::Mobility;
 use crate::mechanism::parasitic::{Parasitic, Rated};
 use crate::mechanism::singular_values::SingularValues;
 use crate::mechanism::states::random_states;
-use crate::mechanism::{Home, Leg, Mechanism};
+use crate::mechanism::{Home, Mechanism};
 use nalgebra::DMatrix;
 use overact_description::Description;
 use overact_description::SIX;
@@ -17,7 +17,7 @@ pub(in crate::mechanism) fn too_few_actuators(
     mechanism: &Mechanism,
     left: Option<(Mobility, Option<Parasitic>)>,
 ) -> Diagnostic {
-    let (dof, count) = (mechanism.dof(), mechanism.actuated().len());
+    let (dof, count) = (mechanism.dof(), mechanism.actuator_count());
     let motion = description.platform.as_ref().map(|p| &p.motion);
     let span = motion.map_or(description.name.span.clone(), |m| m.span.clone());
     let actuators = if count == 1 { "actuator" } else { "actuators" };
@@ -43,6 +43,9 @@ pub(in crate::mechanism) fn too_few_actuators(
             format!(
                 "the legs allow the platform only {left} of these {dof} motions ({words}), so more actuators do not help: {way}"
             )
+        }
+        _ if !mechanism.motors.is_empty() => {
+            "mark more joints with actuated = true, or give more motors: a joint that a motor turns has no actuator of its own".to_owned()
         }
         _ => "mark more joints with actuated = true".to_owned(),
     };
@@ -120,9 +123,13 @@ fn words(directions: &[usize]) -> String {
 
 /// The legs with passive joints only, where the missing actuator may belong.
 fn legs_without_actuator(mechanism: &Mechanism) -> String {
-    let passive = |leg: &&Leg| leg.joints.iter().all(|joint| !joint.actuated);
-    let names = mechanism.legs.iter().filter(passive);
-    let names: Vec<&str> = names.map(|leg| leg.name.as_str()).collect();
+    let all = mechanism.joints();
+    let driven = mechanism.actuators().into_iter();
+    let driven = driven.flat_map(|actuator| mechanism.actuator_terms(actuator));
+    let driven: Vec<usize> = driven.map(|(joint, _)| all[joint].leg).collect();
+    let legs = mechanism.legs.iter().enumerate();
+    let names = legs.filter(|(index, _)| !driven.contains(index));
+    let names: Vec<&str> = names.map(|(_, leg)| leg.name.as_str()).collect();
     if names.is_empty() {
         "every leg has an actuator".to_owned()
     } else {
@@ -153,7 +160,7 @@ pub(in crate::mechanism) fn underactuated(
     let span = span.unwrap_or(description.name.span.clone());
     let jacobian = |mechanism: &Mechanism| {
         let rates = mechanism.rates_at_home()?;
-        Some(rates.select_rows(&mechanism.actuated()))
+        Some(mechanism.actuator_rows(&rates))
     };
     let owner = owner(mechanism);
     // Poses near home show whether only home is singular.
@@ -166,6 +173,12 @@ pub(in crate::mechanism) fn underactuated(
     let twins = jacobian(mechanism).map_or_else(Vec::new, |j| twins(mechanism, &j));
     let (message, help) = if everywhere {
         let help = match twins.first() {
+            Some((a, b)) if !mechanism.motors.is_empty() => format!(
+                "the motors `{a}` and `{b}` have the same effect: let one of them turn another combination of joints"
+            ),
+            None if !mechanism.motors.is_empty() => {
+                "let the motors turn other combinations of joints".to_owned()
+            }
             Some((a, b)) if mechanism.platform.is_none() => {
                 format!("the motors `{a}` and `{b}` have the same effect: actuate another joint")
             }

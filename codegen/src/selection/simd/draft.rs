@@ -102,7 +102,7 @@ impl Draft<'_> {
         let of = |at: usize, name: &str| match name {
             _ if at == array => Elements::Constants,
             "joints" => Elements::InTurn(joints),
-            "torques" | "actuators" => Elements::InTurn(mechanism.actuated().len() / legs),
+            "torques" | "actuators" => Elements::InTurn(mechanism.actuator_count() / legs),
             _ => Elements::Shared,
         };
         let inputs = program.inputs.iter().enumerate();

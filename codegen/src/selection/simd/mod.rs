@@ -65,6 +65,11 @@ pub(crate) fn lane_program(
     if legs < LEGS || assembler.selection.values.is_some() {
         return None;
     }
+    // Motors that drive joints of several legs belong to none of them, and payloads to one.
+    let mechanism = assembler.mechanism;
+    if !mechanism.motors.is_empty() || !mechanism.payloads.is_empty() {
+        return None;
+    }
     let operations = straight.cost().operations();
     let pays = pays(function, from, legs, operations)?;
     let template = Template::of(assembler.mechanism)?;

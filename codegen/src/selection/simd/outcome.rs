@@ -230,7 +230,7 @@ fn at_state(assembler: &Assembler<'_>, state: &State, name: &str) -> Option<Vec<
         "twist" => Some(state.twist.clone()),
         "acceleration" => Some(state.acceleration.clone()),
         "torques" | "actuators" => {
-            let count = assembler.mechanism.actuated().len();
+            let count = assembler.mechanism.actuator_count();
             Some((0..count).map(|at| (at as f64).sin()).collect())
         }
         _ => of_body(assembler, name),

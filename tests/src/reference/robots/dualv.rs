@@ -70,5 +70,6 @@ pub fn dualv() -> Mechanism {
         workspace: vec![0.1, 0.1, 0.4],
         legs: (0..4).map(leg).collect(),
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }

@@ -80,6 +80,7 @@ pub fn two_slides() -> Mechanism {
         workspace: vec![0.3],
         legs: vec![direct, inclined],
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }
 
@@ -122,5 +123,6 @@ fn point_robot(legs: Vec<Leg>, home: Vec<f64>, gravity: [f64; 3]) -> Mechanism {
         workspace: vec![0.1, 0.1],
         legs,
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }

@@ -43,6 +43,7 @@ pub fn serial_3r() -> Mechanism {
             start: vec![0.3, -0.4, 0.7],
         }],
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }
 
@@ -87,5 +88,6 @@ pub fn branched_arm() -> Mechanism {
             start,
         }],
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }

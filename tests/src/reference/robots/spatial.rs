@@ -83,6 +83,7 @@ fn ups_robot(motion: Motion, base: &[f64], platform: &[f64], height: f64) -> Mec
         workspace,
         legs,
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }
 

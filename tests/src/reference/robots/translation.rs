@@ -43,6 +43,7 @@ pub fn delta() -> Mechanism {
         workspace: vec![0.15, 0.15, 0.12],
         legs: (0..3).map(leg).collect(),
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }
 
@@ -87,5 +88,6 @@ pub fn tilted_tripteron() -> Mechanism {
         workspace: vec![0.1; 3],
         legs: (0..3).map(leg).collect(),
         elements: Vec::new(),
+        motors: Vec::new(),
     }
 }

@@ -57,6 +57,7 @@ impl Sketch {
             workspace: Vec::new(),
             legs: self.shapes.iter().flat_map(of_shape).collect(),
             elements: Vec::new(),
+            motors: Vec::new(),
         }
     }
 
