@@ -6,6 +6,7 @@ use crate::experiments::transmission;
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::JointKind;
+use crate::robot::model::actuators;
 use crate::robot::warnings;
 use crate::toml_text::reader::{Item, Table};
 

@@ -100,12 +100,7 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
 }
 
 /// A check that fails for these parameters; `inertias` are those that a quasi-static run loses.
-fn refused(
-    estimate: &Estimate,
-    check: Check,
-    spoiled: Vec<String>,
-    inertias: &[String],
-) -> Check {
+fn refused(estimate: &Estimate, check: Check, spoiled: Vec<String>, inertias: &[String]) -> Check {
     let grade = if spoiled == inertias {
         // Nothing else is lost, and such runs are a way to determine weights and friction.
         Grade::UseListed
