@@ -69,8 +69,8 @@ fn differ(robot: &Robot) -> Result<(), Failure> {
                 }
             };
             let own = |state: &State| Ok(value(of, state, &sample)?.column(0).into_owned());
-            // States with a joint rate close to zero have no differences.
-            let Ok(wanted) = differences(mechanism.dof(), state, &moved, &own) else {
+            // Next to a change of sign there are no differences.
+            let Ok(wanted) = differences(mechanism.dof(), &moved, &own) else {
                 continue;
             };
             let found = value(function, state, &sample)?;
