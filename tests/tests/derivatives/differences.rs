@@ -15,7 +15,7 @@ use overact_tier::by_tier;
 /// Largest difference, relative to the largest entry of a matrix.
 const TOLERANCE: f64 = 1e-7;
 /// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [3, 30];
+const STATES: [usize; 2] = [1, 10];
 
 all_robots!(differ);
 

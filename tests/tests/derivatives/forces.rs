@@ -12,7 +12,7 @@ use overact_tier::by_tier;
 /// Robots that get springs on all joints and between bodies, in the default tier and in the full
 /// one.
 const ROBOTS: [&[&str]; 2] = [
-    &["dualv", "spatial_3prs"],
+    &["dualv"],
     &[
         "dualv",
         "excavator",
