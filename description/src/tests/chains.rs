@@ -165,9 +165,9 @@ fn branches_in_the_wrong_place() {
     );
 }
 
-/// With several legs, parameter names contain the leg, so a payload is not recognised.
+/// With several legs, parameter names contain the leg, so a fixed joint is not recognised as payload.
 #[test]
-fn a_skeleton_carries_no_payload() {
+fn a_payload_of_a_skeleton_has_a_table() {
     let fixed = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n[leg.rod]";
     let text = robot("", "body = \"fore\"")
         .replacen("[leg.rod]", fixed, 1)
@@ -175,9 +175,14 @@ fn a_skeleton_carries_no_payload() {
     let errors = listed(&text);
     assert!(
         errors[0].contains("payloads have names, but the robot has no payload")
-            && errors[0].contains("supported on robots with a platform, or without loops"),
+            && errors[0].contains("describe it in a table [payload.NAME]"),
         "{errors:?}"
     );
+    let own = "[payload.box]\nbody = \"fore\"\n[leg.arm]";
+    let text = robot("", "body = \"fore\"").replacen("[leg.arm]", own, 1);
+    let robot = super::good(&text);
+    assert_eq!(robot.payload_bodies.len(), 1);
+    assert_eq!(robot.payloads[0].value, "box");
 }
 
 #[test]
