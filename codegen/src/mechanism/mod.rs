@@ -295,8 +295,9 @@ impl Mechanism {
     #[must_use]
     pub fn pulls(&self) -> Vec<bool> {
         let joints = self.joints();
-        let is_cable = |&at: &usize| self.legs[joints[at].leg].cable.is_some();
-        self.actuated().iter().map(is_cable).collect()
+        let is_cable = |at: usize| self.legs[joints[at].leg].cable.is_some();
+        let of_joints = self.actuated().into_iter().map(is_cable);
+        of_joints.chain(self.motors.iter().map(|_| false)).collect()
     }
 
     /// Least torque of each actuator: the minimum tension of a cable, N; `None` for other
@@ -306,7 +307,9 @@ impl Mechanism {
         let joints = self.joints();
         let cable = |&at: &usize| self.legs[joints[at].leg].cable.as_ref();
         let least = |at: &usize| cable(at).map(|cable| cable.minimum.value());
-        self.actuated().iter().map(least).collect()
+        let of_joints = self.actuated();
+        let of_motors = self.motors.iter().map(|_| None);
+        of_joints.iter().map(least).chain(of_motors).collect()
     }
 
     /// Whether the robot has no loop: neither a platform nor chains.
