@@ -274,7 +274,7 @@ impl<'a> DerivationContext<'a, '_> {
         });
         let columns: Rows<'a> = signed.collect();
         if columns.is_empty() {
-            return Ok(vec![Vec::new(); self.robot.mechanism.actuated().len()]);
+            return Ok(vec![Vec::new(); self.robot.mechanism.actuator_count()]);
         }
         Ok(transposed(&columns))
     }
