@@ -531,10 +531,10 @@ fn a_slack_cable_is_named() {
 }
 
 #[test]
-fn a_drifting_load_cell_is_named() {
+fn a_drifting_load_cell_is_refused() {
     let Some(log) = measured() else { return };
     let text = ocdpr("[\"fs\"]").replace("\"$7\"", "\"$7 + 1.0 * ($1 - 11)\"");
-    let words = failed(&identified(&text, &log));
-    println!("{words}");
-    assert!(words.contains("drift"), "{words}");
+    let found = identified(&text, &log);
+    println!("{}", failed(&found));
+    assert_eq!(found.grade(), overact_identification::Grade::DoNotUse);
 }

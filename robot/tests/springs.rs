@@ -116,17 +116,6 @@ fn refused(table: &str) -> String {
 }
 
 #[test]
-fn a_spring_of_constant_length_has_no_effect() {
-    // From the base joint's axis to a point of the link that turns about it.
-    let between_links = "[[spring]]\nname = \"stiff\"\nfrom = { body = \"left.1\" }\nto = { body = \"left.2\", at = [0, 0, \"0.1 m\"] }\nforce = \"l\"\n";
-    let error = refused(between_links);
-    assert!(
-        error.contains("the length of the spring `stiff` is constant"),
-        "{error}"
-    );
-}
-
-#[test]
 fn a_force_without_value_at_home_is_named() {
     let text = "[[spring]]\nname = \"root\"\nfrom = { body = \"ground\", at = [\"0.1 m\", \"1 m\", 0] }\nto = { body = \"left.2\", at = [\"0.1 m\", 0, 0] }\nforce = \"sqrt(l^2 - (100 m)^2)\"\n";
     let error = refused(text);

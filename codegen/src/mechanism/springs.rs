@@ -1,7 +1,6 @@
-//! Lengths of springs between points, which must neither vanish at home nor be constant.
+//! Lengths of springs between points, which must not vanish at home.
 
 use super::numeric::platform_frame;
-use super::states::{State, random_states};
 use super::{Mechanism, PointSpring, SpringBody, SpringEnd};
 use nalgebra::Point3;
 use overact_description::Description;
@@ -9,13 +8,6 @@ use overact_description::diagnostic::{Code, Diagnostic, Diagnostics};
 
 /// Length relative to the robot's below which it counts as zero.
 const NOTHING: f64 = 1e-6;
-
-/// Change of a length, relative to the robot's, below which it counts as constant.
-const CONSTANT: f64 = 1e-9;
-
-/// States at which a length has to differ from that of home, and their seed.
-const STATES: usize = 4;
-const SEED: u64 = 1;
 
 impl Mechanism {
     /// Length of a spring in a configuration, m.
@@ -37,7 +29,7 @@ impl Mechanism {
     }
 }
 
-/// Reports springs whose force has no direction or no value at home, and those without effect.
+/// Reports springs whose force has no direction or no value at home.
 pub(super) fn check_springs(
     description: &Description,
     mechanism: &Mechanism,
@@ -47,14 +39,9 @@ pub(super) fn check_springs(
         return;
     }
     let scale = mechanism.length_scale();
-    let states = random_states(mechanism, STATES, SEED);
     let (pose, joints) = (&mechanism.home.pose, &mechanism.home.joints);
     for (given, spring) in description.springs.iter().zip(&mechanism.springs) {
         let length = mechanism.spring_length(spring, pose, joints);
-        let varies = |state: &State| {
-            let there = mechanism.spring_length(spring, &state.pose, &state.joints);
-            (there - length).abs() > CONSTANT * scale
-        };
         let force = spring.force.as_ref().map(|force| &force.formula);
         let mut formulas = force.into_iter().chain(&spring.known);
         let has_value = formulas.all(|formula| formula.value(length).is_finite());
@@ -71,14 +58,6 @@ pub(super) fn check_springs(
                     significant(length)
                 ),
                 "a root of a negative number or a division by zero: correct `force` or `known`, or `at` of its points",
-            )
-        } else if !states.iter().any(varies) {
-            (
-                format!(
-                    "the length of the spring `{name}` is constant, {} m: its force has no effect",
-                    significant(length)
-                ),
-                "its points are on bodies that keep their distance, or on the axis between them: correct `body` or `at`, or leave the spring out",
             )
         } else {
             continue;

@@ -35,6 +35,14 @@ actuated = true
 [[leg.slide.motor]]
 zzzz16 = 1
 turns = "q1"
+[leg.wire]
+zzzz22 = 1
+type = "cable"
+[leg.wire.end]
+at = [0, 0, 0]
+[[place]]
+name = "wire"
+shape = "wire"
 [[place]]
 zzzz8 = 1
 name = "slide"
@@ -75,7 +83,7 @@ terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and the text before the keys there.
-const SECTIONS: [(&str, &str); 22] = [
+const SECTIONS: [(&str, &str); 23] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -107,6 +115,7 @@ const SECTIONS: [(&str, &str); 22] = [
         "from.",
     ),
     ("### `[payload.NAME]`: payloads on bodies", ""),
+    ("#### Cables", ""),
 ];
 
 fn folder(path: &str) -> PathBuf {

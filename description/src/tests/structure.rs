@@ -56,7 +56,7 @@ x = 1
         "5:8 `type`: expected one of \"revolute\", \"prismatic\", \"fixed\", \"cylindrical\", \"universal\", \"spherical\", \"planar\", \"helical\", found \"revolut\"; did you mean `revolute`?",
         "6:6 the leg `b` is never placed; a table [[place]] with name = \"leg1\" and shape = \"NAME\" places a leg",
         "7:9 a leg needs at least one joint",
-        "8:1 the leg `c` has no `joint`; write its joints as [[leg.NAME.joint]], from the base on",
+        "8:1 the leg `c` has no `joint`; write its joints as [[leg.NAME.joint]], from the base on; a cable has type = \"cable\" instead",
         "8:6 the leg `c` is never placed; a table [[place]] with name = \"leg1\" and shape = \"NAME\" places a leg",
         "10:8 `1leg` cannot be the name of a leg; use letters, digits and underscores, a letter first",
         "11:9 there is no table [leg.d]; known: a, b, c",

@@ -428,7 +428,8 @@ impl Mechanism {
             End::Cable { minimum, .. } => Some(minimum),
             _ => None,
         };
-        self.actuated().into_iter().map(least).collect()
+        let of_joints = self.actuated().into_iter().map(least);
+        of_joints.chain(self.motors.iter().map(|_| None)).collect()
     }
 
     /// Number of actuators, n.

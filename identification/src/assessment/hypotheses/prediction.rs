@@ -56,14 +56,17 @@ impl<'a> Prediction<'a> {
         };
         let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
         let ask = |function: Function, inputs: &[&[f64]]| {
-            evaluate(self.model, function, inputs, motion.samples).map_err(at)
+            evaluate(self.model, function, inputs, motion.samples)
         };
         let [pose, twist, acceleration] = states;
-        let torques = ask(
-            Function::InverseDynamics(Columns::Standard),
-            &[pose, twist, acceleration, &parameters],
-        )?;
-        let jacobians = ask(Function::InverseJacobian, &[pose])?;
+        let inverse_dynamics = Function::InverseDynamics(Columns::Standard);
+        let torques = match ask(inverse_dynamics, &[pose, twist, acceleration, &parameters]) {
+            Err(error) if matches!(error.error, overact::Error::NotOffered { .. }) => {
+                return self.inputs_by_regressor(motion, states, interval);
+            }
+            torques => torques.map_err(at)?,
+        };
+        let jacobians = ask(Function::InverseJacobian, &[pose]).map_err(at)?;
         Ok(inputs_of(&jacobians, &torques, sizes.actuators, sizes.dof))
     }
 
