@@ -9,7 +9,7 @@ use crate::robot::inventory::{Body, Inventory};
 use crate::robot::model::{Leg, Motor, Platform, Spanned, actuators};
 use crate::robot::shape::{MOST_JOINTS, Shape};
 use crate::robot::{
-    cable, chain, coupled_motor, frame, leg, payload, platform, point_spring, shape,
+    cable_robot, chain, coupled_motor, frame, leg, payload, platform, point_spring, shape,
 };
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;
@@ -108,7 +108,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
     let has_platform = platform_item.is_some();
-    cable::check(
+    cable_robot::check(
         table.context,
         &shapes,
         has_platform,

@@ -112,6 +112,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "thresholds",
             "series",
             "filters",
+            "gear_friction",
             "prior",
             "online_settings",
             "settings",

@@ -1,6 +1,5 @@
 //! The switch for the identification of the friction of gears.
 
-use super::settings::Identification;
 use crate::diagnostic::Code;
 use crate::robot::{inventory::Inventory, model::Leg};
 use crate::toml_text::reader::Item;
@@ -11,12 +10,8 @@ pub const GEARS_ALONE: &str = "the friction of gears is not identified together 
 /// Why the friction of gears is not identified for motors that turn several joints.
 pub const GEARS_OF_COUPLED_MOTORS: &str = "the friction of gears is identified for drives of single joints: the torque that a gear of a coupled motor transmits is not that of a joint";
 
-/// Reads `gear_friction`, which requires that nothing else corrects the torques.
-pub(crate) fn friction(
-    item: &Item<'_, '_>,
-    settings: &Identification,
-    robot: &Inventory<'_>,
-) -> bool {
+/// Reads `gear_friction`; `is_corrected` if gains or the direction of gravity are identified.
+pub(crate) fn friction(item: &Item<'_, '_>, is_corrected: bool, robot: &Inventory<'_>) -> bool {
     if item.boolean() != Some(true) {
         return false;
     }
@@ -24,7 +19,7 @@ pub(crate) fn friction(
         let error = item.error(Code::CONTRADICTION, why);
         item.context.report(error.help(help));
     };
-    if settings.gains || settings.gravity_direction {
+    if is_corrected {
         let help = "identify gains or the direction of gravity first, write them into the description, then ask for `gear_friction`";
         refuse(GEARS_ALONE, help);
     }

@@ -3,6 +3,7 @@
 use crate::diagnostic::Code;
 use crate::experiments::data::check_count;
 use crate::experiments::experiment::position;
+use crate::experiments::gears;
 use crate::experiments::known;
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
@@ -151,9 +152,10 @@ pub(crate) fn identification(
         settings.gravity_direction = table.get("gravity_direction").is_some_and(|item| {
             crate::experiments::gravity::direction(&item, settings.gains, gravity)
         });
+        let is_corrected = settings.gains || settings.gravity_direction;
         settings.gear_friction = table
             .get("gear_friction")
-            .is_some_and(|item| crate::experiments::gears::friction(&item, &settings, robot));
+            .is_some_and(|item| gears::friction(&item, is_corrected, robot));
         table.finish();
     }
     settings

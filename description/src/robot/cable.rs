@@ -3,14 +3,13 @@
 //! A cable runs from an exit point over a pulley, which may swivel, straight to a platform point.
 //! Its coordinate is its length, an actuated slide without a body.
 
-use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::diagnostic::Code;
 use crate::expressions::dimension::Dimension;
 use crate::robot::compound_joint_kind::CompoundJointKind;
 use crate::robot::joint_shape::JointShape;
-use crate::robot::model::{Cable, JointKind, Leg, Motion, Platform, Spanned};
+use crate::robot::model::{Cable, JointKind, Spanned};
 use crate::robot::parameters::Owner;
-use crate::robot::shape::{EndShape, Shape};
-use crate::toml_text::reader::{Context, Item, Table};
+use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
 use overact_exact::Number;
@@ -68,21 +67,6 @@ pub(crate) fn shape<'c, 't>(table: &Table<'c, 't>) -> (CableShape<'c, 't>, Joint
     (cable, length)
 }
 
-/// Reads the platform point of a cable.
-pub(crate) fn end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
-    let table = item.table("the cable's `end`")?;
-    let at = table.get("at");
-    table.finish();
-    Some(EndShape {
-        rigid: false,
-        at,
-        rotation: None,
-        along: [true; 3],
-        body: None,
-        span: table.span.clone(),
-    })
-}
-
 /// Reports a home position of a cable; always false.
 pub(crate) fn refuse_home(item: &Item<'_, '_>) -> bool {
     let error = item.error(Code::CONTRADICTION, "a cable has no `home`");
@@ -128,41 +112,4 @@ fn quantity(
     let error = item.error(Code::OUT_OF_RANGE, message).help(help);
     item.context.report_once(error);
     None
-}
-
-/// Reports cables of robots that cannot have any.
-pub(crate) fn check(
-    context: &Context<'_>,
-    shapes: &[Shape<'_, '_>],
-    has_platform: bool,
-    platform: Option<&Platform>,
-    legs: &[Leg],
-) {
-    let report = |span: &Span, message: String, help: &str| {
-        let error = Diagnostic::new(Code::STRUCTURE, message, span.clone());
-        context.report_once(error.help(help));
-    };
-    for shape in shapes.iter().filter(|shape| shape.cable.is_some()) {
-        let (name, span) = (&shape.name.value, &shape.span);
-        if !has_platform {
-            let help = "describe the platform in a table [platform]";
-            let message = format!("the cable `{name}` ends on a platform, but there is none");
-            report(span, message, help);
-        }
-        if let Some(body) = &shape.base_body {
-            let message = format!("the cable `{name}` cannot start from a body");
-            let help = "its exit point is fixed on the ground: leave `body` out";
-            report(&body.span, message, help);
-        }
-    }
-    let parasitic =
-        platform.is_some_and(|own| matches!(own.motion.value, Motion::Parasitic { .. }));
-    if let (true, Some(leg)) = (parasitic, legs.iter().find(|leg| leg.cable.is_some())) {
-        let message = format!(
-            "the cable `{}` cannot pull a platform with parasitic motion",
-            leg.name.value
-        );
-        let help = "cables are supported for platforms whose coordinates are all independent: leave out `independent`";
-        report(&leg.span, message, help);
-    }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod actuator_names;
 pub(crate) mod cable;
+pub(crate) mod cable_robot;
 pub(crate) mod chain;
 pub(crate) mod compound;
 pub(crate) mod compound_joint_kind;

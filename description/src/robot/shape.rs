@@ -79,7 +79,7 @@ pub(crate) fn read<'c, 't>(item: &Item<'c, 't>, constants: &Scope) -> Option<Sha
     let motors = motors.map(|item| motor::shapes(&item, &names));
     let end = table.get("end").and_then(|item| {
         if is_cable {
-            cable::end(&item)
+            cable_end(&item)
         } else {
             end(&item)
         }
@@ -415,4 +415,19 @@ fn along(item: Option<&Item<'_, '_>>, rigid: bool) -> [bool; 3] {
             .report(item.error(Code::CONTRADICTION, message).help(help));
     }
     along
+}
+
+/// Reads the platform point of a cable.
+fn cable_end<'c, 't>(item: &Item<'c, 't>) -> Option<EndShape<'c, 't>> {
+    let table = item.table("the cable's `end`")?;
+    let at = table.get("at");
+    table.finish();
+    Some(EndShape {
+        rigid: false,
+        at,
+        rotation: None,
+        along: [true; 3],
+        body: None,
+        span: table.span.clone(),
+    })
 }
