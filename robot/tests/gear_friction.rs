@@ -2,7 +2,7 @@
 
 use overact_identification::{DriveGearFriction, GearFriction, Identification, Log};
 use overact_robot::{Identifier, Robot};
-use overact_tier::by_tier;
+use overact_tier::{by_tier, is_full};
 
 /// A vertical arm of two joints whose gravity torques vary at equal speeds.
 const ARM: &str = r#"
@@ -119,7 +119,7 @@ fn covered(drives: &[DriveGearFriction], gears: &[GearFriction]) -> (usize, usiz
 #[test]
 fn coefficients_lie_in_their_intervals() {
     let (mut inside, mut all) = (0, 0);
-    for seed in 1..=by_tier([4, 100]) {
+    for seed in 1..=by_tier([2, 100]) {
         let robot = arm(seed);
         let result = identified(&robot, &logs(&robot, &GEARS));
         let own = covered(&result.gear_friction, &GEARS);
@@ -132,7 +132,7 @@ fn coefficients_lie_in_their_intervals() {
         }
     }
     println!("{inside} of {all} intervals contain the true coefficient");
-    assert!(inside * 10 >= all * by_tier([7, 9]), "{inside} of {all}");
+    assert!(inside * 10 >= all * by_tier([5, 9]), "{inside} of {all}");
 }
 
 #[test]
@@ -158,6 +158,9 @@ fn parameters_are_right_only_without_the_losses() {
 /// Each drive of a redundant robot has its own measured torque.
 #[test]
 fn gears_of_a_redundant_robot() {
+    if !is_full() {
+        return;
+    }
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/dualv.toml");
     let robot = Robot::from_toml(path).expect("a robot");
     let none = GearFriction::default();
