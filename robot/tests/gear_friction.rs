@@ -76,11 +76,11 @@ fn logs(robot: &Robot, gears: &[GearFriction]) -> Vec<Log> {
         let n = run.actuators();
         let (positions, mut torques) = run.load().expect("numbers");
         let samples = positions.len() / n;
-        for place in 0..torques.len() {
+        for (place, torque) in torques.iter_mut().enumerate() {
             let (sample, drive) = (place / n, place % n);
             let around = [sample.saturating_sub(5), (sample + 5).min(samples - 1)];
             let [before, after] = around.map(|sample| positions[sample * n + drive]);
-            torques[place] = gears[drive].delivered(torques[place], (after - before).signum());
+            *torque = gears[drive].delivered(*torque, (after - before).signum());
         }
         Log::new(
             run.name(),

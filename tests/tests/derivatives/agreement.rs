@@ -7,7 +7,7 @@ use overact_tests::support::agreement::Agreement;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Backend, Evaluated};
 use overact_tier::by_tier;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, btree_map::Entry};
 
 /// Largest difference, relative to the largest entry of a matrix.
 const TOLERANCE: f64 = 1e-9;
@@ -40,13 +40,16 @@ pub(super) fn compare(robot: &Robot, is_compared: fn(Function) -> bool) -> Resul
         let mut agreement = Agreement::new();
         for (number, sample) in all.iter().enumerate() {
             let of = (function.computes.name(), number);
-            if !known.contains_key(&of) {
-                let truth = robot.expected.at(sample)?;
-                // Next to a change of sign there are no differences.
-                let wanted = truth.output(function.computes, function.from).ok();
-                known.insert(of, wanted);
-            }
-            if let Some(Some(wanted)) = known.get(&of) {
+            let wanted = match known.entry(of) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(unknown) => {
+                    let truth = robot.expected.at(sample)?;
+                    // Next to a change of sign there are no differences.
+                    let wanted = truth.output(function.computes, function.from).ok();
+                    unknown.insert(wanted)
+                }
+            };
+            if let Some(wanted) = wanted {
                 agreement.compare(&backend.call(&function.name, sample)?, wanted);
             }
         }

@@ -74,11 +74,11 @@ impl<'a> Robot<'a> {
         let arena = self.arena;
         // q̇ = (0, ω) q / 2.
         let [w, x, y, z] = std::array::from_fn(|k| arena.input("pose", first + k));
-        let doubled = [[-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]];
-        for entry in 0..4 {
-            let edge = |(axis, vertex): &(usize, VertexId)| {
-                (*vertex, doubled[*axis][entry] / arena.integer(2))
-            };
+        // 2 q̇ of each entry by axis of ω.
+        let doubled = [[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]];
+        for (entry, by_axis) in doubled.into_iter().enumerate() {
+            let edge =
+                |(axis, vertex): &(usize, VertexId)| (*vertex, by_axis[*axis] / arena.integer(2));
             if let Some(vertex) = graph.add(turns.iter().map(edge).collect()) {
                 graph.set_symbol(arena.input_symbol("pose", first + entry), vertex);
             }
