@@ -119,7 +119,7 @@ fn covered(drives: &[DriveGearFriction], gears: &[GearFriction]) -> (usize, usiz
 #[test]
 fn coefficients_lie_in_their_intervals() {
     let (mut inside, mut all) = (0, 0);
-    for seed in 1..=by_tier([2, 100]) {
+    for seed in 1..=by_tier([2, 30]) {
         let robot = arm(seed);
         let result = identified(&robot, &logs(&robot, &GEARS));
         let own = covered(&result.gear_friction, &GEARS);
