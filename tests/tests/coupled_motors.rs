@@ -308,7 +308,7 @@ fn motors_of_a_leg_are_placed_with_it() -> Result<(), Failure> {
     compare("five_bar", &text)
 }
 
-/// An actuated joint may have a motor beside coupled ones.
+/// An actuated joint may have a motor in addition to coupled ones.
 #[test]
 fn actuated_joints_come_before_motors() -> Result<(), Failure> {
     let ankle = description("ankle")?.text;

@@ -84,7 +84,7 @@ impl PayloadUse {
             .any(|one| load_of(one).is_some());
         let all_loaded = loaded().count() == runs.len();
         if of_bodies && all_loaded && payload_names(runs).len() > 1 {
-            let message = "all runs carry a payload, and the payloads are on bodies of their own: none of them can be told from its body";
+            let message = "all runs carry a payload, and the payloads are on bodies of their own: none of them can be distinguished from its body";
             let help = "record a run without payload, or identify the payloads one by one";
             return Err(Problem::new(Code::LOG_PAYLOAD, message).help(help).into());
         }

@@ -1,4 +1,4 @@
-//! Sections on quantities estimated besides parameters: offsets, lengths, gravity, drive gains.
+//! Sections on offsets, lengths, gravity, drive gains and friction of gears.
 
 pub(crate) mod calibration;
 pub(crate) mod gains;
