@@ -143,7 +143,7 @@ fn a_time_that_is_not_uniform_is_located() {
     assert_eq!(
         text(log, folder.path()),
         "log.csv:5: the time is not uniform: between samples 2 and 3 it steps by 0.200000000 s, \
-         expected 0.100000000 s\n  help: set `resample = \"1 kHz\"` in [data] to interpolate at uniform times, or cut the run where samples are missing"
+         expected 0.100000000 s\n  help: set `resample = \"10 Hz\"` in [data] to interpolate at uniform times, or cut the run where samples are missing"
     );
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0,0,0\n");
     assert!(text(log, folder.path()).contains("it steps by 0 s, expected 0 s"));

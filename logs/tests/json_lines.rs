@@ -42,6 +42,29 @@ fn nested_columns_are_named_and_computed_with() {
 }
 
 #[test]
+fn dates_and_times_of_day_are_seconds() {
+    for time in ["2026-03-01T23:59:59.9", "23:59:59.9"] {
+        let (date, _) = time.split_once("23:").expect("a time");
+        let next = date.replace("-01T", "-02T");
+        let row = |k: usize| match k {
+            0..10 => format!("{{\"t\": \"{time}{k}\", \"q\": {k}, \"tau\": 1}}\n"),
+            _ => format!("{{\"t\": \"{next}00:00:00.0{}\", \"q\": {k}, \"tau\": 1}}\n", k - 10),
+        };
+        let text: String = (0..20).map(row).collect();
+        let files = [("a.jsonl", text.as_bytes())];
+        let (positions, _, frequency) = numbers(run("a.jsonl", &files, &timed("q", "tau")));
+        assert_eq!(positions[19], 19.0);
+        assert!((frequency - 100.0).abs() < 1e-6, "{frequency}");
+    }
+    // A time in a column of numbers is no number.
+    let text = lines(20, "\"10:00:00.5\"");
+    let files = [("a.jsonl", text.as_bytes())];
+    let told = run("a.jsonl", &files, &timed("position[1]", "drive.tau"));
+    let told = told.expect_err("a text");
+    assert!(told.contains("is the text \"10:00:00.5\""), "{told}");
+}
+
+#[test]
 fn a_file_of_json_is_joined_with_others() {
     let text = lines(3, "5");
     let files = [

@@ -211,7 +211,7 @@ fn messages_that_do_not_fit_are_located() {
         )
     };
     let uneven = file(&messages(jitter));
-    assert!(refused(&uneven).contains("`resample = \"1 kHz\"` in [data]"));
+    assert!(refused(&uneven).contains("`resample = \"91 Hz\"` in [data]"));
     let resampled = Mapping {
         resample: Some(100.0),
         ..mapping("position.a", "effort.a")

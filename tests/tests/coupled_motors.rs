@@ -273,7 +273,7 @@ fn random(draw: impl Fn(u64) -> String, count: u64) -> Result<(), Failure> {
 
 #[test]
 fn random_mechanisms_agree_with_motors() -> Result<(), Failure> {
-    random(closed_sketch, drawn([6, 20, 80]))
+    random(closed_sketch, drawn([6, 12, 80]))
 }
 
 /// A random mechanism with a platform.
@@ -283,12 +283,12 @@ fn closed_sketch(seed: u64) -> String {
 
 #[test]
 fn random_chains_agree_with_motors() -> Result<(), Failure> {
-    random(skeleton, drawn([2, 6, 20]))
+    random(skeleton, drawn([2, 3, 20]))
 }
 
 #[test]
 fn random_platforms_with_parasitic_motion_agree_with_motors() -> Result<(), Failure> {
-    random(parasitic_motion, drawn([1, 3, 10]))
+    random(parasitic_motion, drawn([1, 2, 10]))
 }
 
 /// Motors described with a leg belong to each of its placements.

@@ -4,7 +4,7 @@
 //! `identification/tests/bad_data.rs` tests the clearest faults in either tier.
 
 use overact_identification::Grade;
-use overact_tier::is_full;
+use overact_tier::{is_full, of_many};
 use overact_trust::{
     Subject,
     traps::{Standing, identified, outcome, prepared, traps},
@@ -37,8 +37,7 @@ fn every_trap_of_the_dualv_is_refused_named_or_an_assumption() {
     let records = prepared(&subject, &subject.experiment).expect("records");
     let faultless = identified(&subject, records.clone()).expect("an identification");
     assert_eq!(faultless.grade(), Grade::Use);
-    let all = traps(subject.info().name);
-    for trap in all {
+    for trap in of_many(traps(subject.info().name)) {
         let mut own = records.clone();
         if !trap.plant.is_empty() {
             let mut plant = Subject::altered(&path, &trap.plant).expect("the DualV");

@@ -3,11 +3,12 @@
 use overact::Model;
 
 use super::{
-    check::{Check, CheckKind},
+    check::{Check, Detectable},
     checks::{
         HARMFUL,
         torques::smoothing::{OF_MEAN, UNIT},
     },
+    hypotheses::FaultHypothesis,
 };
 use crate::{
     kinematics::conditioning::couples,
@@ -128,171 +129,229 @@ pub(crate) fn rests_on(
     (!all.is_empty()).then(|| all.join(" "))
 }
 
-/// A fault whose detection limit is reported.
-///
-/// `check` looks for the fault. `is_part` says that its size is relative, with 1 as 100 %.
-struct DetectableFault {
-    check: CheckKind,
-    is_part: bool,
-    name: &'static str,
-}
-
-/// Constructs a kind of faults.
-const fn kind(check: CheckKind, is_part: bool, name: &'static str) -> DetectableFault {
-    DetectableFault {
-        check,
-        is_part,
-        name,
-    }
-}
-
-/// All kinds of faults whose detection limits are reported.
-const KINDS: [DetectableFault; 8] = [
-    kind(CheckKind::EncoderOffset, false, "zero of an encoder"),
-    kind(
-        CheckKind::EncoderOffset,
-        true,
-        "scale of an encoder or ratio of a gear",
-    ),
-    kind(CheckKind::Length, false, "length"),
-    kind(CheckKind::WrongGain, true, "gain of one drive"),
-    kind(CheckKind::Delay, false, "delay of the torques"),
-    kind(CheckKind::Filters, false, "smoothing of the torques"),
-    kind(
-        CheckKind::Reversals,
-        false,
-        "equal smoothing of all signals",
-    ),
-    kind(CheckKind::Clock, true, "sampling frequency"),
-];
-
 /// Relative sizes above 100 % are reported as 100 %.
 const WHOLE: f64 = 1.0;
 
-/// Detection limits: for each kind of fault the most harmful one that passes its check.
+/// Faults that one sentence of the detection limits is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum FaultClass {
+    EncoderOffset,
+    EncoderScale,
+    GearRatio,
+    Length,
+    Gain,
+    Delay,
+    DriveDelay,
+    Smoothing,
+    CommonFilter,
+    Clock,
+    Crosstalk,
+    MissingTorque,
+}
+
+impl FaultClass {
+    /// All classes, in the order of their sentences.
+    const ALL: [Self; 12] = [
+        Self::EncoderOffset,
+        Self::EncoderScale,
+        Self::GearRatio,
+        Self::Length,
+        Self::Gain,
+        Self::Delay,
+        Self::DriveDelay,
+        Self::Smoothing,
+        Self::CommonFilter,
+        Self::Clock,
+        Self::Crosstalk,
+        Self::MissingTorque,
+    ];
+
+    const fn of(hypothesis: FaultHypothesis) -> Option<Self> {
+        Some(match hypothesis {
+            FaultHypothesis::Offset(_) => Self::EncoderOffset,
+            FaultHypothesis::Scale(_) | FaultHypothesis::Scales => Self::EncoderScale,
+            FaultHypothesis::Gear(_) => Self::GearRatio,
+            FaultHypothesis::Length(_) => Self::Length,
+            FaultHypothesis::Gain(_) => Self::Gain,
+            FaultHypothesis::Delay => Self::Delay,
+            FaultHypothesis::DriveDelay(_) => Self::DriveDelay,
+            FaultHypothesis::Smoothing | FaultHypothesis::SmoothingWithFriction => Self::Smoothing,
+            FaultHypothesis::CommonFilter => Self::CommonFilter,
+            FaultHypothesis::Clock => Self::Clock,
+            FaultHypothesis::Torque(..)
+            | FaultHypothesis::Force(..)
+            | FaultHypothesis::PotentialTerm(_) => Self::MissingTorque,
+            FaultHypothesis::Crosstalk { .. } => Self::Crosstalk,
+            _ => return None,
+        })
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::EncoderOffset => "zero of an encoder",
+            Self::EncoderScale => "scale of an encoder",
+            Self::GearRatio => "ratio of a gear, with positions and torques of its drive",
+            Self::Length => "length",
+            Self::Gain => "gain of one drive",
+            Self::Delay => "delay of all torques",
+            Self::DriveDelay => "delay of the torque of one drive",
+            Self::Smoothing => "smoothing of the torques",
+            Self::CommonFilter => "equal smoothing of all signals",
+            Self::Clock => "sampling frequency",
+            Self::Crosstalk => "part of a neighbour's torque in the torque of one drive",
+            Self::MissingTorque => "torque or force that the model lacks",
+        }
+    }
+}
+
+/// Detection limits: one sentence for each class of faults that passed its check, with all harmful
+/// faults of the class.
 ///
 /// The harm is the parameter shift at the smallest detectable size.
 pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
-    let worst_of = |kind: &DetectableFault| {
-        let own = checks.iter().filter(|one| one.passed);
-        // One check tests offsets and lengths; it is filed under the kind that it found.
-        let geometry = [CheckKind::EncoderOffset, CheckKind::Length];
-        let own = own.filter(|one| {
-            one.kind == kind.check || geometry.contains(&one.kind) && geometry.contains(&kind.check)
-        });
-        let all = own.flat_map(|one| &one.detectable);
-        let is_length = kind.check == CheckKind::Length;
-        let all =
-            all.filter(|one| one.unit.is_empty() == kind.is_part && one.is_length == is_length);
-        let harmful =
-            all.filter(|one| one.shift_deviations > HARMFUL && one.shift_deviations.is_finite());
-        harmful.max_by(|a, b| a.shift_deviations.total_cmp(&b.shift_deviations))
+    let passed = checks.iter().filter(|one| one.passed);
+    let limits: Vec<&Detectable> = passed.flat_map(|one| &one.detectable).collect();
+    let sentence = |class: &FaultClass| {
+        let own = limits
+            .iter()
+            .filter(|one| FaultClass::of(one.fault) == Some(*class));
+        let harmful = own.copied().filter(|one| one.shift_deviations > HARMFUL);
+        let is_hidden = |one: &&Detectable| *class == FaultClass::Gain && one.size >= WHOLE;
+        let (hidden, visible): (Vec<_>, Vec<_>) = harmful.partition(is_hidden);
+        let names: Vec<String> = hidden.iter().map(|one| format!("`{}`", one.name)).collect();
+        let never = (!names.is_empty()).then(|| format!("not detectable for {}", names.join(", ")));
+        let visible = visible
+            .into_iter()
+            .filter(|one| one.shift_deviations.is_finite());
+        let each: Vec<String> = never.into_iter().chain(visible.map(limit)).collect();
+        (!each.is_empty()).then(|| format!("{}: {}", class.name(), each.join("; ")))
     };
-    let sentences = KINDS.iter().filter_map(|kind| {
-        if let Some(never) = never(checks, kind) {
-            return Some(never);
-        }
-        let worst = worst_of(kind)?;
-        let of = match (worst.name.as_str(), kind.check) {
-            ("", CheckKind::EncoderOffset) => String::from(" of all drives"),
-            ("", _) => String::new(),
-            (name, _) => format!(" of `{name}`"),
-        };
-        // A relative size above 100 % has no meaning.
-        let most = if kind.is_part { WHOLE } else { f64::INFINITY };
-        let shift_deviations = worst.shift_deviations * (most / worst.size).min(1.0);
-        let size = match worst.unit {
-            "" => format!("{} %", significant(100.0 * worst.size.min(most), 2)),
-            "s" => format!("{} ms", significant(1e3 * worst.size, 2)),
-            UNIT => format!(
-                "a mean over {} ms",
-                significant(1e3 * (OF_MEAN * worst.size).sqrt(), 2)
-            ),
-            unit => format!("{} {unit}", significant(worst.size, 2)),
-        };
-        Some(format!(
-            "{}: {size}{of} would shift `{}` by {:.0} σ",
-            kind.name, worst.parameter, shift_deviations
-        ))
-    });
-    sentences.collect()
+    FaultClass::ALL.iter().filter_map(sentence).collect()
 }
 
-/// Names the drives whose gain error these data cannot detect, or only beyond 100 %.
-fn never(checks: &[Check], kind: &DetectableFault) -> Option<String> {
-    let own = checks
-        .iter()
-        .filter(|one| one.kind == kind.check && one.passed);
-    let hidden = own
-        .filter(|one| one.kind == CheckKind::WrongGain)
-        .flat_map(|one| &one.detectable)
-        .filter(|one| one.size >= WHOLE && one.shift_deviations > HARMFUL);
-    let names: Vec<String> = hidden.map(|one| format!("`{}`", one.name)).collect();
-    (!names.is_empty()).then(|| format!("{}: not detectable for {}", kind.name, names.join(", ")))
+/// Detection limit of one fault, with its harm.
+fn limit(one: &Detectable) -> String {
+    let of = match (one.name.as_str(), one.fault) {
+        (_, FaultHypothesis::PotentialTerm(_)) => {
+            String::from(" of a potential, as of a constant force on a body,")
+        }
+        (_, FaultHypothesis::Scales) => String::from(" of all drives"),
+        ("", _) => String::new(),
+        (name, fault) => match fault.shape() {
+            Some(shape) => format!(" at `{name}` with {}", shape.words()),
+            None => format!(" of `{name}`"),
+        },
+    };
+    // A relative size above 100 % has no meaning.
+    let most = if one.unit.is_empty() {
+        WHOLE
+    } else {
+        f64::INFINITY
+    };
+    let shift_deviations = one.shift_deviations * (most / one.size).min(1.0);
+    let size = match one.unit {
+        "" => format!("{} %", significant(100.0 * one.size.min(most), 2)),
+        "s" => format!("{} ms", significant(1e3 * one.size, 2)),
+        UNIT => format!(
+            "a mean over {} ms",
+            significant(1e3 * (OF_MEAN * one.size).sqrt(), 2)
+        ),
+        unit => format!("{} {unit}", significant(one.size, 2)),
+    };
+    format!(
+        "{size}{of} would shift `{}` by {shift_deviations:.0} σ",
+        one.parameter
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::{HARMFUL, unseen};
-    use crate::assessment::check::{About, Check, CheckKind, Detectable};
+    use crate::assessment::{
+        check::{About, Check, CheckKind, Detectable},
+        hypotheses::{FaultHypothesis, Shape},
+    };
 
-    fn check(kind: CheckKind, faults: &[(&str, &'static str, f64, f64)]) -> Check {
-        let fault =
-            |&(name, unit, size, shift_deviations): &(&str, &'static str, f64, f64)| Detectable {
-                name: name.to_owned(),
-                unit,
-                deviation: size / 5.0,
-                size,
-                parameter: String::from("zz_1"),
-                shift_deviations,
-                is_length: false,
-            };
-        let all = faults.iter().map(fault).collect();
-        Check::new(kind, About::Model, "nothing").detecting(all)
+    /// The limit of a fault at `name`, of this size and unit, and the shift that it causes.
+    fn limit(
+        fault: FaultHypothesis,
+        name: &str,
+        size: (f64, &'static str),
+        shift_deviations: f64,
+    ) -> Detectable {
+        Detectable {
+            name: name.to_owned(),
+            unit: size.1,
+            fault,
+            deviation: size.0 / 5.0,
+            size: size.0,
+            parameter: String::from("zz_1"),
+            shift_deviations,
+        }
+    }
+
+    fn check(kind: CheckKind, limits: Vec<Detectable>) -> Check {
+        Check::new(kind, About::Model, "nothing").detecting(limits)
     }
 
     #[test]
-    fn the_worst_of_each_kind_is_reported_with_its_unit() {
-        let gains = [("left", "", 0.03, 7.0), ("right", "", 0.1, 86.0)];
-        let sentences = unseen(&[
-            check(CheckKind::Clock, &[("", "", 2.5, 500.0)]),
-            check(CheckKind::WrongGain, &gains),
-            check(CheckKind::Delay, &[("", "s", 2.8e-4, 5.0)]),
-            check(CheckKind::Filters, &[("", "s²", 6e-6, 8.0)]),
-            check(
-                CheckKind::EncoderOffset,
-                &[("left", "rad", 0.0091, 13.0), ("", "", 0.001, 16.0)],
+    fn all_harmful_faults_of_each_class_are_reported_with_their_units() {
+        let all = vec![
+            limit(FaultHypothesis::Clock, "", (2.5, ""), 500.0),
+            limit(FaultHypothesis::Gain(0), "left", (0.03, ""), 7.0),
+            limit(FaultHypothesis::Gain(1), "right", (0.1, ""), 86.0),
+            limit(FaultHypothesis::Delay, "", (2.8e-4, "s"), 5.0),
+            limit(FaultHypothesis::DriveDelay(1), "right", (3e-3, "s"), 12.0),
+            limit(FaultHypothesis::Smoothing, "", (6e-6, "s²"), 8.0),
+            limit(FaultHypothesis::Offset(0), "left", (0.0091, "rad"), 13.0),
+            limit(FaultHypothesis::Scales, "", (0.001, ""), 16.0),
+            limit(FaultHypothesis::Gear(0), "left", (0.02, ""), 7.6),
+            limit(
+                FaultHypothesis::Torque(0, Shape::Position),
+                "left",
+                (0.3, "N m/rad"),
+                4.0,
             ),
-        ]);
+        ];
         let expected = [
             "zero of an encoder: 0.0091 rad of `left` would shift `zz_1` by 13 σ",
-            "scale of an encoder or ratio of a gear: 0.1 % of all drives would shift `zz_1` by 16 σ",
-            "gain of one drive: 10 % of `right` would shift `zz_1` by 86 σ",
-            "delay of the torques: 0.28 ms would shift `zz_1` by 5 σ",
+            "scale of an encoder: 0.1 % of all drives would shift `zz_1` by 16 σ",
+            "ratio of a gear, with positions and torques of its drive: 2 % of `left` would shift `zz_1` by 8 σ",
+            "gain of one drive: 3 % of `left` would shift `zz_1` by 7 σ; 10 % of `right` would shift `zz_1` by 86 σ",
+            "delay of all torques: 0.28 ms would shift `zz_1` by 5 σ",
+            "delay of the torque of one drive: 3 ms of `right` would shift `zz_1` by 12 σ",
             "smoothing of the torques: a mean over 12 ms would shift `zz_1` by 8 σ",
             "sampling frequency: 100 % would shift `zz_1` by 200 σ",
+            "torque or force that the model lacks: 0.3 N m/rad at `left` with the position, as a spring would shift `zz_1` by 4 σ",
         ];
-        assert_eq!(sentences, expected);
+        assert_eq!(unseen(&[check(CheckKind::Delay, all)]), expected);
     }
 
     #[test]
     fn a_drive_whose_gain_nothing_tells_is_named_before_all_others() {
-        let mut gains = check(CheckKind::WrongGain, &[("left", "", 0.03, 7.0)]);
-        gains.detectable.push(Detectable::never("right"));
+        let gains = vec![
+            limit(FaultHypothesis::Gain(0), "left", (0.03, ""), 7.0),
+            Detectable::undetectable_gain(1, "right"),
+        ];
         assert_eq!(
-            unseen(&[gains]),
-            ["gain of one drive: not detectable for `right`"]
+            unseen(&[check(CheckKind::WrongGain, gains)]),
+            [
+                "gain of one drive: not detectable for `right`; 3 % of `left` would shift `zz_1` by 7 σ"
+            ]
         );
     }
 
     #[test]
     fn what_is_harmless_or_was_found_is_not_told() {
-        let harmless = check(CheckKind::WrongGain, &[("left", "", 0.1, HARMFUL)]);
+        let harmless = limit(FaultHypothesis::Gain(0), "left", (0.1, ""), HARMFUL);
+        let harmless = check(CheckKind::WrongGain, vec![harmless]);
+        let delay = limit(FaultHypothesis::Delay, "", (1e-3, "s"), 50.0);
         let found = Check {
             passed: false,
-            ..check(CheckKind::Delay, &[("", "s", 1e-3, 50.0)])
+            ..check(CheckKind::Delay, vec![delay])
         };
-        let endless = check(CheckKind::Length, &[("d", "m", 1e-3, f64::INFINITY)]);
+        let endless = limit(FaultHypothesis::Length(0), "d", (1e-3, "m"), f64::INFINITY);
+        let endless = check(CheckKind::Length, vec![endless]);
         assert!(unseen(&[harmless, found, endless]).is_empty());
     }
 }

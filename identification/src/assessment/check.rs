@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::evidence::Evidence;
+use super::{evidence::Evidence, hypotheses::FaultHypothesis};
 use crate::{regression::projection::ModelKind, result::Stage};
 use overact_logs::{called, titled};
 
@@ -68,9 +68,9 @@ pub struct Detectable {
     pub name: String,
     /// Unit of the size: `rad`, `m`, `s`, or `s²` for smoothing; empty for a relative size.
     pub unit: &'static str,
-    /// Whether the fault is an error of a described length.
+    /// The fault.
     #[serde(skip)]
-    pub is_length: bool,
+    pub(crate) fault: FaultHypothesis,
     /// Standard deviation of the size.
     pub deviation: f64,
     /// Size that is detected with 90 % probability; infinite if no size is detectable.
@@ -83,12 +83,13 @@ pub struct Detectable {
 }
 
 impl Detectable {
-    /// An actuator's fault of relative size that these data cannot detect at any size.
-    pub(crate) fn never(name: &str) -> Self {
+    /// A wrong gain of the actuator with this number and `name`, which these data cannot detect at
+    /// any size.
+    pub(crate) fn undetectable_gain(actuator: usize, name: &str) -> Self {
         Self {
             name: name.to_owned(),
             unit: "",
-            is_length: false,
+            fault: FaultHypothesis::Gain(actuator),
             deviation: f64::INFINITY,
             size: f64::INFINITY,
             parameter: String::new(),

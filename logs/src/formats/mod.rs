@@ -4,6 +4,7 @@
 //! - `table`: a file of any format;
 //! - `text`, `json_lines`, `mat_file`, `numpy`, `parquet_file`, `hdf5_file`, `mcap_file`: one format
 //!   each;
+//! - `instant`: dates and times of day as texts;
 //! - `stored`: formats that are read block by block from disk;
 //! - `row_range`: some rows of a table;
 //! - `arrays`: formats that are read as a whole.
@@ -13,6 +14,7 @@ pub(crate) mod arrays;
 mod format;
 #[cfg(feature = "hdf5")]
 mod hdf5_file;
+mod instant;
 mod json_lines;
 mod mat_file;
 #[cfg(feature = "mcap")]

@@ -413,8 +413,10 @@ impl Monitor {
         // A joint needs time to stop; a signal does not.
         let stops_dead = rest.speed_before > 4.0 * CLEAR_MOTION * own.speed && own.speed > 0.0;
         // A drive with dry friction may rest where its motion reverses, while others move. It stops
-        // gently and goes on from the same place; a reading that was stuck jumps to the true one.
-        let pauses = !stops_dead && rest.step_after <= own.sizes.quantile(OF_STEPS);
+        // gently and goes on from the same place; a reading that was stuck jumps to the true one, or
+        // never changes again.
+        let goes_on = 0.0 < rest.step_after && rest.step_after <= own.sizes.quantile(OF_STEPS);
+        let pauses = !stops_dead && goes_on;
         ((coupled && others_move && !pauses) || stops_dead).then(|| {
             let seconds = rest.samples as f64 / self.frequency;
             let message = format!(

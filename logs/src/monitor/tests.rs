@@ -83,6 +83,47 @@ fn of_several_rests_the_one_in_which_others_move_most_is_told() {
     assert!(stuck.message.contains(output), "{}", stuck.message);
 }
 
+/// Suspicions about a coupled robot whose second actuator swings and whose first has these positions.
+fn suspicions_of_first(position: impl Fn(f64) -> f64) -> Vec<Suspicion> {
+    let row = |sample: usize| {
+        let time = sample as f64 / FREQUENCY;
+        [position(time), (TAU * 2.0 / 3.0 * time).cos()]
+    };
+    let mut monitor = Monitor::new(2, FREQUENCY);
+    monitor.take(&Samples {
+        positions: (0..2000).flat_map(row).collect(),
+        torques: (0..2000)
+            .flat_map(|k| [swing(k as f64), swing(k as f64 + 0.3)])
+            .collect(),
+        velocities: Vec::new(),
+    });
+    monitor.suspicions(&["first", "second"], true)
+}
+
+#[test]
+fn a_reading_that_never_changes_or_stops_for_good_is_stuck() {
+    let stops = |time: f64| -(1.0 - (time.min(2.0) / 2.0)).powi(2);
+    let never = |_: f64| 0.3;
+    for position in [&never as &dyn Fn(f64) -> f64, &stops] {
+        let found = suspicions_of_first(position);
+        let is_stuck = |one: &Suspicion| {
+            one.fault == DataFault::Stuck && one.actuator.as_deref() == Some("first")
+        };
+        assert!(found.iter().any(is_stuck), "{found:?}");
+    }
+}
+
+#[test]
+fn a_drive_that_rests_where_it_reverses_is_not_stuck() {
+    // It approaches the point of reversal gently, rests for 0.2 s, and leaves it gently.
+    let pause = |time: f64| match time {
+        ..1.8 => -(1.8 - time).powi(2),
+        1.8..2.0 => 0.0,
+        _ => -(time - 2.0).powi(2),
+    };
+    assert_eq!(suspicions_of_first(pause), []);
+}
+
 #[test]
 fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
     let frozen = |time: f64| {

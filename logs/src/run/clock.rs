@@ -3,6 +3,7 @@
 use crate::{
     error::{Error, Problem},
     resampling::backward_help,
+    significant,
 };
 use overact::Code;
 
@@ -116,6 +117,12 @@ impl Clock {
                 "the time runs backwards after sample {index}, from {} s to {} s",
                 times[0], times[1]
             )
+        } else if expected <= 0.0 {
+            format!(
+                "most samples have the time of the sample before them, as samples {index} and {} at {} s",
+                index + 1,
+                times[1]
+            )
         } else {
             format!(
                 "the time is not uniform: between samples {index} and {} it steps by {} s, expected {} s",
@@ -124,15 +131,23 @@ impl Clock {
                 shown(expected),
             )
         };
-        let problem = Problem::new(Code::LOG_TIME, message)
-        .help(if is_rounded && step >= 0.0 {
-            "the times are 32-bit numbers, too coarse for this step so long after zero: log 64-bit times, or start at zero"
+        let problem = Problem::new(Code::LOG_TIME, message).help(if step < 0.0 {
+            backward_help(-step, expected).to_owned()
+        } else if expected <= 0.0 {
+            String::from(
+                "the resolution of the times is coarser than their steps: log the times with more decimals, or replace `time` in [data] by `sampling`, the sampling frequency",
+            )
+        } else if is_rounded {
+            String::from(
+                "the times are 32-bit numbers, too coarse for this step so long after zero: log 64-bit times, or start at zero",
+            )
         } else if step > 0.0 {
-            "set `resample = \"1 kHz\"` in [data] to interpolate at uniform times, or cut the run where samples are missing"
-        } else if step < 0.0 {
-            backward_help(-step, expected)
+            format!(
+                "set `resample = \"{}\"` in [data] to interpolate at uniform times, or cut the run where samples are missing",
+                rate(expected)
+            )
         } else {
-            "the time does not increase: use another column of the time"
+            String::from("the time does not increase: use another column of the time")
         });
         self.bad = Some(match line {
             Some(line) => problem.line(line),
@@ -151,6 +166,16 @@ fn rounding(times: [f64; 2]) -> f64 {
         largest * f64::from(f32::EPSILON)
     } else {
         0.0
+    }
+}
+
+/// Sampling frequency of steps of this size (s), with two digits and its unit.
+fn rate(step: f64) -> String {
+    let frequency = 1.0 / step;
+    if frequency < 1e3 {
+        format!("{} Hz", significant(frequency, 2))
+    } else {
+        format!("{} kHz", significant(1e-3 * frequency, 2))
     }
 }
 
@@ -196,5 +221,23 @@ mod tests {
         let told = frequency(9000.0, |time| f64::from(time as f32));
         let told = told.expect_err("too coarse").to_string();
         assert!(told.contains("32-bit numbers"), "{told}");
+    }
+
+    #[test]
+    fn times_of_whole_seconds_are_told_as_such() {
+        let told = frequency(100.0, f64::floor).expect_err("too coarse");
+        let told = told.to_string();
+        assert!(told.contains("the time of the sample before"), "{told}");
+        assert!(told.contains("`sampling`"), "{told}");
+    }
+
+    #[test]
+    fn the_help_names_the_rate_of_the_log() {
+        let late = |time: f64| if time > 2.0 { time + 3e-4 } else { time };
+        for (scale, rate) in [(1.0, "1 kHz"), (4.0, "250 Hz"), (0.1, "10 kHz")] {
+            let told = frequency(0.0, |time| scale * late(time)).expect_err("not uniform");
+            let told = told.to_string();
+            assert!(told.contains(&format!("resample = \"{rate}\"")), "{told}");
+        }
     }
 }

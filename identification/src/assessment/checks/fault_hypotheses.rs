@@ -41,7 +41,7 @@ impl TestedHypothesis {
         self.group.fault_hypothesis(scores)
     }
 
-    /// Detection limit of the fault, without a name, with `size` as the detectable size.
+    /// Detection limit of the fault with this `name`, and with `size` as the detectable size.
     pub(super) fn detectable(
         &self,
         context: &Context<'_>,
@@ -49,13 +49,38 @@ impl TestedHypothesis {
         unit: &'static str,
         size: f64,
     ) -> Detectable {
-        let all = self.shifts(context, scores);
-        let most = all.iter().find(|shift| shift.deviations.is_finite());
+        self.limit(context, scores, unit, size, &self.shifts(context, scores))
+    }
+
+    /// The same from the shifts of the base parameters alone, which is faster.
+    pub(super) fn detectable_in_base(
+        &self,
+        context: &Context<'_>,
+        scores: &Scores,
+        unit: &'static str,
+        size: f64,
+    ) -> Option<Detectable> {
+        let base = context.estimates_of(Stage::Base).next()?;
+        let mut all = self.shifts_of(base, &self.wald);
+        all.sort_by(|a, b| b.deviations.total_cmp(&a.deviations));
+        Some(self.limit(context, scores, unit, size, &all))
+    }
+
+    /// Detection limit from parameter shifts, largest first.
+    fn limit(
+        &self,
+        context: &Context<'_>,
+        scores: &Scores,
+        unit: &'static str,
+        size: f64,
+        shifts: &[ParameterShift],
+    ) -> Detectable {
+        let most = shifts.iter().find(|shift| shift.deviations.is_finite());
         let base = context.estimates_of(Stage::Base).next();
         Detectable {
             name: String::new(),
             unit,
-            is_length: false,
+            fault: self.hypothesis(scores),
             deviation: self.wald.deviation,
             size,
             parameter: base

@@ -63,6 +63,8 @@ pub(crate) enum FaultHypothesis {
     },
     /// Constant forces and weights on bodies of a tree, as far as the first joints feel them.
     Potential(FirstJoints),
+    /// One product of these potentials, which few data can test alone.
+    PotentialTerm(usize),
     /// Torques of this shape at all actuators, each of its own size.
     AllTorques(Shape),
     /// Crosstalk between all neighbours, each of its own size.
@@ -85,7 +87,12 @@ impl FaultHypothesis {
 
     /// Whether it is a torque or force that the model may lack.
     pub(crate) const fn is_missing_effect(self) -> bool {
-        self.shape().is_some() || self.is_crosstalk() || matches!(self, Self::Potential(_))
+        self.shape().is_some() || self.is_crosstalk() || self.is_potential()
+    }
+
+    /// Whether it is a potential of the first joints, or one of its products.
+    pub(crate) const fn is_potential(self) -> bool {
+        matches!(self, Self::Potential(_) | Self::PotentialTerm(_))
     }
 
     /// Whether it is one of several faults that this one joins, with a size for each.
@@ -97,12 +104,12 @@ impl FaultHypothesis {
         }
     }
 
-    /// Number of columns of its own; several faults together have none.
+    /// Number of columns of its own; several faults together, and parts of one, have none.
     const fn width(self) -> usize {
         match self {
             Self::Torque(_, Shape::Waves | Shape::LoadWaves) => WAVES,
             Self::Potential(joints) => joints.products(),
-            Self::AllTorques(_) | Self::AllCrosstalk => 0,
+            Self::PotentialTerm(_) | Self::AllTorques(_) | Self::AllCrosstalk => 0,
             _ => 1,
         }
     }
@@ -110,7 +117,7 @@ impl FaultHypothesis {
 
 /// Column indices of base parameters, fault hypotheses and payload parameters.
 ///
-/// Hypotheses with one column come first, then waves, then several faults together.
+/// Hypotheses with one column come first, then those with several, then those with none of their own.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     /// Number of base parameter columns, including friction rates.
@@ -144,6 +151,14 @@ impl Layout {
             let joined = joined.filter(|(one, _)| one.is_joined_by(*all));
             let joined: Vec<usize> = joined.flat_map(|(_, block)| block.clone()).collect();
             blocks[number].extend(joined);
+        }
+        let is_whole = |one: &FaultHypothesis| matches!(one, FaultHypothesis::Potential(_));
+        let whole = hypotheses.iter().position(is_whole);
+        let products = whole.map_or_else(Vec::new, |whole| blocks[whole].clone());
+        for (number, one) in hypotheses.iter().enumerate() {
+            if let FaultHypothesis::PotentialTerm(product) = *one {
+                blocks[number].push(products[product]);
+            }
         }
         blocks.push((base + narrow..decimated).collect());
         let mut squares = 0;
@@ -219,7 +234,8 @@ pub(crate) fn fault_hypotheses(
         }
     }
     all.extend(crosstalk(sizes.actuators));
-    all.extend(FirstJoints::new(model).map(FaultHypothesis::Potential));
+    let first_joints = FirstJoints::new(model);
+    all.extend(first_joints.map(FaultHypothesis::Potential));
     for shape in [Shape::Waves, Shape::LoadWaves] {
         all.extend((0..sizes.actuators).map(|i| FaultHypothesis::Torque(i, shape)));
     }
@@ -232,6 +248,8 @@ pub(crate) fn fault_hypotheses(
         all.extend(shapes.into_iter().map(FaultHypothesis::AllTorques));
         all.push(FaultHypothesis::AllCrosstalk);
     }
+    let products = first_joints.map_or(0, FirstJoints::products);
+    all.extend((0..products).map(FaultHypothesis::PotentialTerm));
     all
 }
 
@@ -382,6 +400,7 @@ impl Sample<'_> {
             FaultHypothesis::Crosstalk { to, from } => share(to) * self.torques[from],
             // Their columns follow after decimation, or are those of the faults that they join.
             FaultHypothesis::Potential(_)
+            | FaultHypothesis::PotentialTerm(_)
             | FaultHypothesis::AllTorques(_)
             | FaultHypothesis::AllCrosstalk => 0.0,
         }

@@ -9,7 +9,10 @@ use super::{
 };
 use crate::{
     error::{Error, Problem},
-    formats::stored::StoredRows,
+    formats::{
+        instant::{Instant, Midnights},
+        stored::StoredRows,
+    },
     problems::{quoted, shown},
 };
 
@@ -23,11 +26,52 @@ pub(super) struct Rows<'a> {
     names: Vec<&'a str>,
     wanted: Wanted,
     found: Vec<Value>,
+    times: Times,
     /// Line of the last object.
     line: usize,
     is_broken: bool,
     /// Whether a problem with a remedy was reported.
     is_helped: bool,
+}
+
+/// Dates and times of day among the values of the objects, which become seconds.
+#[derive(Debug)]
+struct Times {
+    /// Midnight of the first date, s since 1970.
+    origin: Option<i64>,
+    /// Whether each requested column has times, once its first value is known.
+    has_times: Vec<Option<bool>>,
+    /// Times of day of each requested column.
+    midnights: Vec<Midnights>,
+}
+
+impl Times {
+    fn new(columns: usize) -> Self {
+        Self {
+            origin: None,
+            has_times: vec![None; columns],
+            midnights: vec![Midnights::default(); columns],
+        }
+    }
+
+    /// Replaces dates and times of day in the values of an object by seconds.
+    fn replace(&mut self, values: &mut [Value]) {
+        let columns = self.has_times.iter_mut().zip(&mut self.midnights);
+        for (value, (has_times, midnights)) in values.iter_mut().zip(columns) {
+            let instant = match value {
+                Value::Text(text) => Instant::parse(text),
+                _ => None,
+            };
+            let has_times = *has_times.get_or_insert(instant.is_some());
+            let Some(instant) = instant.filter(|_| has_times) else {
+                continue;
+            };
+            *value = Value::Number(match instant.day {
+                Some(day) => instant.since(*self.origin.get_or_insert(86_400 * day)),
+                None => midnights.next(instant.since(0)),
+            });
+        }
+    }
 }
 
 impl<'a> Rows<'a> {
@@ -46,6 +90,7 @@ impl<'a> Rows<'a> {
             records,
             wanted,
             found: vec![Value::Missing; requested.len()],
+            times: Times::new(requested.len()),
             names: requested.into_iter().map(|(_, name)| name).collect(),
             line: 0,
             is_broken: false,
@@ -60,7 +105,9 @@ impl<'a> Rows<'a> {
             return Ok(false);
         };
         self.line = record.line;
-        self.wanted.read(&record, &mut self.found).map(|()| true)
+        self.wanted.read(&record, &mut self.found)?;
+        self.times.replace(&mut self.found);
+        Ok(true)
     }
 
     /// The problems of the values of an object.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::instant::Instant;
+use crate::formats::instant::Instant;
 
 /// Parses a cell as a number, if it is one.
 pub(super) fn parse(cell: &str, decimal_comma: bool) -> Option<f64> {

@@ -12,12 +12,12 @@ use overact::Code;
 use super::{
     cell_values::{is_instant, is_number, text_of},
     groups,
-    instant::Instant,
     preamble::Preamble,
     separator::{records, separator, width},
 };
 use crate::{
     error::{Error, Problem},
+    formats::instant::Instant,
     problems::shown,
 };
 

@@ -6,7 +6,7 @@
 //!
 //! - `dialect`: separators, decimal commas and names; `separator`: records by a separator;
 //! - `preamble`: lines before the samples; `groups`: columns with cells in the same rows;
-//! - `lines`, `cells`: plain lines and their numbers; `cell_values`, `instant`: numbers, dates and times of day;
+//! - `lines`, `cells`: plain lines and their numbers; `cell_values`: numbers, dates and times of day;
 //! - `row_diagnostics`: error messages for a row;
 //! - `collapsed_blanks`: columns separated by several blanks;
 //! - `rows`: rows of plain lines, or of records with quotation marks.
@@ -16,7 +16,6 @@ mod cells;
 mod collapsed_blanks;
 mod dialect;
 mod groups;
-mod instant;
 mod lines;
 mod preamble;
 mod row_diagnostics;

@@ -5,10 +5,10 @@ use overact::Code;
 use super::{
     Text,
     cell_values::{parse, text_of},
-    instant::{Instant, Midnights},
 };
 use crate::{
     error::{Error, Problem},
+    formats::instant::{Instant, Midnights},
     problems::shown,
 };
 

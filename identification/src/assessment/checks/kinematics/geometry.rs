@@ -192,7 +192,6 @@ fn detection_limits(
         let (unit, visible) = (unit(context, hypothesis), one.wald.visible(level));
         let limit = Detectable {
             name: name(context, hypothesis),
-            is_length: matches!(hypothesis, FaultHypothesis::Length(_)),
             ..one.detectable(context, scores, unit, visible)
         };
         (hypothesis, limit)

@@ -3,10 +3,12 @@
 //! Such a dependence is an effect that the model lacks.
 
 use crate::assessment::{
-    check::{About, Check, CheckKind, Grade},
+    check::{About, Check, CheckKind, Detectable, Grade},
     checks::{
         Context,
-        fault_hypotheses::{Harm, TestedHypothesis, harm, most_significant, tested, worst_harm},
+        fault_hypotheses::{
+            HARMFUL, Harm, TestedHypothesis, harm, most_significant, tested, worst_harm,
+        },
         level::{level, origin},
     },
     evidence::{Axis, Curve, Evidence},
@@ -31,6 +33,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let worst = most_significant(&found, level);
     let limit = worst.unwrap_or(&found[0]).wald.quantile(level);
     let check = Check::new(CheckKind::MissingParameter, About::Model, "")
+        .detecting(detection_limits(context, scores, &found, level))
         .shown_by(evidence(scores, &found, limit));
     let Some(worst) = worst else {
         let largest = found.iter().map(ratio).fold(0.0, f64::max);
@@ -72,6 +75,53 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
+/// The most harmful undetectable torque or force in the equations of each drive and coordinate, and
+/// the most harmful potential.
+fn detection_limits(
+    context: &Context<'_>,
+    scores: &Scores,
+    found: &[TestedHypothesis],
+    level: f64,
+) -> Vec<Detectable> {
+    let info = context.model.info();
+    let mut worst: Vec<(EquationLine, Detectable)> = Vec::new();
+    for one in found.iter().filter(|one| one.wald.sizes.len() == 1) {
+        let hypothesis = one.hypothesis(scores);
+        let line = EquationLine::of(hypothesis);
+        let (name, is_revolute) = match line {
+            EquationLine::Actuator(number) => (
+                info.actuators.get(number),
+                info.actuator_is_revolute.get(number) == Some(&true),
+            ),
+            EquationLine::Coordinate(number) => (info.coordinates.get(number), false),
+            EquationLine::All => (None, true),
+        };
+        let unit = match (hypothesis, hypothesis.shape()) {
+            (FaultHypothesis::Force(..), _) => continue,
+            (_, Some(shape)) => shape.unit(is_revolute),
+            (FaultHypothesis::PotentialTerm(_), _) => "N m",
+            _ => "",
+        };
+        let size = one.wald.visible(level);
+        let Some(limit) = one.detectable_in_base(context, scores, unit, size) else {
+            continue;
+        };
+        if limit.shift_deviations <= HARMFUL {
+            continue;
+        }
+        let limit = Detectable {
+            name: name.copied().unwrap_or_default().to_owned(),
+            ..limit
+        };
+        match worst.iter_mut().find(|(own, _)| *own == line) {
+            Some((_, own)) if own.shift_deviations < limit.shift_deviations => *own = limit,
+            Some(_) => {}
+            None => worst.push((line, limit)),
+        }
+    }
+    worst.into_iter().map(|(_, limit)| limit).collect()
+}
+
 /// Sentence on the strongest hypothesis, which ends with its consequence.
 fn sentence(
     context: &Context<'_>,
@@ -89,7 +139,7 @@ fn sentence(
         FaultHypothesis::Torque(actuator, _) | FaultHypothesis::Crosstalk { to: actuator, .. } => {
             drive(actuator)
         }
-        FaultHypothesis::Potential(_) => String::from("first joints"),
+        potential if potential.is_potential() => String::from("first joints"),
         _ => String::from("torque of every drive"),
     };
     let finding = Finding {
@@ -98,7 +148,7 @@ fn sentence(
         strength: worst.wald.strength(),
         consequence,
     };
-    if matches!(hypothesis, FaultHypothesis::Potential(_)) {
+    if hypothesis.is_potential() {
         return finding.potential_sentence();
     }
     let Some(shape) = hypothesis.shape() else {

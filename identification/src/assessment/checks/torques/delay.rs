@@ -1,13 +1,13 @@
 //! Tests for a delay between torques and motion.
 
 use crate::assessment::{
-    check::{About, Check, CheckKind},
+    check::{About, Check, CheckKind, Detectable},
     checks::{
         Context,
         fault_hypotheses::{TestedHypothesis, parabola, tested, worst_harm},
         level::{level, origin},
     },
-    hypotheses::{FaultHypothesis, Group, Scores},
+    hypotheses::{FaultHypothesis, Group},
 };
 use overact_logs::{Error, significant};
 
@@ -45,12 +45,22 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let Some(shown) = most_significant.or(found.first()) else {
         return Ok(Vec::new());
     };
+    let drive = |one: &TestedHypothesis| match one.hypothesis(scores) {
+        FaultHypothesis::DriveDelay(actuator) => {
+            context.model.info().actuators.get(actuator).copied()
+        }
+        _ => None,
+    };
     let limits = TestLimits {
         tests: found.len(),
         level,
         harmless,
     };
-    let check = limits.check(context, scores, shown);
+    let detectable = found.iter().map(|one| Detectable {
+        name: drive(one).unwrap_or_default().to_owned(),
+        ..one.detectable(context, scores, "s", harmless + one.wald.visible(level))
+    });
+    let check = limits.check(shown).detecting(detectable.collect());
     let wald = &shown.wald;
     let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
     let number = |value: f64| significant(value, 3);
@@ -63,10 +73,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         );
         return Ok(vec![Check { words, ..check }]);
     }
-    let name = match shown.hypothesis(scores) {
-        FaultHypothesis::DriveDelay(actuator) => context.model.info().actuators.get(actuator),
-        _ => None,
-    };
+    let name = drive(shown);
     let harm = worst_harm(context, scores, &found, shown, level);
     let whose = name.map_or_else(
         || String::from("the torques are"),
@@ -129,7 +136,7 @@ struct TestLimits {
 
 impl TestLimits {
     /// The check of one delay, without words.
-    fn check(&self, context: &Context<'_>, scores: &Scores, one: &TestedHypothesis) -> Check {
+    fn check(&self, one: &TestedHypothesis) -> Check {
         let wald = &one.wald;
         let [size, deviation] = [wald.size(), wald.deviation].map(|s| 1e3 * s);
         let beyond = (size.abs() - 1e3 * self.harmless).max(0.0);
@@ -142,12 +149,6 @@ impl TestLimits {
                     origin(self.tests)
                 ),
             )
-            .detecting(vec![one.detectable(
-                context,
-                scores,
-                "s",
-                self.harmless + wald.visible(self.level),
-            )])
             .shown_by(parabola(
                 wald,
                 "Residual for torques that are shifted in time",

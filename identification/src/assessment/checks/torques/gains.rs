@@ -46,7 +46,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     });
     let hidden = inseparable
         .iter()
-        .map(|actuator| Detectable::never(name(*actuator)));
+        .map(|actuator| Detectable::undetectable_gain(*actuator, name(*actuator)));
     let detectable: Vec<Detectable> = limits.chain(hidden).collect();
     let worst = most_significant(&found, level);
     let check = worst.map_or_else(
@@ -134,6 +134,7 @@ fn failed_check(worst: &TestedHypothesis, harm: &Harm, actuator: &str) -> Check 
 fn none_separable(names: &[&str]) -> Option<Check> {
     let words = "these data cannot test whether the gain of one drive differs from the others'";
     let check = || Check::new(CheckKind::WrongGain, About::Model, words);
-    let never = names.iter().map(|name| Detectable::never(name)).collect();
+    let gain = |(actuator, name): (usize, &&str)| Detectable::undetectable_gain(actuator, name);
+    let never = names.iter().enumerate().map(gain).collect();
     (names.len() > 1).then(|| check().detecting(never))
 }

@@ -1,4 +1,4 @@
-//! Dates and times of day as cells: `2026-03-01T10:00:00.001Z`, `01.03.2026 10:00:00`, `10:00:00.001`.
+//! Dates and times of day as texts: `2026-03-01T10:00:00.001Z`, `01.03.2026 10:00:00`, `10:00:00.001`.
 //!
 //! Times of day count from midnight. Dates count from midnight (UTC) of the day on which the log
 //! starts, so that steps of microseconds keep their digits. A time without a zone is taken as it is.
@@ -16,16 +16,16 @@ const MIDNIGHT: f64 = DAY / 2.0;
 
 /// A date with a time, or a time of day.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Instant {
+pub(in crate::formats) struct Instant {
     /// Days since 1970; `None` for a time of day.
-    pub(super) day: Option<i64>,
+    pub(in crate::formats) day: Option<i64>,
     /// Time of the day, s.
-    pub(super) seconds: f64,
+    pub(in crate::formats) seconds: f64,
 }
 
 impl Instant {
     /// Parses a cell, if it is a date with a time, or a time of day with seconds.
-    pub(super) fn parse(cell: &str) -> Option<Self> {
+    pub(in crate::formats) fn parse(cell: &str) -> Option<Self> {
         let cell = cell.trim();
         let is_digit = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_digit);
         if !is_digit(cell.as_bytes().first()) || cell.matches(':').count() < 2 {
@@ -63,7 +63,7 @@ impl Instant {
     }
 
     /// Seconds since `origin`, in s since 1970; a time of day is that since midnight.
-    pub(super) fn since(self, origin: i64) -> f64 {
+    pub(in crate::formats) fn since(self, origin: i64) -> f64 {
         self.seconds + self.day.map_or(0, |day| 86_400 * day - origin) as f64
     }
 }
@@ -86,14 +86,14 @@ fn iso_date(date: &str) -> Option<String> {
 
 /// Times of day of one column, continued over midnight.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Midnights {
+pub(in crate::formats) struct Midnights {
     days: f64,
     last: f64,
 }
 
 impl Midnights {
     /// The time of day of the next row, in seconds from the first midnight.
-    pub(super) fn next(&mut self, seconds: f64) -> f64 {
+    pub(in crate::formats) fn next(&mut self, seconds: f64) -> f64 {
         if seconds < self.last - MIDNIGHT {
             self.days += 1.0;
         }
