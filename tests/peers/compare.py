@@ -105,11 +105,15 @@ def compare(overact, file, folder, options=(), with_size=False):
         except RuntimeError as error:
             if not any(reason in str(error) for reason in NEARER) or size == SIZES[-1]:
                 raise
+    home = np.array(sheet["home_joints"])
     if Path(file).suffix == ".urdf":
         from pinocchio_engine import Engine
+
+        engine = Engine(file, description, home)
     else:
         from mujoco_engine import Engine
-    engine = Engine(file, description, np.array(sheet["home_joints"]))
+
+        engine = Engine(file, description, home, misfit)
     worst_position, worst_torque = 0.0, 0.0
     for q, rates, accelerations, motions, torques in states:
         bodies = description.motion(q, rates, accelerations)

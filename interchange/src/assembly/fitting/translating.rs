@@ -11,6 +11,8 @@ use nalgebra::Point3;
 /// Largest rotation of a platform that translates but for rounding, for each displacement by the
 /// size of the mechanism.
 const TURNING: f64 = 0.05;
+/// Smallest displacement for a motion, as a fraction of the largest, in an independent direction.
+const DISPLACED: f64 = 0.02;
 /// Rotations below this are rounding errors.
 const STILL: f64 = 1e-7;
 
@@ -32,17 +34,17 @@ pub(crate) fn translating(model: &Model, tolerance: f64) -> Option<Model> {
     })
 }
 
-/// Whether a group turns little but not exactly not at all, and all motions displace it.
+/// Whether a group turns little but not exactly not at all, and is displaced in two directions or
+/// more.
 fn nearly_translates(network: &Network<'_>, group: usize) -> bool {
     let first = network.groups[group].bodies[0];
-    let count = network.mobility;
-    if count < 2 {
-        return false;
-    }
     let mut is_still = true;
     let states = network.states.iter().zip(&network.twists).skip(1);
     let all = states.clone().all(|(state, twists)| {
         let own = &twists[group];
+        if own.ncols() < 2 {
+            return false;
+        }
         let at = state.poses[first].translation.vector;
         let angular = own.rows(3, 3).into_owned();
         let linear = own.rows(0, 3) - at.cross_matrix() * &angular;
@@ -53,9 +55,10 @@ fn nearly_translates(network: &Network<'_>, group: usize) -> bool {
         });
         let turning = angular.amax() * reach.fold(0.0, f64::max);
         let moving = linear.clone().singular_values();
-        let least = moving.iter().copied().nth(count.saturating_sub(1));
+        let moving = moving.iter().filter(|value| **value > DISPLACED * moving.max());
+        let least = moving.clone().copied().fold(f64::INFINITY, f64::min);
         is_still &= turning < STILL * linear.amax();
-        least.is_some_and(|least| turning < TURNING * least)
+        moving.count() > 1 && turning < TURNING * least
     });
     all && !is_still && network.states.len() > 1
 }
