@@ -55,7 +55,9 @@ fn nearly_translates(network: &Network<'_>, group: usize) -> bool {
         });
         let turning = angular.amax() * reach.fold(0.0, f64::max);
         let moving = linear.clone().singular_values();
-        let moving = moving.iter().filter(|value| **value > DISPLACED * moving.max());
+        let moving = moving
+            .iter()
+            .filter(|value| **value > DISPLACED * moving.max());
         let least = moving.clone().copied().fold(f64::INFINITY, f64::min);
         is_still &= turning < STILL * linear.amax();
         moving.count() > 1 && turning < TURNING * least
