@@ -8,7 +8,7 @@ use crate::{
         layout::{self, Layout},
         misfit,
         network::Network,
-        simple, undriven,
+        parasitic, simple, undriven,
     },
     bounds,
     experiment::{self, Experiment},
@@ -194,6 +194,15 @@ impl<'m> Robot<'m> {
     pub(crate) fn new(files: &Files, model: &'m Model, options: &Options) -> Option<Self> {
         let mut network = Network::new(files, model)?;
         undriven::check(files, &network)?;
+        let platform = parasitic::find(&network).filter(|_| options.coordinates.is_none());
+        if let Some(platform) = platform.filter(|_| !layout::exists(&mut network)) {
+            let plan = Plan::on_platform(files, &network, &platform)?;
+            return Some(Self {
+                network,
+                layout: Layout::default(),
+                plan,
+            });
+        }
         let layout = layout::find(files, &mut network, options)?;
         let plan = Plan::new(files, &network, &layout)?;
         Some(Self {

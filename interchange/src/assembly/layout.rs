@@ -30,7 +30,7 @@ pub(crate) enum LayoutPiece {
 }
 
 /// Skeleton, branches and chains.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Layout {
     /// Tree on the ground.
     pub(crate) skeleton: Tree,
@@ -78,7 +78,9 @@ pub(crate) fn find(files: &Files, network: &mut Network<'_>, options: &Options) 
 
 /// Whether there are a skeleton and chains.
 pub(crate) fn exists(network: &mut Network<'_>) -> bool {
-    search_all(network, None).is_ok()
+    let found = search_all(network, None).is_ok();
+    network.remove_platform();
+    found
 }
 
 /// Searches with the wanted edges as coordinates, or with each kind of coordinates in turn.

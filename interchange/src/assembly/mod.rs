@@ -13,6 +13,7 @@ mod names;
 mod nearest;
 pub(crate) mod network;
 mod parallel;
+pub(crate) mod parasitic;
 pub(crate) mod platform;
 mod platform_search;
 pub(crate) mod simple;

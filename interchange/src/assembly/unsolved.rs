@@ -86,7 +86,7 @@ pub(super) fn report(files: &Files, network: &Network<'_>, failure: &Failure, wa
         }
         (false, true) => "name the coordinates: `--coordinates a,b,c`",
         (false, false) if has_platform_on_balls(network, &open) => {
-            "its directions of motion change with its pose, and import writes no such platform: describe it by hand as a `[platform]` with `independent` coordinates, as robots/spatial_3rps.toml does"
+            "the platform's directions of motion change with its pose. Import describes such a platform by `independent` coordinates if its legs have no branches and it carries no joint: fix the other joints in the file, or describe the robot by hand as robots/spatial_3rps.toml"
         }
         (false, false) => {
             "a chain leads from one known body to another through at most six joints, or three and a ball joint, and all choices of coordinates were tried. A link on three rods of unknown positions has no description: fix one of these joints in the file, or remove a closure, and identify the other bodies"

@@ -70,7 +70,15 @@ struct Frame {
 
 impl Reader<'_> {
     fn robot(&self, model: &mut Model, options: &Options) -> Option<()> {
-        let links = self.count("NL")?;
+        let Some(links) = self.count("NL") else {
+            if self.files.is_clean() {
+                let message = "the table does not say how many links the robot has";
+                let help =
+                    "write NL = …, NJ = … and NF = …: the numbers of links, joints and frames";
+                self.files.report(&self.place("NJ"), message, help);
+            }
+            return None;
+        };
         let joints = self
             .count("NJ")
             .or_else(|| self.files.is_clean().then_some(links))?;
